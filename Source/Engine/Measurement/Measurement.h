@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <complex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace excursion {
+
+/// What a channel holds. Samples are always in the SI unit of the quantity, except where an
+/// electrical analogue gives force or displacement in volts (then Channel::unit is "V").
+enum class Quantity { voltage, current, displacement, velocity, acceleration, pressure, force };
+
+inline constexpr std::array quantities {Quantity::voltage,  Quantity::current,      Quantity::displacement,
+                                        Quantity::velocity, Quantity::acceleration, Quantity::pressure,
+                                        Quantity::force};
+
+std::string_view name(Quantity);     ///< "voltage", as in the files
+std::string_view siUnit(Quantity);   ///< "V", "A", "m", "m/s", "m/s^2", "Pa", "N"
+std::optional<Quantity> quantityNamed(std::string_view);
+
+/// How the record was excited. Time runs level by level (quiet to loud), in each level realization by
+/// realization, in each realization settlePeriods + periods periods of the same multisine.
+struct Excitation {
+    int period = 0;                ///< samples of one period
+    int settlePeriods = 1;
+    int periods = 2;               ///< periods to be used, after the settling ones
+    int realizations = 1;
+    std::vector<double> levels;    ///< V rms
+    std::string grid = "full";     ///< full, odd, odd-odd, odd-random, R10, R20, R40, R80
+    std::string shape = "white";   ///< white, pink, red
+    double bandLow = 0.0, bandHigh = 0.0;  ///< Hz
+    std::vector<int> lines;        ///< excited DFT lines of one period, ascending; empty: not known yet
+
+    int periodsPerRealization() const { return settlePeriods + periods; }
+    long samplesPerRealization() const { return static_cast<long>(period) * periodsPerRealization(); }
+    long totalSamples() const { return samplesPerRealization() * realizations * static_cast<long>(levels.size()); }
+};
+
+struct Channel {
+    Quantity quantity = Quantity::voltage;
+    std::string unit = "V";
+    double fullScale = 1.0;         ///< quantity at a WAV sample of 1.0; reaching it is clipping
+    std::vector<double> samples;    ///< in `unit`
+};
+
+struct DriverInfo {
+    std::string name;
+    std::optional<double> coneArea;             ///< m^2
+    std::optional<double> microphoneDistance;   ///< m
+};
+
+/// A take: what was played and what was measured, sampled at the same instants. All channels have
+/// the same length.
+struct Measurement {
+    double sampleRate = 0.0;   ///< Hz
+    std::vector<Channel> channels;
+    std::optional<Excitation> excitation;   ///< absent: music, noise or someone else's record
+    DriverInfo driver;
+
+    std::size_t length() const { return channels.empty() ? 0 : channels.front().samples.size(); }
+    const Channel* find(Quantity) const;      ///< nullptr when absent
+    const Channel& input() const;             ///< the voltage, or the force of a mechanical-only driver; throws Error (data)
+};
+
+/// A take that is a frequency response only (ZMA, or spectra of voltage, current and velocity).
+struct Spectra {
+    struct Channel {
+        Quantity quantity = Quantity::voltage;
+        std::string unit = "V";
+        std::vector<std::complex<double>> values;   ///< one a frequency
+    };
+    std::vector<double> frequency;   ///< Hz, ascending
+    std::vector<Channel> channels;   ///< an impedance is voltage Z against current 1
+    DriverInfo driver;
+
+    const Channel* find(Quantity) const;
+};
+
+using Take = std::variant<Measurement, Spectra>;
+
+} // namespace excursion
