@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Terminal.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+
+#ifdef _WIN32
+#include <io.h>
+#else
+#include <unistd.h>
+#endif
+
+namespace excursion::cli {
+namespace {
+
+std::atomic<bool> interrupted {false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+extern "C" void onInterrupt(int signal)
+{
+    interrupted = true;
+    std::signal(signal, SIG_DFL);   // the second Ctrl-C is for work that does not listen
+}
+
+bool isStderrATerminal()
+{
+#ifdef _WIN32
+    return _isatty(_fileno(stderr)) != 0;
+#else
+    return isatty(STDERR_FILENO) != 0;
+#endif
+}
+
+/// Columns that UTF-8 text takes, one a code point.
+std::size_t width(std::string_view text)
+{
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+bool startsAsNumber(std::string_view text)
+{
+    if (!text.empty() && (text.front() == '-' || text.front() == '+'))
+        text.remove_prefix(1);
+    return !text.empty() && text.front() >= '0' && text.front() <= '9';
+}
+
+std::string padded(const std::string& text, std::size_t to, bool right)
+{
+    const std::string blanks(to - std::min(to, width(text)), ' ');
+    return right ? blanks + text : text + blanks;
+}
+
+std::string formatted(double value, std::chars_format format, int precision)
+{
+    std::array<char, 400> text {};   // a fixed 1e308 has 309 digits
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, format, precision);
+    return error == std::errc() ? std::string(text.data(), end) : std::string("?");
+}
+
+} // namespace
+
+Terminal::Terminal() : stderrIsTerminal_(isStderrATerminal())
+{
+    std::signal(SIGINT, onInterrupt);
+    interruptWatch_ = std::jthread([this](std::stop_token ended) {
+        while (!ended.stop_requested() && !interrupted)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        if (interrupted)
+            stop_.request_stop();
+    });
+}
+
+Terminal::~Terminal() { clearBar(); }
+
+Progress Terminal::progress()
+{
+    Progress progress;
+    progress.stop = stop_.get_token();
+    if (stderrIsTerminal_ && !quiet)
+        progress.report = [this](double fraction, std::string_view what) { drawBar(fraction, what); };
+    return progress;
+}
+
+void Terminal::say(std::string_view text)
+{
+    clearBar();
+    if (!json && !quiet)
+        std::cout << text << '\n' << std::flush;
+}
+
+void Terminal::table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows)
+{
+    std::vector<std::size_t> widths;
+    std::vector<bool> numeric(header.size(), true);
+    for (const auto& title : header)
+        widths.push_back(width(title));
+    for (const auto& row : rows)
+        for (std::size_t c = 0; c < std::min(row.size(), header.size()); ++c) {
+            widths[c] = std::max(widths[c], width(row[c]));
+            numeric[c] = numeric[c] && (row[c].empty() || row[c] == "-" || startsAsNumber(row[c]));
+        }
+    const auto line = [&](const std::vector<std::string>& cells) {
+        std::string text;
+        for (std::size_t c = 0; c < header.size(); ++c)
+            text += "  " + padded(c < cells.size() ? cells[c] : std::string(), widths[c], numeric[c]);
+        while (!text.empty() && text.back() == ' ')
+            text.pop_back();
+        return text + '\n';
+    };
+    std::string text = line(header);
+    std::vector<std::string> rule;
+    for (const auto w : widths)
+        rule.emplace_back(w, '-');
+    text += line(rule);
+    for (const auto& row : rows)
+        text += line(row);
+    text.pop_back();
+    say(text);
+}
+
+void Terminal::document(const nlohmann::json& document)
+{
+    clearBar();
+    if (json)   // a path need not be UTF-8; a document must be
+        std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n' << std::flush;
+}
+
+void Terminal::complain(std::string_view sentence)
+{
+    clearBar();
+    std::cerr << "excursion: " << sentence << '\n' << std::flush;
+}
+
+void Terminal::drawBar(double fraction, std::string_view what)
+{
+    constexpr int cells = 32;
+    const double shown = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
+    const auto full = static_cast<std::size_t>(std::lround(shown * cells));
+    const std::string bar = "[" + std::string(full, '=') + std::string(cells - full, ' ') + "] "
+                          + padded(fixed(100 * shown, 0), 3, true) + " %  " + std::string(what.substr(0, 40));
+    if (bar == lastBar_)
+        return;
+    std::cerr << "\r\x1b[K" << bar << std::flush;
+    lastBar_ = bar;
+    barIsDrawn_ = true;
+}
+
+void Terminal::clearBar()
+{
+    if (barIsDrawn_)
+        std::cerr << "\r\x1b[K" << std::flush;
+    barIsDrawn_ = false;
+    lastBar_.clear();
+}
+
+std::string fixed(double value, int decimals) { return formatted(value, std::chars_format::fixed, decimals); }
+
+std::string significant(double value, int digits) { return formatted(value, std::chars_format::general, digits); }
+
+} // namespace excursion::cli

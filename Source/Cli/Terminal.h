@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Progress.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace excursion::cli {
+
+/// Where a verb speaks. Results go to stdout, everything about the work to stderr:
+///  - by default text and tables for a person, and a progress bar when stderr is a terminal;
+///  - with --json the one document of the verb on stdout, and nothing else;
+///  - with --quiet nothing but errors (and the document, when --json asks for it too).
+/// Ctrl-C asks the work to stop (`stop()`); a second Ctrl-C ends the program on the spot.
+class Terminal {
+public:
+    Terminal();
+    ~Terminal();
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+
+    bool json = false;
+    bool quiet = false;
+
+    /// What long work is given: draws the bar and carries the stop of Ctrl-C. Valid as long as the terminal.
+    Progress progress();
+    std::stop_token stop() const { return stop_.get_token(); }
+
+    /// Text for a person, on stdout, ended by a line break.
+    void say(std::string_view text);
+
+    /// A table for a person: columns aligned, numbers (cells that begin as one) to the right.
+    void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+
+    /// The document of the verb, on stdout, when --json asked for it.
+    void document(const nlohmann::json&);
+
+    /// One sentence "excursion: ..." on stderr.
+    void complain(std::string_view sentence);
+
+private:
+    void drawBar(double fraction, std::string_view what);
+    void clearBar();
+
+    bool stderrIsTerminal_ = false;
+    bool barIsDrawn_ = false;
+    std::string lastBar_;
+    std::stop_source stop_;
+    std::jthread interruptWatch_;   ///< a signal handler may not touch a stop_source itself
+};
+
+/// "-61.0": a number with a fixed count of decimals, for tables. Locale-free.
+std::string fixed(double value, int decimals);
+
+/// "1.43e-05" or "3.30": a number with that many significant digits, for tables. Locale-free.
+std::string significant(double value, int digits = 4);
+
+} // namespace excursion::cli

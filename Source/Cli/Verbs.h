@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace excursion::cli {
+
+class Terminal;
+
+/// The steps of the method; `excursion --help` groups the verbs by them. A verb is one file: it adds
+/// its subcommand with `app.add_subcommand(...)->group(step::...)`, keeps its options in a
+/// std::shared_ptr that its callback captures, and throws Error. Give paths as std::string: CLI11
+/// would split a std::filesystem::path at its blanks.
+namespace step {
+inline constexpr auto measure = "1. Measure the loudspeaker";
+inline constexpr auto look = "2. See whether the take is fit for use, and what is in it";
+inline constexpr auto fit = "3. Fit a model and see where it fails";
+inline constexpr auto diagnose = "4. Find what the model is missing, and add it";
+inline constexpr auto use = "5. Use the model";
+} // namespace step
+
+// Declared here in the order of the method, called in the same order by main.
+
+
+} // namespace excursion::cli

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Error.h"
+
+#include <exception>
+#include <filesystem>
+#include <new>
+
+namespace {
+
+using namespace excursion;
+
+constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing.
+
+  excursion excite --out plan                 the signal to play, and its plan
+  excursion check take                        is the take fit for use?
+  excursion bla take                          frequency response, noise and distortion
+  excursion fit take --out model.json         a loudspeaker model, the linear one first
+  excursion compare take --model model.json   where it is wrong, and by how much
+  excursion diagnose take --model model.json  which physical effect is missing
+  excursion improve take --out ladder         add it and refit, until nothing is missing
+  excursion report ladder                     one page to read and to show
+  excursion simulate model.json in.wav        what the loudspeaker will do
+
+A take is a folder (measurement.json and its WAV), a .zma or a .csv. Each verb has its own --help.)";
+
+constexpr auto footer = R"(
+Exit codes: 0 done, 2 a wrong option, 3 a file that cannot be used, 4 data that cannot answer the
+question, 5 a computation that failed, 6 stopped by Ctrl-C.)";
+
+constexpr int internalError = 1;
+
+int run(CLI::App& app, cli::Terminal& terminal, int argc, char** argv)
+{
+    try {
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0)   // --help and --version
+            return app.exit(e);
+        terminal.complain(std::string(e.what()) + " (see excursion --help)");
+        return static_cast<int>(Error::Kind::usage);
+    } catch (const Error& e) {
+        terminal.complain(e.what());
+        return e.exitCode();
+    } catch (const std::filesystem::filesystem_error& e) {
+        terminal.complain(e.what());
+        return static_cast<int>(Error::Kind::input);
+    } catch (const std::bad_alloc&) {
+        terminal.complain("This computer has too little free memory for the work; use a shorter take.");
+        return static_cast<int>(Error::Kind::numerical);
+    } catch (const std::exception& e) {
+        terminal.complain(std::string("Internal error, please report it: ") + e.what());
+        return internalError;
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    cli::Terminal terminal;
+    CLI::App app(tour, "excursion");
+    app.footer(footer);
+    app.fallthrough();   // so that --json may stand after the verb
+    app.set_version_flag("--version", EXCURSION_VERSION);
+    app.add_flag("--json", terminal.json, "print one JSON document and nothing else");
+    app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
+    app.require_subcommand(1);
+
+    // In the order of the method: --help prints them so.
+
+    return run(app, terminal, argc, argv);
+}
