@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The linear loudspeaker of seed 2.1-2.2, in the same form as an effect, so that a model is one sum.
+#include "Engine/Driver/Catalogue.h"
+
+namespace excursion {
+namespace {
+
+Parameter positive(const char* name, const char* unit, double value)
+{
+    Parameter p;
+    p.name = name;
+    p.unit = unit;
+    p.value = value;
+    p.lower = 0.0;
+    return p;
+}
+
+class Electrodynamic final : public EffectOf<Electrodynamic> {
+public:
+    std::string id() const override { return "electrodynamic"; }
+    std::string title() const override { return "Linear electrodynamic driver"; }
+    std::string physics() const override { return "A coil in a magnetic field drives a mass on a damped spring."; }
+    std::string symptoms() const override { return "One resonance in the impedance; no distortion."; }
+    std::string remedy() const override { return "None is needed."; }
+    bool electrical() const override { return true; }
+    bool linear() const override { return true; }
+
+    std::vector<Parameter> parameters(const Extent&) const override
+    {
+        return {positive("Re", "ohm", 6.0), positive("Le", "H", 3e-4),   positive("Bl", "N/A", 5.0),
+                positive("m", "kg", 1e-2),  positive("Rms", "N s/m", 1), positive("K", "N/m", 2e3)};
+    }
+    int coefficientCount(const Extent&) const override { return 6; }
+
+    template <class T>
+    void prepareFor(const Extent&, const T* p, T* c) const
+    {
+        std::copy(p, p + 6, c);
+    }
+
+    template <class T>
+    void addTo(const Extent&, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    {
+        const T &Re = c[0], &Le = c[1], &Bl = c[2], &m = c[3], &Rms = c[4], &K = c[5];
+        sum.inductance += Le;
+        sum.drop += Re * at.i + Bl * at.v;
+        sum.mass += m;
+        sum.force += Bl * at.i - Rms * at.v - K * at.x;
+    }
+};
+
+class Mechanical final : public EffectOf<Mechanical> {
+public:
+    std::string id() const override { return "mechanical"; }
+    std::string title() const override { return "Linear mechanical driver"; }
+    std::string physics() const override { return "A force drives a mass on a damped spring."; }
+    std::string symptoms() const override { return "One resonance in the receptance; no distortion."; }
+    std::string remedy() const override { return "None is needed."; }
+    bool electrical() const override { return false; }
+    bool linear() const override { return true; }
+
+    std::vector<Parameter> parameters(const Extent&) const override
+    {
+        return {positive("m", "kg", 1e-2), positive("Rms", "N s/m", 1), positive("K", "N/m", 2e3)};
+    }
+    int coefficientCount(const Extent&) const override { return 3; }
+
+    template <class T>
+    void prepareFor(const Extent&, const T* p, T* c) const
+    {
+        std::copy(p, p + 3, c);
+    }
+
+    template <class T>
+    void addTo(const Extent&, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    {
+        sum.mass += c[0];
+        sum.force -= c[1] * at.v + c[2] * at.x;
+    }
+};
+
+} // namespace
+
+const Effect& electrodynamicBase()
+{
+    static const Electrodynamic base;
+    return base;
+}
+
+const Effect& mechanicalBase()
+{
+    static const Mechanical base;
+    return base;
+}
+
+} // namespace excursion

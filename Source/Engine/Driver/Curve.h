@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Effect.h"
+
+#include <array>
+#include <string>
+
+namespace excursion {
+
+/// A smooth curve that is zero at rest,
+///     c(q) = sum_{k=1..n} c_k [T_k(q/Q) - T_k(0)],   |q| <= Q,
+/// with Chebyshev polynomials T_k, which keep the fit well conditioned at any degree that is of use. Beyond the visited
+/// range Q the curve stays at its end value: a polynomial must not be believed where nothing was measured.
+/// Coefficients are those of the monomials in q/Q, from degree 0 upwards (n + 1 of them).
+namespace curve {
+
+inline constexpr int maximumDegree = 12;
+
+/// Monomial coefficients b_0..b_n of sum c_k [T_k - T_k(0)], by the recurrence T_{k+1} = 2 s T_k - T_{k-1}.
+template <class T>
+void prepare(int n, const T* c, T* b)
+{
+    std::array<double, maximumDegree + 1> before {1.0}, now {0.0, 1.0}, next {};
+    for (int j = 0; j <= n; ++j)
+        b[j] = T(0.0);
+    for (int k = 1; k <= n; ++k) {
+        for (int j = 1; j <= k; ++j)
+            if (now[static_cast<std::size_t>(j)] != 0.0)
+                b[j] += now[static_cast<std::size_t>(j)] * c[k - 1];
+        next.fill(0.0);
+        for (int j = 0; j <= k && j < maximumDegree; ++j)
+            next[static_cast<std::size_t>(j) + 1] = 2.0 * now[static_cast<std::size_t>(j)];
+        for (int j = 0; j <= k; ++j)
+            next[static_cast<std::size_t>(j)] -= before[static_cast<std::size_t>(j)];
+        before = now;
+        now = next;
+    }
+}
+
+template <class T>
+struct ValueAndSlope {
+    T value, slope;   ///< slope with respect to q
+};
+
+/// Horner's scheme for the value and the slope at q.
+template <class T>
+ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
+{
+    T s = q * (1.0 / range);
+    const bool outside = s > T(1.0) || s < T(-1.0);
+    if (outside)
+        s = s > T(0.0) ? T(1.0) : T(-1.0);
+    T value = b[n];
+    T slope = T(0.0);
+    for (int j = n - 1; j >= 0; --j) {
+        slope = slope * s + value;
+        value = value * s + b[j];
+    }
+    return {value, outside ? T(0.0) : slope * (1.0 / range)};
+}
+
+inline double valueAt(int n, const double* c, double q, double range)
+{
+    std::array<double, maximumDegree + 1> b {};
+    prepare(n, c, b.data());
+    return at(n, b.data(), q, range).value;
+}
+
+/// The n coefficients c_1..c_n as parameters, all strengths.
+inline std::vector<Parameter> parameters(int n, const std::string& unit)
+{
+    std::vector<Parameter> result;
+    for (int k = 1; k <= n; ++k) {
+        Parameter p;
+        p.name = "c" + std::to_string(k);
+        p.unit = unit;
+        p.strength = true;
+        result.push_back(p);
+    }
+    return result;
+}
+
+} // namespace curve
+} // namespace excursion

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+
+#include <array>
+#include <vector>
+
+namespace excursion {
+
+/// The differential equations of a model, generic in the number type. State z = (i, x, v, memories of the components in
+/// order); the input is the voltage, or the force of a mechanical-only driver.
+///     di/dt = (u - drop - fluxSlope v) / inductance,   dx/dt = v,   dv/dt = force / mass
+/// The model must outlive the dynamics.
+template <class T>
+class Dynamics {
+public:
+    /// @param parameters  one value a parameter of the model, in the order of parametersOf()
+    Dynamics(const Model& model, const std::vector<T>& parameters) : electrical_(model.electrical())
+    {
+        std::size_t offset = 0;
+        int coefficients = 0;
+        for (const auto& component : model.components) {
+            const auto& e = *component.effect;
+            parts_.push_back({&e, &component.extent, coefficients, order_});
+            coefficients += e.coefficientCount(component.extent);
+            order_ += e.memorySize(component.extent);
+        }
+        coefficients_.resize(static_cast<std::size_t>(coefficients));
+        for (std::size_t k = 0; k < parts_.size(); ++k) {
+            const auto& part = parts_[k];
+            part.effect->prepare(*part.extent, parameters.data() + offset, coefficients_.data() + part.coefficients);
+            offset += model.components[k].parameters.size();
+        }
+        for (auto& stage : stages_)
+            stage.resize(static_cast<std::size_t>(order_));
+    }
+
+    int order() const { return order_; }
+
+    /// dz/dt at state z under input u.
+    void rates(const T* z, const T& u, T* dz) const
+    {
+        const Motion<T> at {z[0], z[1], z[2]};
+        Balance<T> sum;
+        for (const auto& part : parts_)
+            part.effect->contribute(*part.extent, coefficients_.data() + part.coefficients, at, z + part.memory,
+                                    dz + part.memory, sum);
+        dz[1] = at.v;
+        if (electrical_) {
+            dz[0] = (u - sum.drop - sum.fluxSlope * at.v) / sum.inductance;
+            dz[2] = sum.force / sum.mass;
+        } else {
+            dz[0] = T(0.0);
+            dz[2] = (sum.force + u) / sum.mass;
+        }
+    }
+
+    /// One step of the classical fourth-order Runge-Kutta method.
+    /// @param z        state, advanced in place
+    /// @param u        input at the step's start, middle and end
+    /// @param h        s
+    /// @returns        the rates at the start of the step
+    const T* step(T* z, double u0, double u1, double u2, double h)
+    {
+        auto& [k1, k2, k3, k4, y] = stages_;
+        const auto n = static_cast<std::size_t>(order_);
+        const auto stage = [&](const std::vector<T>& slope, double fraction) {
+            for (std::size_t j = 0; j < n; ++j)
+                y[j] = z[j] + fraction * slope[j];
+        };
+        rates(z, T(u0), k1.data());
+        stage(k1, 0.5 * h);
+        rates(y.data(), T(u1), k2.data());
+        stage(k2, 0.5 * h);
+        rates(y.data(), T(u1), k3.data());
+        stage(k3, h);
+        rates(y.data(), T(u2), k4.data());
+        for (std::size_t j = 0; j < n; ++j)
+            z[j] += (h / 6.0) * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]);
+        return k1.data();
+    }
+
+private:
+    struct Part {
+        const Effect* effect;
+        const Extent* extent;
+        int coefficients;   ///< where its coefficients start
+        int memory;         ///< where its memory starts in the state
+    };
+
+    bool electrical_;
+    int order_ = 3;
+    std::vector<Part> parts_;
+    std::vector<T> coefficients_;
+    std::array<std::vector<T>, 5> stages_;
+};
+
+} // namespace excursion

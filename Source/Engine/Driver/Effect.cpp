@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Effect.h"
+
+namespace excursion {
+
+std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
+{
+    std::vector<double> values;
+    for (const auto& parameter : parameters(extent))
+        values.push_back(parameter.strength ? 0.0 : parameter.value);
+    return {values};
+}
+
+double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
+
+} // namespace excursion

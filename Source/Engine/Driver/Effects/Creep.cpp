@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Effects/Effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// A viscoelastic suspension is a spring with relaxing ones beside it (generalized Maxwell body):
+///     F = K x + sum_k K_k (x - y_k),   dy_k/dt = 2 pi f_k (x - y_k),
+/// so that the stiffness rises from K at rest to K + S in fast motion, S = sum K_k. The relaxation
+/// frequencies f_k lie evenly on a logarithmic axis, over `width` decades around 10^centre Hz. A wide band is the
+/// logarithmic creep of Knudsen and Jensen (J. Audio Eng. Soc. 41, 1993), a narrow one the three-parameter solid.
+class Creep final : public EffectOf<Creep> {
+public:
+    std::string id() const override { return "creep"; }
+    std::string title() const override { return "Suspension creep"; }
+    std::string physics() const override
+    {
+        return "The rubber and cloth of the suspension yield slowly: the compliance grows as frequency falls.";
+    }
+    std::string symptoms() const override
+    {
+        return "linear residual force below and around resonance, a stiffness that rises slowly with frequency";
+    }
+    std::string remedy() const override
+    {
+        return "A surround and spider of less lossy material creep less.";
+    }
+    bool electrical() const override { return false; }
+    bool linear() const override { return true; }
+
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        Parameter strength, centre, width;
+        strength.name = "S";
+        strength.unit = "N/m";
+        strength.lower = 0.0;
+        strength.strength = true;
+        centre.name = "centre";
+        centre.unit = "log10 Hz";
+        centre.value = std::log10(e.lowFrequency);
+        centre.lower = std::log10(e.lowFrequency) - 2.0;
+        centre.upper = std::log10(e.lowFrequency) + 1.5;
+        width.name = "width";
+        width.unit = "decades";
+        width.value = 2.0;
+        width.lower = 0.05;
+        width.upper = 5.0;
+        return {strength, centre, width};
+    }
+    std::vector<std::vector<double>> starts(const Extent& e) const override
+    {
+        const double low = std::log10(e.lowFrequency);
+        return {{0.0, low, 3.0}, {0.0, low + 0.3, 0.5}, {0.0, low - 0.5, 0.5}};
+    }
+
+    int memorySize(const Extent&) const override { return cells; }
+    int coefficientCount(const Extent&) const override { return cells + 1; }
+
+    /// Coefficients: the stiffness of each cell, then the relaxation rates.
+    template <class T>
+    void prepareFor(const Extent&, const T* p, T* c) const
+    {
+        using std::exp;
+        c[0] = p[0] * (1.0 / cells);
+        for (int k = 0; k < cells; ++k)
+            c[1 + k] = 2.0 * std::numbers::pi
+                       * exp(std::numbers::ln10 * (p[1] + p[2] * ((k + 0.5) / cells - 0.5)));
+    }
+
+    template <class T>
+    void addTo(const Extent&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    {
+        T stretched = T(0.0);
+        for (int k = 0; k < cells; ++k) {
+            const T difference = at.x - memory[k];
+            stretched += difference;
+            rate[k] = c[1 + k] * difference;
+        }
+        sum.force -= c[0] * stretched;
+    }
+
+private:
+    static constexpr int cells = 6;
+};
+
+} // namespace
+
+const Effect& creep()
+{
+    static const Creep effect;
+    return effect;
+}
+
+} // namespace excursion

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace excursion {
+
+class Effect;
+
+// One file each beside this one. Only the catalogue includes this header.
+const Effect& forceFactor();
+const Effect& stiffness();
+const Effect& inductancePosition();
+const Effect& eddyCurrents();
+const Effect& creep();
+const Effect& dampingVelocity();
+
+} // namespace excursion

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Linearize.h"
+
+#include "Engine/Driver/Dynamics.h"
+#include "Engine/Error.h"
+
+#include <Eigen/LU>
+
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// Rates at a state so close to rest that only the linear part speaks: curved laws enter in second order.
+template <class T>
+void columns(const Model& model, const std::vector<T>& parameters, std::vector<std::vector<T>>& result)
+{
+    constexpr double nearRest = 1e-9;
+    const Dynamics<T> dynamics(model, parameters);
+    const auto n = static_cast<std::size_t>(dynamics.order());
+    result.assign(n + 1, std::vector<T>(n, T(0.0)));
+    for (std::size_t j = 0; j <= n; ++j) {
+        std::vector<T> z(n, T(0.0));
+        if (j < n)
+            z[j] = T(nearRest);
+        dynamics.rates(z.data(), T(j < n ? 0.0 : nearRest), result[j].data());
+        for (auto& entry : result[j])
+            entry = entry * (1.0 / nearRest);
+    }
+}
+
+} // namespace
+
+Linearization linearize(const Model& model, bool withGradient)
+{
+    const auto theta = parameterVector(model);
+    std::vector<std::vector<double>> plain;
+    columns(model, std::vector<double>(theta.begin(), theta.end()), plain);
+    const auto n = static_cast<Eigen::Index>(plain.size()) - 1;
+    Linearization result;
+    result.A.resize(n, n);
+    for (Eigen::Index j = 0; j < n; ++j)
+        result.A.col(j) = Eigen::Map<const Eigen::VectorXd>(plain[static_cast<std::size_t>(j)].data(), n);
+    result.B = Eigen::Map<const Eigen::VectorXd>(plain.back().data(), n);
+    if (!withGradient)
+        return result;
+
+    const auto count = theta.size();
+    result.dA.assign(static_cast<std::size_t>(count), Eigen::MatrixXd(n, n));
+    result.dB.assign(static_cast<std::size_t>(count), Eigen::VectorXd(n));
+    for (Eigen::Index first = 0; first < count; first += jetWidth) {
+        std::vector<Jet> parameters(static_cast<std::size_t>(count));
+        for (Eigen::Index k = 0; k < count; ++k)
+            parameters[static_cast<std::size_t>(k)] = k >= first && k < first + jetWidth
+                                                          ? Jet(theta[k], static_cast<int>(k - first))
+                                                          : Jet(theta[k]);
+        std::vector<std::vector<Jet>> jets;
+        columns(model, parameters, jets);
+        for (Eigen::Index k = first; k < std::min<Eigen::Index>(count, first + jetWidth); ++k) {
+            auto& dA = result.dA[static_cast<std::size_t>(k)];
+            for (Eigen::Index row = 0; row < n; ++row) {
+                const auto derivative = [&](std::size_t column) { return jets[column][static_cast<std::size_t>(row)].v[k - first]; };
+                for (Eigen::Index column = 0; column < n; ++column)
+                    dA(row, column) = derivative(static_cast<std::size_t>(column));
+                result.dB[static_cast<std::size_t>(k)][row] = derivative(static_cast<std::size_t>(n));
+            }
+        }
+    }
+    return result;
+}
+
+std::vector<Response> respond(const Model& model, const std::vector<Quantity>& quantities,
+                              const std::vector<double>& frequency, bool withGradient)
+{
+    using Complex = std::complex<double>;
+    const auto linear = linearize(model, withGradient);
+    const auto n = linear.A.rows();
+    const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
+    const double radiation = radiationPerArea() / model.microphoneDistance;
+    const double area = model.path[0].value, tau = model.path[1].value;
+
+    std::vector<Response> responses(quantities.size());
+    for (auto& response : responses) {
+        response.value.resize(frequency.size());
+        if (withGradient)
+            response.gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
+    }
+    for (std::size_t f = 0; f < frequency.size(); ++f) {
+        const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
+        const Eigen::MatrixXcd system = s * Eigen::MatrixXcd::Identity(n, n) - linear.A.cast<Complex>();
+        const Eigen::PartialPivLU<Eigen::MatrixXcd> factors(system);
+        const Eigen::VectorXcd z = factors.solve(linear.B.cast<Complex>());
+        for (std::size_t q = 0; q < quantities.size(); ++q) {
+            // Each quantity is a state times a factor: displacement x, velocity s x, acceleration s^2 x.
+            Complex factor = 1.0;
+            Eigen::Index state = 1;
+            switch (quantities[q]) {
+            case Quantity::current: state = 0; break;
+            case Quantity::displacement: break;
+            case Quantity::velocity: factor = s; break;
+            case Quantity::acceleration: factor = s * s; break;
+            case Quantity::pressure: factor = s * s * radiation * area * std::exp(-s * tau); break;
+            case Quantity::voltage:
+            case Quantity::force: throw Error(Error::Kind::usage, "The input of a driver has no response to itself.");
+            }
+            const Complex value = factor * z[state];
+            responses[q].value[f] = value;
+            if (!withGradient)
+                continue;
+            // d(C R B) = C R (dA R B + dB) with R = (sI - A)^-1.
+            Eigen::VectorXcd unit = Eigen::VectorXcd::Zero(n);
+            unit[state] = 1.0;
+            const Eigen::VectorXcd left = factors.transpose().solve(unit);
+            auto row = responses[q].gradient.row(static_cast<Eigen::Index>(f));
+            for (Eigen::Index k = 0; k < count; ++k) {
+                const auto index = static_cast<std::size_t>(k);
+                const Eigen::VectorXcd forced = linear.dA[index].cast<Complex>() * z + linear.dB[index].cast<Complex>();
+                row[k] = factor * left.cwiseProduct(forced).sum();
+            }
+            if (quantities[q] == Quantity::pressure) {
+                row[count - 2] += value / area;
+                row[count - 1] += -s * value;
+            }
+        }
+    }
+    return responses;
+}
+
+} // namespace excursion

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <vector>
+
+namespace excursion {
+
+/// The model linearized at rest, dz/dt = A z + B u, with z as in Dynamics (seed 2.3, extended by the memories).
+/// A mechanical-only driver has no current; its first state is decoupled.
+struct Linearization {
+    Eigen::MatrixXd A;
+    Eigen::VectorXd B;
+    std::vector<Eigen::MatrixXd> dA;   ///< by parameter, in the order of parametersOf(); filled when asked for
+    std::vector<Eigen::VectorXd> dB;
+};
+
+Linearization linearize(const Model&, bool withGradient = false);
+
+/// Frequency response of a quantity (current, displacement, velocity, acceleration, pressure) per unit of input.
+struct Response {
+    std::vector<std::complex<double>> value;   ///< one a frequency
+    Eigen::MatrixXcd gradient;                 ///< frequencies x parameters; empty unless asked for
+};
+
+/// G(j w) = C (j w I - A)^-1 B of several quantities at once; one factorization a frequency serves them all.
+std::vector<Response> respond(const Model&, const std::vector<Quantity>& quantities,
+                              const std::vector<double>& frequency, bool withGradient = false);
+
+} // namespace excursion

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Model.h"
+
+#include "Engine/Driver/Catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace excursion {
+namespace {
+
+template <class ModelType>
+auto& baseParameterOf(ModelType& model, std::string_view name)
+{
+    for (auto& parameter : model.components.front().parameters)
+        if (parameter.name == name)
+            return parameter;
+    throw std::out_of_range("no base parameter " + std::string(name));
+}
+
+template <class Pointer, class ModelType>
+std::vector<Pointer> collect(ModelType& model)
+{
+    std::vector<Pointer> all;
+    for (auto& component : model.components)
+        for (auto& parameter : component.parameters)
+            all.push_back(&parameter);
+    for (auto& parameter : model.path)
+        all.push_back(&parameter);
+    return all;
+}
+
+/// Value of a component's law at q, the base parameter not included, and its gradient in its own parameters.
+double lawValue(const Component& component, const std::vector<double>& values, double q)
+{
+    return component.effect->lawAt(component.extent, values.data(), q);
+}
+
+} // namespace
+
+double radiationPerArea()
+{
+    constexpr double densityOfAir = 1.2;   // kg/m^3
+    return densityOfAir / (2.0 * std::numbers::pi);
+}
+
+const Component* Model::find(std::string_view effectId) const
+{
+    const auto found = std::find_if(components.begin() + 1, components.end(),
+                                    [&](const Component& c) { return c.effect->id() == effectId; });
+    return found == components.end() ? nullptr : &*found;
+}
+
+bool Model::has(std::string_view effectId) const { return find(effectId) != nullptr; }
+
+std::vector<std::string> Model::effectIds() const
+{
+    std::vector<std::string> ids;
+    for (std::size_t k = 1; k < components.size(); ++k)
+        ids.push_back(components[k].effect->id());
+    return ids;
+}
+
+Parameter& Model::baseParameter(std::string_view name) { return baseParameterOf(*this, name); }
+const Parameter& Model::baseParameter(std::string_view name) const { return baseParameterOf(*this, name); }
+
+Model makeModel(std::string_view baseId)
+{
+    Model model;
+    Component base;
+    base.effect = &baseNamed(baseId);
+    base.parameters = base.effect->parameters(base.extent);
+    model.components.push_back(base);
+    Parameter area, delay;
+    area.name = "Sd";
+    area.unit = "m^2";
+    area.value = 0.01;
+    delay.name = "tau";
+    delay.unit = "s";
+    area.free = delay.free = false;   // until a pressure channel is there to see them
+    model.path = {area, delay};
+    return model;
+}
+
+Model withEffect(Model model, const Effect& effect, const Extent& extent, std::size_t start)
+{
+    Component component {&effect, extent, effect.parameters(extent)};
+    const auto starts = effect.starts(extent);
+    const auto& values = starts.at(start);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        component.parameters[k].value = values[k];
+    model.components.push_back(std::move(component));
+    model.covariance.resize(0, 0);
+    return model;
+}
+
+Model withoutEffect(Model model, std::string_view effectId)
+{
+    std::erase_if(model.components, [&](const Component& c) { return c.effect->id() == effectId; });
+    model.covariance.resize(0, 0);
+    return model;
+}
+
+std::vector<Parameter*> parametersOf(Model& model) { return collect<Parameter*>(model); }
+std::vector<const Parameter*> parametersOf(const Model& model) { return collect<const Parameter*>(model); }
+
+Eigen::VectorXd parameterVector(const Model& model)
+{
+    const auto all = parametersOf(model);
+    Eigen::VectorXd values(static_cast<Eigen::Index>(all.size()));
+    for (std::size_t k = 0; k < all.size(); ++k)
+        values[static_cast<Eigen::Index>(k)] = all[k]->value;
+    return values;
+}
+
+void setParameterVector(Model& model, const Eigen::VectorXd& values)
+{
+    const auto all = parametersOf(model);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        all[k]->value = values[static_cast<Eigen::Index>(k)];
+}
+
+std::vector<LawCurve> laws(const Model& model, int points)
+{
+    std::vector<LawCurve> curves;
+    Eigen::Index offset = static_cast<Eigen::Index>(model.base().parameters.size());
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto& component = model.components[k];
+        const auto count = static_cast<Eigen::Index>(component.parameters.size());
+        const auto info = component.effect->law();
+        if (info) {
+            LawCurve curve;
+            curve.info = *info;
+            curve.effectId = component.effect->id();
+            std::vector<double> values;
+            for (const auto& p : component.parameters)
+                values.push_back(p.value);
+            const auto& baseParameters = model.base().parameters;
+            const auto base = std::find_if(baseParameters.begin(), baseParameters.end(),
+                                           [&](const Parameter& p) { return p.name == info->base; });
+            const auto& e = component.extent;
+            const double range = info->argument == "x" ? e.displacement : info->argument == "v" ? e.velocity : e.current;
+            for (int n = 0; n < points; ++n) {
+                const double q = range * (2.0 * n / (points - 1) - 1.0);
+                const double difference = lawValue(component, values, q);
+                curve.argument.push_back(q);
+                curve.value.push_back(base->value + difference);
+                double halfWidth = std::numeric_limits<double>::quiet_NaN();
+                if (model.covariance.size() > 0) {
+                    // The laws are linear in their coefficients, so unit steps give the exact gradient.
+                    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.covariance.rows());
+                    gradient[base - baseParameters.begin()] = 1.0;
+                    for (Eigen::Index j = 0; j < count; ++j) {
+                        auto unit = std::vector<double>(values.size(), 0.0);
+                        unit[static_cast<std::size_t>(j)] = 1.0;
+                        gradient[offset + j] = lawValue(component, unit, q);
+                    }
+                    halfWidth = 1.96 * std::sqrt(std::max(0.0, gradient.dot(model.covariance * gradient)));
+                }
+                curve.halfWidth.push_back(halfWidth);
+            }
+            curves.push_back(std::move(curve));
+        }
+        offset += count;
+    }
+    return curves;
+}
+
+} // namespace excursion

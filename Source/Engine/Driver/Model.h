@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Effect.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace excursion {
+
+/// A base or an effect at work in a model.
+struct Component {
+    const Effect* effect = nullptr;
+    Extent extent;
+    std::vector<Parameter> parameters;
+};
+
+/// The physical model of a driver: the base, then the effects in the order in which they were added, and the path
+/// to the microphone,
+///     p(t) = rho Sd / (2 pi d) a(t - tau)    (a half space; rho = 1.2 kg/m^3).
+struct Model {
+    std::string name;
+    std::vector<Component> components;   ///< components.front() is the base
+    std::vector<Parameter> path;         ///< Sd in m^2 and tau in s
+    double microphoneDistance = 1.0;     ///< d, m
+    Eigen::MatrixXd covariance;          ///< of parameterVector(); empty when unknown
+
+    const Component& base() const { return components.front(); }
+    bool electrical() const { return base().effect->electrical(); }
+    bool has(std::string_view effectId) const;
+    std::vector<std::string> effectIds() const;
+    const Component* find(std::string_view effectId) const;
+
+    /// The parameter of the base of that name; throws std::out_of_range.
+    Parameter& baseParameter(std::string_view name);
+    const Parameter& baseParameter(std::string_view name) const;
+};
+
+/// Pa per m/s^2 of a piston of 1 m^2 at 1 m in a half space: rho / (2 pi).
+double radiationPerArea();
+
+/// A model of the base alone (baseId "electrodynamic" or "mechanical") with default parameters.
+Model makeModel(std::string_view baseId);
+
+/// The model with that effect at zero strength (its first start unless another is given).
+Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
+Model withoutEffect(Model, std::string_view effectId);
+
+/// All parameters one after the other: components in order, then the path.
+std::vector<Parameter*> parametersOf(Model&);
+std::vector<const Parameter*> parametersOf(const Model&);
+Eigen::VectorXd parameterVector(const Model&);
+void setParameterVector(Model&, const Eigen::VectorXd&);
+
+/// A law of the model with its 95 % band over [-range, range] of what was visited, for plots and reports.
+struct LawCurve {
+    LawInfo info;
+    std::string effectId;                          ///< of the effect that bends it
+    std::vector<double> argument, value, halfWidth;   ///< halfWidth of the 95 % band; NaN when unknown
+};
+std::vector<LawCurve> laws(const Model&, int points = 81);
+
+} // namespace excursion

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ceres/jet.h>
+
+namespace excursion {
+
+/// A number that carries its derivatives with respect to `jetWidth` parameters (forward-mode automatic
+/// differentiation, ceres::Jet). The physics is written once, generic in the number type; run on double
+/// it simulates, run on Jet it yields the sensitivities for the fit and the diagnosis.
+inline constexpr int jetWidth = 8;
+using Jet = ceres::Jet<double, jetWidth>;
+
+inline double valueOf(double number) { return number; }
+inline double valueOf(const Jet& number) { return number.a; }
+
+} // namespace excursion

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Simulate.h"
+
+#include "Engine/Driver/Dynamics.h"
+#include "Engine/Driver/Linearize.h"
+#include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Resample.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace excursion {
+
+Drive::Drive(std::span<const double> samples, double sampleRate, int substeps)
+    : length_(samples.size()), substeps_(substeps), step_(1.0 / (sampleRate * substeps)),
+      fine_(upsample(samples, 2 * substeps))
+{
+}
+
+template <class T>
+bool integrate(const Model& model, const std::vector<T>& parameters, const Drive& drive, std::size_t first,
+               Trajectory<T>& out)
+{
+    // Far beyond any loudspeaker: a runaway is recognized early instead of filling the record with infinities.
+    constexpr double implausible = 1e3;   // A, m, m/s
+    Dynamics<T> dynamics(model, parameters);
+    std::vector<T> z(static_cast<std::size_t>(dynamics.order()), T(0.0));
+    for (auto* channel : {&out.current, &out.displacement, &out.velocity, &out.acceleration}) {
+        channel->clear();
+        channel->reserve(drive.length() - first);
+    }
+    std::size_t half = 0;
+    for (std::size_t n = 0; n < drive.length(); ++n) {
+        const bool kept = n >= first;
+        if (kept) {
+            out.current.push_back(z[0]);
+            out.displacement.push_back(z[1]);
+            out.velocity.push_back(z[2]);
+        }
+        for (int s = 0; s < drive.substeps(); ++s, half += 2) {
+            const T* rates = dynamics.step(z.data(), drive.at(half), drive.at(half + 1), drive.at(half + 2), drive.step());
+            if (s == 0 && kept)
+                out.acceleration.push_back(rates[2]);
+        }
+        for (int state = 0; state < 3; ++state)
+            if (!(std::abs(valueOf(z[static_cast<std::size_t>(state)])) < implausible))
+                return false;
+    }
+    return true;
+}
+
+template bool integrate(const Model&, const std::vector<double>&, const Drive&, std::size_t, Trajectory<double>&);
+template bool integrate(const Model&, const std::vector<Jet>&, const Drive&, std::size_t, Trajectory<Jet>&);
+
+int stableSubsteps(const Model& model, double sampleRate)
+{
+    const auto poles = linearize(model).A.eigenvalues();
+    // |lambda h| <= 2 keeps well inside the method's stability region (2.78 on the negative real axis), with room for
+    // an inductance that falls with position.
+    const double fastest = poles.cwiseAbs().maxCoeff();
+    return std::clamp(static_cast<int>(std::ceil(fastest / (2.0 * sampleRate))), 1, 64);
+}
+
+bool SimulationOptions::isValid(std::string* reason) const
+{
+    if (!(tolerance > 1e-12 && tolerance < 1.0)) {
+        *reason = "the tolerance of a simulation must lie between 1e-12 and 1";
+        return false;
+    }
+    if (maximumSubsteps < 1) {
+        *reason = "a simulation needs at least one step a sample";
+        return false;
+    }
+    return true;
+}
+
+namespace {
+
+std::vector<double> values(const Model& model)
+{
+    const auto vector = parameterVector(model);
+    return {vector.begin(), vector.end()};
+}
+
+double relativeChange(const std::vector<double>& coarse, const std::vector<double>& fine)
+{
+    double difference = 0.0, power = 0.0;
+    for (std::size_t n = 0; n < fine.size(); ++n) {
+        difference += (coarse[n] - fine[n]) * (coarse[n] - fine[n]);
+        power += fine[n] * fine[n];
+    }
+    return power > 0.0 ? std::sqrt(difference / power) : 0.0;
+}
+
+} // namespace
+
+SimulationSummary chooseSubsteps(const Model& model, std::span<const double> input, double sampleRate,
+                                 const SimulationOptions& options)
+{
+    // The loudest stretch decides; it is short, so the search costs little.
+    const auto stretch = std::min<std::size_t>(input.size(), 8192);
+    const auto peak = std::max_element(input.begin(), input.end(),
+                                       [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto centre = static_cast<std::size_t>(peak - input.begin());
+    const auto begin = std::min(centre > stretch / 2 ? centre - stretch / 2 : 0, input.size() - stretch);
+    const auto part = input.subspan(begin, stretch);
+
+    const auto parameters = values(model);
+    SimulationSummary summary;
+    summary.substeps = stableSubsteps(model, sampleRate);
+    Trajectory<double> coarse, fine;
+    bool have = integrate(model, parameters, Drive(part, sampleRate, summary.substeps), 0, coarse);
+    while (summary.substeps <= options.maximumSubsteps) {
+        const bool refined = integrate(model, parameters, Drive(part, sampleRate, 2 * summary.substeps), 0, fine);
+        if (have && refined) {
+            summary.accuracy = std::max(relativeChange(coarse.displacement, fine.displacement),
+                                        relativeChange(coarse.acceleration, fine.acceleration));
+            if (model.electrical())
+                summary.accuracy = std::max(summary.accuracy, relativeChange(coarse.current, fine.current));
+            summary.converged = summary.accuracy <= options.tolerance;
+            if (summary.converged)
+                break;
+        }
+        summary.substeps *= 2;
+        std::swap(coarse, fine);
+        have = refined;
+    }
+    summary.substeps = std::min(summary.substeps, options.maximumSubsteps);
+    return summary;
+}
+
+std::vector<double> radiate(const Model& model, std::span<const double> acceleration, double sampleRate)
+{
+    auto spectrum = fft(acceleration);
+    const double gain = radiationPerArea() * model.path[0].value / model.microphoneDistance;
+    const double tau = model.path[1].value;
+    for (std::size_t k = 0; k < spectrum.size(); ++k) {
+        const double omega = 2.0 * std::numbers::pi * sampleRate * static_cast<double>(k) / static_cast<double>(acceleration.size());
+        spectrum[k] *= std::polar(gain, -omega * tau);
+    }
+    if (acceleration.size() % 2 == 0)
+        spectrum.back() = spectrum.back().real();   // the Nyquist line of a real record is real
+    return inverseFft(spectrum, acceleration.size());
+}
+
+Measurement simulate(const Model& model, std::span<const double> input, double sampleRate,
+                     const SimulationOptions& options, SimulationSummary* summary, const Progress& progress)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The simulation cannot run: " + reason + ".");
+    progress.at(0.0, "choosing the step size");
+    const auto chosen = chooseSubsteps(model, input, sampleRate, options);
+    if (summary)
+        *summary = chosen;
+    progress.at(0.2, "simulating");
+    Trajectory<double> run;
+    if (!integrate(model, values(model), Drive(input, sampleRate, chosen.substeps), 0, run))
+        throw Error(Error::Kind::numerical, "The simulated driver ran away: at this level the model is driven far beyond the "
+                                            "range in which it was measured; lower --full-scale.");
+    progress.at(0.95, "radiating");
+
+    Measurement result;
+    result.sampleRate = sampleRate;
+    result.driver.name = model.name;
+    result.driver.coneArea = model.path[0].value;
+    result.driver.microphoneDistance = model.microphoneDistance;
+    const auto add = [&result](Quantity quantity, std::vector<double> samples) {
+        double peak = 0.0;
+        for (const double s : samples)
+            peak = std::max(peak, std::abs(s));
+        result.channels.push_back({quantity, std::string(siUnit(quantity)), peak > 0.0 ? 1.25 * peak : 1.0, std::move(samples)});
+    };
+    std::vector<double> copy(input.begin(), input.end());
+    add(model.electrical() ? Quantity::voltage : Quantity::force, std::move(copy));
+    if (model.electrical())
+        add(Quantity::current, std::move(run.current));
+    add(Quantity::displacement, std::move(run.displacement));
+    add(Quantity::velocity, std::move(run.velocity));
+    auto pressure = radiate(model, run.acceleration, sampleRate);
+    add(Quantity::acceleration, std::move(run.acceleration));
+    add(Quantity::pressure, std::move(pressure));
+    progress.at(1.0, "simulated");
+    return result;
+}
+
+} // namespace excursion

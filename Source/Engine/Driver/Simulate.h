@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+#include "Engine/Measurement/Measurement.h"
+#include "Engine/Progress.h"
+
+#include <span>
+#include <vector>
+
+namespace excursion {
+
+/// What the driver does, sample by sample. Every vector has one value a sample, or is empty.
+template <class T>
+struct Trajectory {
+    std::vector<T> current, displacement, velocity, acceleration;   ///< A, m, m/s, m/s^2
+};
+
+/// A voltage (or force) record, upsampled so that Runge-Kutta steps find the band-limited input between the samples.
+class Drive {
+public:
+    /// @param samples     V (or N), starting from silence
+    /// @param sampleRate  Hz
+    /// @param substeps    integration steps a sample
+    Drive(std::span<const double> samples, double sampleRate, int substeps);
+
+    std::size_t length() const { return length_; }   ///< samples
+    int substeps() const { return substeps_; }
+    double step() const { return step_; }             ///< s
+    double at(std::size_t halfStep) const { return halfStep < fine_.size() ? fine_[halfStep] : 0.0; }
+
+private:
+    std::size_t length_;
+    int substeps_;
+    double step_;
+    std::vector<double> fine_;   // two values a step
+};
+
+/// Integrates the model from rest.
+/// @param parameters  one a parameter of the model (double or Jet), in the order of parametersOf()
+/// @param first       the trajectory is kept from this sample on
+/// @returns false when the state leaves the finite numbers or any plausible range; the trajectory is then void
+template <class T>
+bool integrate(const Model&, const std::vector<T>& parameters, const Drive&, std::size_t first, Trajectory<T>& out);
+
+/// The fewest steps a sample for which the explicit method is stable and resolves the linear part's fastest pole.
+int stableSubsteps(const Model&, double sampleRate);
+
+struct SimulationOptions {
+    double tolerance = 1e-5;   ///< largest relative rms change of any channel when the step is halved
+    int maximumSubsteps = 64;
+    bool isValid(std::string* reason) const;
+};
+
+struct SimulationSummary {
+    int substeps = 0;
+    double accuracy = 1.0;      ///< relative rms change against a run with half the step, worst channel
+    bool converged = false;     ///< accuracy is within the tolerance
+};
+
+/// The number of steps a sample that reaches the tolerance on (a stretch of) this input.
+SimulationSummary chooseSubsteps(const Model&, std::span<const double> input, double sampleRate,
+                                 const SimulationOptions&);
+
+/// Simulates all channels (the input, current, displacement, velocity, acceleration and pressure) from an input record,
+/// with the step halved until the tolerance is reached. Throws Error (numerical) when the model runs away.
+Measurement simulate(const Model&, std::span<const double> input, double sampleRate, const SimulationOptions&,
+                     SimulationSummary* = nullptr, const Progress& = {});
+
+/// p = rho Sd/(2 pi d) a(t - tau) of a whole record, by the DFT (Pa).
+std::vector<double> radiate(const Model&, std::span<const double> acceleration, double sampleRate);
+
+} // namespace excursion
