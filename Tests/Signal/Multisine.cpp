@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Error.h"
+#include "Engine/Measurement/ExcitationPlan.h"
+#include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Multisine.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+using namespace excursion;
+
+namespace {
+
+MultisineOptions options(Grid grid, Shape shape = Shape::white)
+{
+    MultisineOptions o;
+    o.period = 4096;
+    o.grid = grid;
+    o.shape = shape;
+    o.bandLow = 30;
+    o.bandHigh = 12000;
+    o.rms = 2.5;
+    o.seed = 42;
+    return o;
+}
+
+double rms(const std::vector<double>& x)
+{
+    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size()));
+}
+
+} // namespace
+
+TEST_CASE("A multisine has its rms, no mean, its lines and nothing else")
+{
+    const auto grid = GENERATE(Grid::full, Grid::odd, Grid::oddOdd, Grid::oddRandom, Grid::R10, Grid::R20, Grid::R40, Grid::R80);
+    const auto shape = GENERATE(Shape::white, Shape::pink, Shape::red);
+    const auto o = options(grid, shape);
+    const auto lines = chooseLines(o);
+    const auto u = multisine(o, lines, 3);
+    REQUIRE(u.size() == 4096);
+    CHECK(rms(u) == Approx(2.5).epsilon(1e-12));
+
+    const auto U = fft(u);
+    const double reference = std::abs(U[static_cast<std::size_t>(lines.front())]);
+    const double exponent = shape == Shape::white ? 0.0 : shape == Shape::pink ? 0.5 : 1.0;
+    double worstLine = 0, worstSilence = 0;
+    for (std::size_t k = 0; k < U.size(); ++k)
+        if (std::binary_search(lines.begin(), lines.end(), static_cast<int>(k)))
+            worstLine = std::max(worstLine, std::abs(std::abs(U[k]) / reference * std::pow(double(k) / lines.front(), exponent) - 1));
+        else
+            worstSilence = std::max(worstSilence, std::abs(U[k]) / reference);
+    CHECK(worstLine < 1e-10);
+    CHECK(worstSilence < 1e-12);
+    const double spacing = o.sampleRate / o.period;
+    CHECK(lines.front() * spacing >= o.bandLow);
+    CHECK(lines.back() * spacing <= o.bandHigh);
+}
+
+TEST_CASE("Each grid has the lines that its name says")
+{
+    for (const int k : chooseLines(options(Grid::odd)))
+        CHECK(k % 2 == 1);
+    for (const int k : chooseLines(options(Grid::oddOdd)))
+        CHECK(k % 4 == 1);
+    CHECK(chooseLines(options(Grid::full)).size() == 1024 - 3 + 1);   // lines 3 (35 Hz) to 1024 (12 kHz)
+
+    auto o = options(Grid::R10);
+    o.bandLow = 0;
+    const auto lines = chooseLines(o);
+    CHECK(std::vector<int>(lines.begin(), lines.begin() + 10) == std::vector<int> {1, 2, 3, 4, 5, 6, 8, 10, 13, 16});
+    CHECK(std::set<int>(lines.begin(), lines.end()).size() == lines.size());
+}
+
+TEST_CASE("An odd-random grid leaves out one line of each group, the same in all realizations")
+{
+    const auto odd = chooseLines(options(Grid::odd));
+    const auto o = options(Grid::oddRandom);
+    const auto lines = chooseLines(o);
+    CHECK(lines.size() == odd.size() - odd.size() / 4);
+    for (std::size_t group = 0; group + 4 <= odd.size(); group += 4)
+        CHECK(std::count_if(odd.begin() + long(group), odd.begin() + long(group) + 4,
+                            [&](int k) { return !std::binary_search(lines.begin(), lines.end(), k); })
+              == 1);
+    const auto silent = oddDetectionLines(lines);
+    CHECK(silent.size() + lines.size() <= odd.size());
+    CHECK(silent.size() + lines.size() >= odd.size() - 2);   // a group may miss its outer line
+
+    auto other = o;
+    other.seed = 43;
+    CHECK(chooseLines(other) != lines);
+    CHECK(multisine(o, lines, 0) != multisine(o, lines, 1));
+    CHECK(multisine(o, lines, 1) == multisine(o, lines, 1));
+}
+
+TEST_CASE("The draw is fixed: the same lines come out on every machine")
+{
+    const auto lines = chooseLines(options(Grid::oddRandom));
+    CHECK(std::vector<int>(lines.begin(), lines.begin() + 9) == std::vector<int> {3, 7, 9, 11, 13, 17, 19, 21, 25});
+}
+
+TEST_CASE("Multisine options that make no sense are refused with a reason")
+{
+    const auto refused = [](auto change) {
+        auto o = options(Grid::odd);
+        change(o);
+        std::string reason;
+        CHECK_FALSE(o.isValid(&reason));
+        CHECK(reason.size() > 20);
+        CHECK_THROWS_AS(chooseLines(o), Error);
+    };
+    refused([](auto& o) { o.period = 2; });
+    refused([](auto& o) { o.rms = std::nan(""); });
+    refused([](auto& o) { o.bandHigh = 30000; });
+    refused([](auto& o) { o.bandLow = o.bandHigh; });
+    refused([](auto& o) { o.sampleRate = -1; });
+    refused([](auto& o) { o.groupSize = 1; });
+    auto narrow = options(Grid::odd);
+    narrow.bandLow = 12.0;
+    narrow.bandHigh = 13.0;
+    CHECK_THROWS_AS(chooseLines(narrow), Error);
+    CHECK_THROWS_AS(multisine(options(Grid::odd), {0, 3}, 0), Error);
+    CHECK_THROWS_AS(multisine(options(Grid::odd), {3, 2048}, 0), Error);
+}
+
+TEST_CASE("An excitation plan plays levels, realizations and periods in order")
+{
+    ExcitationPlanOptions o;
+    o.multisine = options(Grid::oddRandom, Shape::pink);
+    o.levels = {0.5, 2.0};
+    o.realizations = 3;
+    o.settlePeriods = 1;
+    o.periods = 2;
+    const auto plan = planExcitation(o);
+    REQUIRE(plan.excitation);
+    const auto& u = plan.input().samples;
+    REQUIRE(long(u.size()) == plan.excitation->totalSamples());
+    REQUIRE(u.size() == 4096u * 3 * 3 * 2);
+    const auto at = [&](int level, int realization, int period) {
+        const auto first = u.begin() + ((level * 3 + realization) * 3 + period) * 4096;
+        return std::vector<double>(first, first + 4096);
+    };
+    CHECK(rms(at(0, 0, 0)) == Approx(0.5));
+    CHECK(rms(at(1, 2, 2)) == Approx(2.0));
+    CHECK(at(0, 1, 0) == at(0, 1, 2));
+    CHECK(at(0, 0, 0) != at(0, 1, 0));
+    auto quiet = at(0, 2, 1);
+    for (auto& x : quiet)
+        x *= 4;
+    CHECK(quiet == at(1, 2, 0));   // a factor of four is exact
+    const double peak = std::abs(*std::max_element(u.begin(), u.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    CHECK(plan.channels[0].fullScale >= peak);
+    CHECK(plan.channels[0].fullScale < 2 * peak);
+
+    o.levels = {2.0, 0.5};
+    CHECK_THROWS_AS(planExcitation(o), Error);
+}
