@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-namespace excursion {
+#include "Engine/Driver/Effect.h"
 
-class Effect;
+namespace excursion {
 
 // One file each beside this one. Only the catalogue includes this header.
 const Effect& forceFactor();

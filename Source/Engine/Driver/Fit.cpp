@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Fit.h"
+
+#include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/OutputError.h"
+#include "Engine/Driver/Simulate.h"
+#include "Engine/Signal/Fft.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+double peakOf(const std::vector<double>& samples)
+{
+    double peak = 0.0;
+    for (const double s : samples)
+        peak = std::max(peak, std::abs(s));
+    return peak;
+}
+
+/// Peak of a channel's window, integrated `integrations` times (negative: differentiated), without its mean.
+double measuredPeak(const Record& record, const Section& section, std::size_t channel, int integrations)
+{
+    auto spectrum = section.measured[channel];
+    spectrum.front() = 0.0;
+    for (std::size_t k = 1; k < spectrum.size(); ++k) {
+        const double f = record.frequency(section, k);
+        // Below the band an integrated channel holds little but amplified noise, above it a differentiated one.
+        const bool trusted = (integrations <= 0 || f > 0.5 * record.bandLow) && (integrations >= 0 || f < 1.5 * record.bandHigh);
+        spectrum[k] = trusted ? spectrum[k] / std::pow(std::complex<double>(0.0, 2.0 * std::numbers::pi * f), integrations) : 0.0;
+    }
+    return peakOf(inverseFft(spectrum, section.window));
+}
+
+/// How often `quantity` must be integrated to give displacement.
+std::optional<int> integrationsToDisplacement(Quantity quantity)
+{
+    switch (quantity) {
+    case Quantity::displacement: return 0;
+    case Quantity::velocity: return 1;
+    case Quantity::acceleration: return 2;
+    default: return std::nullopt;
+    }
+}
+
+} // namespace
+
+bool FitOptions::isValid(std::string* reason) const
+{
+    if (!search.isValid(reason))
+        return false;
+    if (!(simulationTolerance > 0.0 && simulationTolerance < 1.0)) {
+        *reason = "the tolerance of the simulation must lie between 0 and 1";
+        return false;
+    }
+    if (substeps < 0 || threads < 1) {
+        *reason = "steps a sample and threads are positive";
+        return false;
+    }
+    return true;
+}
+
+int substepsFor(const Model& model, const Record& record, double tolerance)
+{
+    const Section* loudest = nullptr;
+    double peak = -1.0;
+    for (const auto& section : record.sections)
+        if (const double p = peakOf(section.input); p > peak) {
+            peak = p;
+            loudest = &section;
+        }
+    SimulationOptions options;
+    options.tolerance = tolerance;
+    options.maximumSubsteps = 16;
+    return chooseSubsteps(model, loudest->input, record.sampleRate, options).substeps;
+}
+
+void adapt(Record& record, const Model& model)
+{
+    if (record.sections.empty() || !record.sections.front().periodic)
+        return;
+    for (auto& section : record.sections) {
+        if (section.inputVariance.empty())
+            continue;
+        const auto U = fft(section.input);
+        const auto [first, last] = record.lineRange(section);
+        std::vector<std::size_t> played;
+        std::vector<double> frequency;
+        for (std::size_t k = first; k <= last; ++k)
+            if (std::norm(U[k]) > section.inputVariance[k]) {
+                played.push_back(k);
+                frequency.push_back(record.frequency(section, k));
+            }
+        const auto responses = respond(model, record.channels, frequency);
+        for (std::size_t c = 0; c < record.channels.size(); ++c)
+            for (std::size_t n = 0; n < played.size(); ++n)
+                section.deviation[c][played[n]] = std::hypot(section.deviation[c][played[n]],
+                                                             std::abs(responses[c].value[n]) * std::sqrt(section.inputVariance[played[n]]));
+        section.inputVariance.clear();
+    }
+    // The slowest oscillating pole decides; relaxations (creep) are slower but answer to the mean only.
+    const auto poles = linearize(model).A.eigenvalues();
+    double slowest = std::numeric_limits<double>::infinity();
+    for (const auto& pole : poles)
+        if (std::abs(pole.imag()) > 0.0 && pole.real() < 0.0)
+            slowest = std::min(slowest, -pole.real());
+    const std::size_t period = record.sections.front().window;
+    const double needed = std::isfinite(slowest) ? 12.7 / slowest * record.sampleRate : 0.0;
+    record.leadIn = static_cast<std::size_t>(std::clamp(needed, 0.25 * static_cast<double>(period), 4.0 * static_cast<double>(period)));
+}
+
+Extent visitedExtent(const Model& model, const Record& record, int degree)
+{
+    Extent extent;
+    extent.degree = degree;
+    extent.lowFrequency = record.bandLow;
+    extent.highFrequency = record.bandHigh;
+    double x = 0.0, v = 0.0, i = 0.0;
+    for (const auto& section : record.sections)
+        for (std::size_t c = 0; c < record.channels.size(); ++c) {
+            if (record.channels[c] == Quantity::current)
+                i = std::max(i, measuredPeak(record, section, c, 0));
+            if (const auto n = integrationsToDisplacement(record.channels[c])) {
+                x = std::max(x, measuredPeak(record, section, c, *n));
+                v = std::max(v, measuredPeak(record, section, c, *n - 1));
+            }
+        }
+    if (x == 0.0 || (i == 0.0 && model.electrical())) {
+        const auto theta = parameterVector(model);
+        const int substeps = stableSubsteps(model, record.sampleRate);
+        double simulatedX = 0.0, simulatedV = 0.0, simulatedI = 0.0;
+        for (const auto& section : record.sections) {
+            Trajectory<double> run;
+            const auto drive = record.drive(section);
+            if (!integrate(model, {theta.begin(), theta.end()}, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
+                continue;
+            simulatedX = std::max(simulatedX, peakOf(run.displacement));
+            simulatedV = std::max(simulatedV, peakOf(run.velocity));
+            simulatedI = std::max(simulatedI, peakOf(run.current));
+        }
+        if (x == 0.0) {
+            x = simulatedX;
+            v = simulatedV;
+        }
+        if (i == 0.0)
+            i = simulatedI;
+    }
+    extent.displacement = std::max(1.05 * x, 1e-12);
+    extent.velocity = std::max(1.05 * v, 1e-12);
+    extent.current = std::max(1.05 * i, 1e-12);
+    return extent;
+}
+
+FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
+               const Progress& progress)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
+    FitSummary summary;
+    summary.substeps = options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance);
+    const auto active = freeParameters(model);
+    const auto all = parametersOf(model);
+    const auto P = static_cast<Eigen::Index>(active.size());
+    Eigen::VectorXd theta(P), lower(P), upper(P);
+    for (Eigen::Index k = 0; k < P; ++k) {
+        const auto& p = *all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
+        theta[k] = p.value;
+        // Mass, inductance and their like stay away from zero, where the equations of motion are singular.
+        lower[k] = p.lower == 0.0 && !p.strength ? 1e-3 * p.value : p.lower;
+        upper[k] = p.upper;
+    }
+    OutputErrorOptions run;
+    run.substeps = summary.substeps;
+    run.threads = options.threads;
+    const auto place = [&](const Eigen::VectorXd& at) {
+        for (Eigen::Index k = 0; k < P; ++k)
+            all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
+    };
+    NormalEquations last;   // at the last accepted gradient
+    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        place(at);
+        run.gradient = gradient;
+        for (const auto& section : outputError(model, record, sections, active, run, progress)) {
+            if (!section.finite)
+                return false;
+            for (const auto& channel : section.channels)
+                sum.add(channel);
+        }
+        if (gradient)
+            last = sum;
+        return true;
+    };
+    static_cast<LeastSquaresSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
+    place(theta);
+    if (!summary.usable)
+        return summary;
+    summary.costPerResidual = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
+    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.costPerResidual));
+    model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()), static_cast<Eigen::Index>(all.size()));
+    for (Eigen::Index r = 0; r < P; ++r) {
+        const auto row = active[static_cast<std::size_t>(r)];
+        for (Eigen::Index c = 0; c < P; ++c)
+            model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
+        all[static_cast<std::size_t>(row)]->standardError = std::sqrt(covariance(r, r));
+    }
+    return summary;
+}
+
+Model startModel(const Record& record)
+{
+    // The quietest level is nearest to linear; all levels together speak when it is drowned in noise.
+    auto targets = responsesOf(record, record.levels.empty() ? -1 : 0);
+    if (targets.size() < record.channels.size())
+        targets = responsesOf(record, -1);
+    return startModel(targets, record.electrical, record.driver);
+}
+
+} // namespace excursion

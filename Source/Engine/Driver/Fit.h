@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/LeastSquares.h"
+#include "Engine/Driver/Model.h"
+#include "Engine/Driver/Record.h"
+
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+struct FitOptions {
+    LeastSquaresOptions search;
+    double simulationTolerance = 3e-6;   ///< relative accuracy of the integration, see SimulationOptions
+    int substeps = 0;                    ///< integration steps a sample; 0: chosen from the tolerance
+    unsigned threads = 2;
+
+    bool isValid(std::string* reason) const;
+};
+
+struct FitSummary : LeastSquaresSummary {
+    int substeps = 0;
+    double costPerResidual = 0.0;   ///< 1 when nothing but noise is left
+};
+
+/// What the take visits: the peaks of displacement, velocity and current, measured where a channel tells them, else
+/// simulated by the model, and the band that was excited.
+Extent visitedExtent(const Model&, const Record&, int degree = 4);
+
+/// Output-error fit of all free parameters,
+///     min sum_{sections, channels, lines} |Y_model - Y_measured|^2 / sigma^2,
+/// by Levenberg-Marquardt with automatic derivatives of the simulation. Leaves standard errors and the covariance in the model;
+/// when the residuals exceed the noise, both are scaled up by what is left.
+FitSummary fit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions& = {},
+               const Progress& = {});
+
+/// Makes a record ready for models near this linear one: periodic sections start settled (the lead-in lasts until the
+/// resonance has decayed by 110 dB), and the input sensor's noise is counted as noise of the outputs,
+///     sigma^2 += |G|^2 sigma_u^2  on the lines that are played.
+void adapt(Record&, const Model&);
+
+/// Steps a sample for simulating this model on this record.
+int substepsFor(const Model&, const Record&, double tolerance);
+
+/// Start values, path, and the first linear fit of a take in the time domain.
+Model startModel(const Record&);
+
+} // namespace excursion

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/OutputError.h"
+
+#include "Engine/Driver/Simulate.h"
+#include "Engine/Signal/Fft.h"
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <thread>
+
+namespace excursion {
+namespace {
+
+using Spectrum = std::vector<std::complex<double>>;
+
+/// The trajectory's record that a channel observes; pressure is made of acceleration.
+template <class T>
+const std::vector<T>& observed(const Trajectory<T>& run, Quantity quantity)
+{
+    switch (quantity) {
+    case Quantity::current: return run.current;
+    case Quantity::displacement: return run.displacement;
+    case Quantity::velocity: return run.velocity;
+    default: return run.acceleration;
+    }
+}
+
+std::complex<double> pathResponse(const Model& model, double frequency)
+{
+    const double gain = radiationPerArea() * model.path[0].value / model.microphoneDistance;
+    return std::polar(gain, -2.0 * std::numbers::pi * frequency * model.path[1].value);
+}
+
+class SectionRun {
+public:
+    SectionRun(const Model& model, const Record& record, const Section& section, const std::vector<Eigen::Index>& active,
+               const OutputErrorOptions& options)
+        : model_(model), record_(record), section_(section), active_(active), options_(options)
+    {
+        std::tie(first_, last_) = record.lineRange(section);
+        const auto drive = record.drive(section);
+        drive_.emplace(drive, record.sampleRate, options.substeps);
+        start_ = drive.size() - section.window;
+    }
+
+    SectionFit run()
+    {
+        SectionFit fit;
+        const auto theta = parameterVector(model_);
+        const auto channels = record_.channels.size();
+        const auto lines = static_cast<Eigen::Index>(last_ - first_ + 1);
+        const auto columns = static_cast<Eigen::Index>(active_.size());
+
+        Trajectory<double> trajectory;
+        fit.finite = integrate(model_, {theta.begin(), theta.end()}, *drive_, start_, trajectory);
+        if (!fit.finite)
+            return fit;
+        fit.channels.resize(channels);
+        fit.power.resize(channels);
+        std::vector<Eigen::VectorXd> residual(channels, Eigen::VectorXd(2 * lines));
+        std::vector<Spectrum> predicted(channels);
+        for (std::size_t c = 0; c < channels; ++c) {
+            predicted[c] = spectrumOf(observed(trajectory, record_.channels[c]), record_.channels[c]);
+            residualOf(c, predicted[c], residual[c], fit.power[c]);
+            fit.channels[c].cost = residual[c].squaredNorm();
+            fit.channels[c].rows = static_cast<double>(2 * lines);
+        }
+        if (options_.gradient && columns > 0) {
+            std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(2 * lines, columns));
+            if (!sensitivities(theta, predicted, J)) {
+                fit.finite = false;
+                return fit;
+            }
+            for (std::size_t c = 0; c < channels; ++c) {
+                fit.channels[c].N.noalias() = J[c].transpose() * J[c];
+                fit.channels[c].g.noalias() = J[c].transpose() * residual[c];
+            }
+        }
+        if (options_.spectra)
+            fit.predicted = std::move(predicted);
+        return fit;
+    }
+
+private:
+    Spectrum spectrumOf(const std::vector<double>& samples, Quantity quantity) const
+    {
+        auto spectrum = fft(samples);
+        if (quantity == Quantity::pressure)
+            for (std::size_t k = 0; k < spectrum.size(); ++k)
+                spectrum[k] *= pathResponse(model_, record_.frequency(section_, k));
+        return spectrum;
+    }
+
+    void residualOf(std::size_t c, const Spectrum& predicted, Eigen::VectorXd& r, ErrorPower& power) const
+    {
+        const auto& measured = section_.measured[c];
+        const auto& deviation = section_.deviation[c];
+        const auto lines = static_cast<Eigen::Index>(last_ - first_ + 1);
+        for (Eigen::Index n = 0; n < lines; ++n) {
+            const auto k = first_ + static_cast<std::size_t>(n);
+            const auto error = predicted[k] - measured[k];
+            const double weight = std::numbers::sqrt2 / deviation[k];
+            r[n] = weight * error.real();
+            r[lines + n] = weight * error.imag();
+            power.error += std::norm(error);
+            power.measured += std::norm(measured[k]);
+            power.noise += deviation[k] * deviation[k];
+        }
+    }
+
+    void fill(std::size_t c, const Spectrum& derivative, Eigen::Ref<Eigen::VectorXd> column) const
+    {
+        const auto& deviation = section_.deviation[c];
+        const auto lines = static_cast<Eigen::Index>(last_ - first_ + 1);
+        for (Eigen::Index n = 0; n < lines; ++n) {
+            const auto k = first_ + static_cast<std::size_t>(n);
+            const double weight = std::numbers::sqrt2 / deviation[k];
+            column[n] = weight * derivative[k].real();
+            column[lines + n] = weight * derivative[k].imag();
+        }
+    }
+
+    bool sensitivities(const Eigen::VectorXd& theta, const std::vector<Spectrum>& predicted,
+                       std::vector<Eigen::MatrixXd>& J) const
+    {
+        const auto dynamicCount = theta.size() - static_cast<Eigen::Index>(model_.path.size());
+        std::vector<std::size_t> dynamic;   // columns whose parameter acts through the equations of motion
+        for (std::size_t j = 0; j < active_.size(); ++j)
+            if (active_[j] < dynamicCount)
+                dynamic.push_back(j);
+            else
+                pathSensitivity(active_[j] - dynamicCount, j, predicted, J);
+
+        std::vector<double> samples(section_.window);
+        for (std::size_t block = 0; block < dynamic.size(); block += jetWidth) {
+            std::vector<Jet> parameters(theta.begin(), theta.end());
+            const auto count = std::min<std::size_t>(jetWidth, dynamic.size() - block);
+            for (std::size_t b = 0; b < count; ++b) {
+                const auto index = static_cast<std::size_t>(active_[dynamic[block + b]]);
+                parameters[index] = Jet(parameters[index].a, static_cast<int>(b));
+            }
+            Trajectory<Jet> run;
+            if (!integrate(model_, parameters, *drive_, start_, run))
+                return false;
+            for (std::size_t c = 0; c < record_.channels.size(); ++c) {
+                const auto& jets = observed(run, record_.channels[c]);
+                for (std::size_t b = 0; b < count; ++b) {
+                    for (std::size_t n = 0; n < samples.size(); ++n)
+                        samples[n] = jets[n].v[static_cast<Eigen::Index>(b)];
+                    fill(c, spectrumOf(samples, record_.channels[c]), J[c].col(static_cast<Eigen::Index>(dynamic[block + b])));
+                }
+            }
+        }
+        return true;
+    }
+
+    /// The path is linear and known in closed form: dP/dSd = P/Sd, dP/dtau = -j w P.
+    void pathSensitivity(Eigen::Index which, std::size_t column, const std::vector<Spectrum>& predicted,
+                         std::vector<Eigen::MatrixXd>& J) const
+    {
+        const auto c = record_.channelIndex(Quantity::pressure);
+        if (!c)
+            return;
+        auto derivative = predicted[*c];
+        for (std::size_t k = 0; k < derivative.size(); ++k)
+            derivative[k] *= which == 0 ? std::complex<double>(1.0 / model_.path[0].value)
+                                        : std::complex<double>(0.0, -2.0 * std::numbers::pi * record_.frequency(section_, k));
+        fill(*c, derivative, J[*c].col(static_cast<Eigen::Index>(column)));
+    }
+
+    const Model& model_;
+    const Record& record_;
+    const Section& section_;
+    const std::vector<Eigen::Index>& active_;
+    const OutputErrorOptions& options_;
+    std::optional<Drive> drive_;
+    std::size_t first_ = 0, last_ = 0, start_ = 0;
+};
+
+} // namespace
+
+void NormalEquations::add(const NormalEquations& other)
+{
+    if (N.size() == 0) {
+        N = other.N;
+        g = other.g;
+    } else if (other.N.size() > 0) {
+        N += other.N;
+        g += other.g;
+    }
+    cost += other.cost;
+    rows += other.rows;
+}
+
+std::vector<SectionFit> outputError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                    const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
+                                    const Progress& progress)
+{
+    std::vector<SectionFit> fits(sections.size());
+    std::atomic<std::size_t> next {0};
+    std::atomic<bool> failed {false};
+    std::exception_ptr failure;
+    std::mutex failureMutex;
+    const auto work = [&] {
+        for (std::size_t n = next++; n < sections.size() && !failed; n = next++) {
+            try {
+                if (progress.stop.stop_requested())
+                    break;
+                fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options).run();
+                if (!fits[n].finite)
+                    failed = true;
+            } catch (...) {
+                const std::lock_guard lock(failureMutex);
+                failure = std::current_exception();
+                failed = true;
+            }
+        }
+    };
+    {
+        std::vector<std::jthread> threads;
+        for (unsigned t = 1; t < std::min<std::size_t>(options.threads, sections.size()); ++t)
+            threads.emplace_back(work);
+        work();
+    }
+    if (failure)
+        std::rethrow_exception(failure);
+    if (progress.stop.stop_requested())
+        progress.at(0.0, "");
+    return fits;
+}
+
+std::vector<Eigen::Index> freeParameters(const Model& model)
+{
+    std::vector<Eigen::Index> result;
+    const auto all = parametersOf(model);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (all[k]->free)
+            result.push_back(static_cast<Eigen::Index>(k));
+    return result;
+}
+
+std::vector<std::size_t> estimationSections(const Record& record)
+{
+    std::vector<std::size_t> result;
+    for (std::size_t n = 0; n < record.sections.size(); ++n)
+        if (!record.sections[n].validation)
+            result.push_back(n);
+    return result;
+}
+
+std::vector<std::size_t> validationSections(const Record& record)
+{
+    std::vector<std::size_t> result;
+    for (std::size_t n = 0; n < record.sections.size(); ++n)
+        if (record.sections[n].validation)
+            result.push_back(n);
+    if (result.empty())
+        return estimationSections(record);
+    return result;
+}
+
+} // namespace excursion

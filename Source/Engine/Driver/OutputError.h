@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+#include "Engine/Driver/Record.h"
+#include "Engine/Progress.h"
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+namespace excursion {
+
+/// The least-squares problem min |r + J d|^2 of residuals r (one channel, over some sections) in its normal form.
+/// Residuals are (model - measured)/deviation, real and imaginary part, each with unit variance if only noise is left.
+struct NormalEquations {
+    Eigen::MatrixXd N;     ///< J^T J
+    Eigen::VectorXd g;     ///< J^T r
+    double cost = 0.0;     ///< r^T r
+    double rows = 0.0;     ///< number of real residuals
+
+    void add(const NormalEquations&);
+};
+
+/// Error power and measured power of a channel, not weighted; noise power in the same window.
+struct ErrorPower {
+    double error = 0.0, measured = 0.0, noise = 0.0;
+};
+
+/// What a model's simulation leaves of one section.
+struct SectionFit {
+    bool finite = false;
+    std::vector<NormalEquations> channels;                              ///< [channel]
+    std::vector<ErrorPower> power;                                      ///< [channel]
+    std::vector<std::vector<std::complex<double>>> predicted;           ///< [channel][line], when asked for
+};
+
+struct OutputErrorOptions {
+    bool gradient = true;      ///< fill N and g
+    bool spectra = false;      ///< fill predicted
+    int substeps = 1;
+    unsigned threads = 2;
+};
+
+/// Simulates the model on the sections and compares (output error). Sensitivities come from the same physics run
+/// on jets. Sections run in parallel; the result does not depend on the number of threads.
+/// @param sections  indices into record.sections
+/// @param active    indices of the parameters to differentiate by, in the order of parametersOf(); N and g follow it
+std::vector<SectionFit> outputError(const Model&, const Record&, const std::vector<std::size_t>& sections,
+                                    const std::vector<Eigen::Index>& active, const OutputErrorOptions&,
+                                    const Progress& = {});
+
+/// Indices of the free parameters of a model.
+std::vector<Eigen::Index> freeParameters(const Model&);
+
+/// Indices of the sections to estimate on, and of those held out (all sections when none is held out).
+std::vector<std::size_t> estimationSections(const Record&);
+std::vector<std::size_t> validationSections(const Record&);
+
+} // namespace excursion

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Record.h"
+
+#include "Engine/Error.h"
+#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/Periods.h"
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace excursion {
+namespace {
+
+using Spectrum = std::vector<std::complex<double>>;
+
+double power(const Spectrum& spectrum)
+{
+    double sum = 0.0;
+    for (std::size_t k = 1; k < spectrum.size(); ++k)
+        sum += std::norm(spectrum[k]);
+    return sum;
+}
+
+/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. A line that sticks out
+/// (hum) keeps its own level.
+std::vector<double> smoothVariance(const std::vector<double>& raw)
+{
+    std::vector<double> total(raw.size() + 1, 0.0);
+    std::partial_sum(raw.begin(), raw.end(), total.begin() + 1);
+    std::vector<double> result(raw.size());
+    for (std::size_t k = 0; k < raw.size(); ++k) {
+        const std::size_t reach = std::max<std::size_t>(12, k / 16);
+        const std::size_t from = k > reach ? k - reach : 0, to = std::min(raw.size(), k + reach + 1);
+        const double mean = (total[to] - total[from]) / static_cast<double>(to - from);
+        result[k] = std::max(mean, raw[k] / 6.0);
+    }
+    return result;
+}
+
+/// @param variance  of each line; empty when unknown, then all lines weigh the same
+std::vector<double> deviations(const Spectrum& measured, std::vector<double> variance, double relativeFloor)
+{
+    const double perLine = power(measured) / static_cast<double>(measured.size());
+    constexpr double nominal = 1e-3;   // of unknown noise: only its evenness matters
+    std::vector<double> result(measured.size(), std::sqrt(perLine) * nominal);
+    if (!variance.empty())
+        for (std::size_t k = 0; k < result.size(); ++k)
+            result[k] = std::sqrt(variance[k] + perLine * relativeFloor * relativeFloor);
+    for (auto& deviation : result)
+        deviation = std::max(deviation, 1e-300);
+    return result;
+}
+
+/// The simulation is driven by the measured input, noise and all. Where nothing was played and nothing stands out of the
+/// scatter there is no signal, and the noise need not be played to the model; what the amplifier added is kept.
+void silenceNoise(std::vector<double>& period, const std::vector<double>& variance, const std::vector<int>& excited)
+{
+    constexpr double standsOut = 16.0;   // times the noise power
+    auto spectrum = fft(period);
+    const auto before = spectrum;
+    for (std::size_t k = 0; k < spectrum.size(); ++k)
+        if (std::norm(spectrum[k]) < standsOut * variance[k])
+            spectrum[k] = 0.0;
+    for (const int k : excited)
+        spectrum[static_cast<std::size_t>(k)] = before[static_cast<std::size_t>(k)];
+    period = inverseFft(spectrum, period.size());
+}
+
+void addPeriodicSections(const Measurement& take, const RecordOptions& options, Record& record)
+{
+    const auto& e = *take.excitation;
+    record.levels = e.levels;
+    record.noiseKnown = e.periods > 1;
+    const bool holdRealization = options.holdOut && e.realizations > 1;
+    const int levels = static_cast<int>(e.levels.size());
+    for (int level = 0; level < levels; ++level) {
+        const auto scatter = periodNoise(take, take.input(), level).variance;
+        const auto inputVariance = scatter.empty() ? scatter : smoothVariance(scatter);
+        std::vector<std::vector<double>> variance;
+        for (const auto quantity : record.channels) {
+            auto noise = periodNoise(take, *take.find(quantity), level).variance;
+            variance.push_back(noise.empty() ? noise : smoothVariance(noise));
+        }
+        for (int realization = 0; realization < e.realizations; ++realization) {
+            Section section;
+            section.level = level;
+            section.realization = realization;
+            section.periodic = true;
+            section.validation = holdRealization && realization == e.realizations - 1;
+            section.input = averagePeriod(take, take.input(), level, realization);
+            section.window = section.input.size();
+            section.excited = e.lines;
+            section.inputVariance = inputVariance;
+            if (!inputVariance.empty())
+                silenceNoise(section.input, inputVariance, e.lines);
+            for (std::size_t c = 0; c < record.channels.size(); ++c) {
+                section.measured.push_back(fft(averagePeriod(take, *take.find(record.channels[c]), level, realization)));
+                section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
+            }
+            record.sections.push_back(std::move(section));
+        }
+    }
+    record.leadIn = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(std::max(1, e.settlePeriods));
+}
+
+void addAperiodicSections(const Measurement& take, const RecordOptions& options, Record& record)
+{
+    const std::size_t length = take.length();
+    const auto lead = static_cast<std::size_t>(std::max(options.leadInSeconds * take.sampleRate, 256.0));
+    auto window = static_cast<std::size_t>(std::max(options.windowSeconds * take.sampleRate, 2048.0));
+    if (length < lead + 256)
+        throw Error(Error::Kind::data, "The take is only " + std::to_string(length)
+                                           + " samples long; a fit needs at least a second of signal.");
+    window = std::min(window, length - lead);
+    const std::size_t count = std::max<std::size_t>(1, (length - lead) / window);
+    const std::size_t fitted = options.holdOut && count > 1 ? std::max<std::size_t>(1, count * 2 / 3) : count;
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t begin = lead + n * window;
+        Section section;
+        section.window = window;
+        section.validation = n >= fitted;
+        const auto& input = take.input().samples;
+        section.input.assign(input.begin() + static_cast<std::ptrdiff_t>(begin - lead),
+                             input.begin() + static_cast<std::ptrdiff_t>(begin + window));
+        for (const auto quantity : record.channels) {
+            const auto& samples = take.find(quantity)->samples;
+            section.measured.push_back(fft(std::span(samples).subspan(begin, window)));
+            section.deviation.push_back(deviations(section.measured.back(), {}, options.relativeFloor));
+        }
+        record.sections.push_back(std::move(section));
+    }
+    record.leadIn = lead;
+}
+
+} // namespace
+
+std::optional<std::size_t> Record::channelIndex(Quantity quantity) const
+{
+    const auto found = std::find(channels.begin(), channels.end(), quantity);
+    if (found == channels.end())
+        return std::nullopt;
+    return static_cast<std::size_t>(found - channels.begin());
+}
+
+std::pair<std::size_t, std::size_t> Record::lineRange(const Section& section) const
+{
+    const double resolution = sampleRate / static_cast<double>(section.window);
+    const auto first = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(lowFrequency / resolution)));
+    const auto last = std::min<std::size_t>(section.window / 2 - 1, static_cast<std::size_t>(highFrequency / resolution));
+    return {first, std::max(first, last)};
+}
+
+std::vector<double> Record::drive(const Section& section) const
+{
+    if (!section.periodic)
+        return section.input;
+    const auto& period = section.input;
+    const std::size_t N = period.size();
+    std::vector<double> samples(leadIn + N);
+    const std::size_t offset = N - leadIn % N;
+    for (std::size_t n = 0; n < samples.size(); ++n)
+        samples[n] = period[(n + offset) % N];
+    return samples;
+}
+
+bool RecordOptions::isValid(std::string* reason) const
+{
+    if (!(windowSeconds > 0.0) || !(leadInSeconds >= 0.0)) {
+        *reason = "the window and the lead-in of a record are positive times in seconds";
+        return false;
+    }
+    if (!(relativeFloor > 0.0 && relativeFloor < 0.1)) {
+        *reason = "the relative floor of the noise must lie between 0 and 0.1";
+        return false;
+    }
+    return true;
+}
+
+Record makeRecord(const Measurement& take, const RecordOptions& options)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The take cannot be prepared: " + reason + ".");
+    Record record;
+    record.sampleRate = take.sampleRate;
+    record.driver = take.driver;
+    record.electrical = take.find(Quantity::voltage) != nullptr;
+    const auto inputQuantity = take.input().quantity;
+    for (const auto& channel : take.channels)
+        if (channel.quantity != inputQuantity && channel.quantity != Quantity::force
+            && (record.electrical || channel.quantity != Quantity::current)) {
+            record.channels.push_back(channel.quantity);
+            record.units.push_back(channel.unit);
+        }
+    if (record.channels.empty())
+        throw Error(Error::Kind::data, "The take holds no output of the loudspeaker; a fit needs at least one of current, "
+                                       "displacement, velocity, acceleration or pressure.");
+
+    const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
+    if (periodic && take.excitation->lines.empty()) {
+        Measurement completed = take;
+        completed.excitation->lines = findExcitedLines(take);
+        return makeRecord(completed, options);
+    }
+    record.bandLow = 0.0;
+    record.bandHigh = 0.42 * take.sampleRate;
+    if (periodic) {
+        periodicExcitation(take);   // checks the structure against the length
+        const double resolution = take.sampleRate / take.excitation->period;
+        if (!take.excitation->lines.empty()) {
+            record.bandLow = resolution * take.excitation->lines.front();
+            record.bandHigh = resolution * take.excitation->lines.back();
+        }
+        addPeriodicSections(take, options, record);
+    } else {
+        addAperiodicSections(take, options, record);
+    }
+    if (record.bandLow <= 0.0)
+        record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
+    // Distortion products lie above the band, too; near half the sample rate converters and interpolation are not to be trusted.
+    record.highFrequency = std::min(0.42 * take.sampleRate, 2.0 * record.bandHigh);
+    return record;
+}
+
+} // namespace excursion
