@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Bench/Draw.h"
+
+#include "Bench/Random.h"
+#include "Engine/Error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace excursion::bench {
+namespace {
+
+using Shape = Curve::Shape;
+constexpr double turn = 2.0 * std::numbers::pi;
+
+Shape oneOf(Random& random, std::initializer_list<Shape> shapes)
+{
+    return shapes.begin()[random.index(static_cast<int>(shapes.size()))];
+}
+
+double either(Random& random) { return random.chance(0.5) ? 1.0 : -1.0; }
+
+// The amount of a step or drag is kept where the parameter stays positive everywhere.
+Curve bounded(Curve curve, double low, double high)
+{
+    curve.amount = std::clamp(curve.amount, low, high);
+    return curve;
+}
+
+Curve drawForceFactor(double strength, double range, Random& random)
+{
+    const auto shape = oneOf(random, {Shape::erfGap, Shape::logisticGap, Shape::quarticGap, Shape::gaussianGap});
+    const double edge = shape == Shape::logisticGap ? random.uniform(2.0, 5.0) : random.uniform(0.7, 1.8);
+    return Curve {shape, random.uniform(-0.3, 0.3) * range, range, 0.0, edge}.scaledTo(strength, range);
+}
+
+Curve drawStiffness(double strength, double range, Random& random)
+{
+    const auto shape = oneOf(random, {Shape::coshSpring, Shape::expSpring, Shape::rationalSpring, Shape::skewedSpring});
+    const double extra = shape == Shape::rationalSpring ? random.uniform(0.1, 0.4) : random.uniform(0.3, 0.9);
+    return Curve {shape, random.uniform(-0.3, 0.3) * range, range, 0.0, extra}.scaledTo(strength, range);
+}
+
+Curve drawInductancePosition(double strength, double range, Random& random)
+{
+    const auto shape = oneOf(random, {Shape::tanhStep, Shape::arctanStep, Shape::rootStep});
+    const double centre = random.uniform(-0.3, 0.3) * range, width = random.uniform(0.3, 0.8) * range;
+    return bounded(Curve {shape, centre, width, 0.5, 0.0}.scaledTo(strength, range), 0.0, 0.85);
+}
+
+Curve drawInductanceCurrent(double strength, double range, Random& random)
+{
+    if (random.chance(0.5))   // off centre by so little that the flux grows with the current everywhere
+        return Curve {Shape::saturation, random.uniform(-0.08, 0.08) * range, range, 0.0, 0.0}.scaledTo(strength, range);
+    const double width = random.uniform(0.5, 1.5) * range, sign = either(random);
+    return bounded(Curve {Shape::tanhStep, 0.0, width, sign * 0.5, 0.0}.scaledTo(strength, range), -0.6, 0.6);
+}
+
+Curve drawDamping(double strength, double range, Random& random)
+{
+    const auto shape = oneOf(random, {Shape::rootDrag, Shape::powerDrag, Shape::tanhDrag});
+    const double sign = shape == Shape::rootDrag ? 1.0 : either(random);
+    const double centre = random.uniform(-0.2, 0.2) * range, width = random.uniform(0.3, 1.0) * range;
+    return bounded(Curve {shape, centre, width, sign, random.uniform(1.5, 2.5)}.scaledTo(strength, range), -0.8, 20.0);
+}
+
+Creep drawCreep(double strength, double f0, double lowEdge, Random& random)
+{
+    Creep creep;
+    const std::complex<double> s {0.0, turn * lowEdge};
+    switch (random.index(3)) {
+    case 0:
+        creep.family = Creep::Family::logarithmic;
+        creep.low = turn * lowEdge * random.logUniform(0.03, 0.3);
+        creep.high = turn * f0 * random.logUniform(1.0, 20.0);
+        creep.amount = strength / std::abs(std::log((s + creep.high) / (s + creep.low)));
+        break;
+    case 1:
+        creep.family = Creep::Family::standard;
+        creep.low = turn * lowEdge * random.logUniform(0.5, 2.0);
+        creep.amount = strength * std::abs(1.0 + s / creep.low);
+        break;
+    default:
+        creep.family = Creep::Family::fractional;
+        creep.low = turn * f0;
+        creep.exponent = random.uniform(0.1, 0.4);
+        creep.amount = strength;
+    }
+    return creep;
+}
+
+Friction drawFriction(double strength, double springForce, double range, Random& random)
+{
+    // Up to a quarter of the spring's peak force, reached within 3 to 20 % of the way
+    const double total = 0.4 * strength * springForce;
+    const double reach = range * random.logUniform(0.03, 0.2);
+    const int count = random.chance(0.5) ? 1 : 4;
+    Friction friction;
+    for (int n = 0; n < count; ++n) {
+        const double spread = std::exp2(n - 0.5 * (count - 1));
+        friction.elements.push_back({total / count / (reach * spread), total / count});
+    }
+    return friction;
+}
+
+CoilHeating drawHeating(double strength, double power, Random& random)
+{
+    CoilHeating heating;
+    heating.coilResistance = strength / (heating.alpha * power);
+    heating.coilCapacity = random.logUniform(0.5, 4.0) / heating.coilResistance;   // seconds
+    heating.magnetResistance = 0.3 * heating.coilResistance;
+    heating.magnetCapacity = 100.0 * heating.coilCapacity;
+    return heating;
+}
+
+VentedBox drawBox(double strength, const Loudspeaker& speaker, double f0, Random& random)
+{
+    VentedBox box;
+    box.stiffness = 4.0 * strength * speaker.K;
+    const double tuning = turn * f0 * random.uniform(0.7, 1.3);
+    box.mass = box.stiffness / (tuning * tuning);
+    box.resistance = box.mass * tuning / random.uniform(5.0, 15.0);
+    return box;
+}
+
+std::vector<ConeMode> drawBreakup(double strength, double highEdge, Random& random)
+{
+    std::vector<ConeMode> modes(static_cast<std::size_t>(1 + random.index(3)));
+    for (auto& mode : modes) {
+        mode.frequency = highEdge * random.logUniform(0.3, 0.95);
+        mode.quality = random.logUniform(4.0, 15.0);
+        mode.gain = either(random) * strength / mode.quality;   // |r''/x''| is Q at the resonance
+    }
+    return modes;
+}
+
+} // namespace
+
+double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited& visited, const BenchSetup& setup, Random& random)
+{
+    const double drawn = random.logUniform(0.05, 0.6), strength = effect.strength > 0.0 ? effect.strength : drawn;
+    const double f0 = std::sqrt(speaker.K / speaker.m) / turn;
+    const auto& plan = setup.excitation;
+    const auto reached = [](const std::optional<Curve>& curve, double range) { return curve->change(range); };
+
+    if (effect.id == "force-factor") {
+        speaker.forceFactor = drawForceFactor(strength, visited.displacement, random);
+        return reached(speaker.forceFactor, visited.displacement);
+    }
+    if (effect.id == "stiffness") {
+        speaker.stiffness = drawStiffness(strength, visited.displacement, random);
+        return reached(speaker.stiffness, visited.displacement);
+    }
+    if (effect.id == "inductance-position") {
+        speaker.inductancePosition = drawInductancePosition(strength, visited.displacement, random);
+        return reached(speaker.inductancePosition, visited.displacement);
+    }
+    if (effect.id == "inductance-current") {
+        speaker.inductanceCurrent = drawInductanceCurrent(strength, visited.current, random);
+        return reached(speaker.inductanceCurrent, visited.current);
+    }
+    if (effect.id == "damping-velocity") {
+        speaker.dampingVelocity = drawDamping(strength, visited.velocity, random);
+        return reached(speaker.dampingVelocity, visited.velocity);
+    }
+    if (effect.id == "eddy-currents") {   // strength: its impedance against the coil's at the high edge
+        const double w = turn * plan.bandHigh, exponent = random.uniform(0.45, 0.9);
+        speaker.eddyCurrents = EddyCurrents {strength * std::hypot(speaker.Re, w * speaker.Le) / std::pow(w, exponent), exponent};
+    } else if (effect.id == "creep")      // strength: change of compliance over the band
+        speaker.creep = drawCreep(strength, f0, plan.bandLow, random);
+    else if (effect.id == "friction")
+        speaker.friction = drawFriction(strength, speaker.K * visited.displacement, visited.displacement, random);
+    else if (effect.id == "coil-heating")   // strength: rise of Re in the end at the loudest level
+        speaker.coilHeating = drawHeating(strength, visited.power, random);
+    else if (effect.id == "vented-box")
+        speaker.ventedBox = drawBox(strength, speaker, f0, random);
+    else if (effect.id == "doppler") {
+        speaker.doppler = true;
+        return visited.velocity / 343.0;
+    } else if (effect.id == "cone-breakup")   // strength: change of the pressure at the resonance
+        speaker.coneBreakup = drawBreakup(strength, plan.bandHigh, random);
+    else {
+        std::string known;
+        for (const auto& id : effectIds())
+            known += (known.empty() ? "" : ", ") + id;
+        throw Error(Error::Kind::usage, "There is no effect \"" + effect.id + "\" to hide; choose from " + known + ".");
+    }
+    return strength;
+}
+
+} // namespace excursion::bench

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Bench/Draw.h"
+#include "Bench/Fixture.h"
+#include "Bench/Run.h"
+
+#include <catch2/catch.hpp>
+
+using namespace excursion;
+using namespace excursion::bench;
+
+namespace {
+
+Loudspeaker with(const std::string& effect, double strength, const BenchSetup& setup)
+{
+    Loudspeaker speaker;
+    Random random(7, 3);
+    addEffect(speaker, {effect, strength}, visit(speaker, setup), setup, random);
+    return speaker;
+}
+
+} // namespace
+
+TEST_CASE("halving the step changes less than -100 dB", "[bench]")
+{
+    auto setup = quietSetup();
+    for (const auto& id : effectIds()) {
+        INFO(id);
+        const auto speaker = with(id, 0.4, setup);
+        const auto normal = measure(speaker, setup);
+        auto finer = setup;
+        finer.oversampling = 2 * defaultOversampling(speaker, setup.sampleRate);
+        const auto refined = measure(speaker, finer);
+        for (const auto quantity : setup.channels) {
+            INFO(name(quantity));
+            CHECK(difference(normal, refined, quantity).band < -100.0);
+        }
+    }
+}
+
+TEST_CASE("an effect shows in the channels it should", "[bench]")
+{
+    using enum Quantity;
+    const auto setup = quietSetup();
+    const auto linear = measure(Loudspeaker {}, setup);
+    CHECK(distortion(linear, current, true) < -110.0);
+    CHECK(distortion(linear, pressure, false) < -110.0);
+
+    for (const std::string id : {"force-factor", "stiffness", "inductance-position", "inductance-current", "damping-velocity", "friction"}) {
+        INFO(id);
+        const auto take = measure(with(id, 0.5, setup), setup);
+        for (const auto quantity : {current, displacement})
+            CHECK(std::max(distortion(take, quantity, true), distortion(take, quantity, false)) > -75.0);
+    }
+    for (const std::string id : {"eddy-currents", "creep", "vented-box"}) {
+        INFO(id);
+        const auto take = measure(with(id, 0.5, setup), setup);
+        CHECK(difference(take, linear, current).band > -45.0);
+        CHECK(distortion(take, current, true) < -60.0);   // linear, but for memories that have not settled
+    }
+    const auto hot = measure(with("coil-heating", 0.5, setup), setup);
+    CHECK(difference(hot, linear, current).band > -45.0);
+    for (const std::string id : {"doppler", "cone-breakup"}) {
+        INFO(id);
+        const auto take = measure(with(id, 0.5, setup), setup);
+        CHECK(difference(take, linear, current).band < -150.0);
+        CHECK(difference(take, linear, displacement).band < -150.0);
+        CHECK(difference(take, linear, pressure).band > -60.0);
+    }
+    const auto moving = measure(with("doppler", 0.5, setup), setup);
+    CHECK(distortion(moving, pressure, false) > -70.0);   // product of x and da/dt: even
+}
+
+TEST_CASE("the reluctance force pulls the coil in", "[bench]")
+{
+    auto setup = quietSetup();
+    setup.excitation.levels = {15.0};
+    Loudspeaker speaker;
+    speaker.Le = 2e-3;
+    speaker.inductancePosition = Curve {Curve::Shape::tanhStep, 0.0, 2e-3, 0.7, 0.0};   // Le falls outward
+    const auto take = measure(speaker, setup);
+    CHECK(lastPeriod(take, Quantity::displacement)[0].real() < 0.0);
+}
+
+TEST_CASE("a coil heats towards its steady temperature", "[bench]")
+{
+    Loudspeaker speaker;
+    speaker.coilHeating = CoilHeating {0.0039, 0.05, 4.0, 1e6, 1.0};   // 0.2 s
+    std::vector<double> voltage(96000, 0.0);
+    for (std::size_t n = 0; n < voltage.size(); ++n)
+        voltage[n] = 5.0 * std::sqrt(2.0) * std::sin(0.05 * static_cast<double>(n)) * (n < 90000 ? 1.0 : 0.0);
+    const auto record = run(speaker, std::span(voltage).first(90000), 48000.0, {Quantity::current}, 0.3, 5.0);
+    // T = R Re(T) I^2 with |Z| close to Re at 382 Hz: 4 K/W of about 7 W, and Re a tenth higher
+    CHECK(record.coilTemperature > 20.0);
+    CHECK(record.coilTemperature < 30.0);
+}
