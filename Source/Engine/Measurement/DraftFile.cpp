@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Measurement/DraftFile.h"
+
+#include "Engine/Error.h"
+
+#include <fstream>
+#include <utility>
+
+namespace excursion {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void cannotWrite(const fs::path& target, const std::string& why)
+{
+    throw Error(Error::Kind::input, "'" + target.string() + "' cannot be written (" + why
+                                        + "); choose a folder that you may write to and that has room.");
+}
+
+} // namespace
+
+DraftFile::DraftFile(fs::path target) : target_(std::move(target)), draft_(target_)
+{
+    draft_ += ".tmp";
+    std::error_code error;
+    if (fs::is_directory(target_, error))
+        cannotWrite(target_, "it is a folder");
+    if (const auto folder = target_.parent_path(); !folder.empty()) {
+        error.clear();
+        fs::create_directories(folder, error);
+        if (error)
+            cannotWrite(target_, error.message());
+    }
+}
+
+DraftFile::~DraftFile()
+{
+    std::error_code ignored;
+    fs::remove(draft_, ignored);
+}
+
+void DraftFile::write(std::string_view bytes)
+{
+    std::ofstream file(draft_, std::ios::binary | std::ios::trunc);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file)
+        cannotWrite(target_, "the disk is full or the folder is read-only");
+}
+
+void DraftFile::publish()
+{
+    std::error_code error;
+    fs::rename(draft_, target_, error);
+    if (error)
+        cannotWrite(target_, error.message());
+}
+
+} // namespace excursion

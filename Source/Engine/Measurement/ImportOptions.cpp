@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Measurement/ImportOptions.h"
+
+#include "Engine/Error.h"
+#include "Engine/Measurement/ExcitationPlan.h"
+#include "Engine/Measurement/Units.h"
+
+#include <cctype>
+#include <cmath>
+#include <numeric>
+
+namespace excursion {
+namespace {
+
+std::string trimmed(std::string_view text)
+{
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())))
+        text.remove_prefix(1);
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
+        text.remove_suffix(1);
+    return std::string(text);
+}
+
+std::string lower(std::string text)
+{
+    for (char& c : text)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+/// The quantity of a name without its unit; `unit` tells the two meanings of v apart.
+std::optional<Quantity> quantityOf(const std::string& name, const std::string& unit)
+{
+    if (const auto quantity = quantityNamed(name))
+        return quantity;
+    if (name == "u")
+        return Quantity::voltage;
+    if (name == "i")
+        return Quantity::current;
+    if (name == "x" || name == "excursion")
+        return Quantity::displacement;
+    if (name == "a")
+        return Quantity::acceleration;
+    if (name == "p" || name == "mic" || name == "microphone")
+        return Quantity::pressure;
+    if (name == "v" && unitNamed(Quantity::velocity, unit))
+        return Quantity::velocity;
+    if (name == "v" && unitNamed(Quantity::voltage, unit))
+        return Quantity::voltage;
+    return std::nullopt;
+}
+
+std::optional<ColumnQuantity> understood(std::string_view column, const std::string& name, const std::string& unit)
+{
+    const auto quantity = quantityOf(lower(trimmed(name)), unit);
+    if (!quantity || (!unit.empty() && !unitNamed(*quantity, unit)))
+        return std::nullopt;
+    return ColumnQuantity {std::string(column), *quantity, unit};
+}
+
+} // namespace
+
+std::optional<ColumnQuantity> columnNamed(std::string_view column)
+{
+    const auto text = trimmed(column);
+    for (const auto& [open, close] : {std::pair {'[', ']'}, std::pair {'(', ')'}})
+        if (const auto at = text.find(open); at != std::string::npos && text.back() == close)
+            return understood(column, text.substr(0, at), trimmed(text.substr(at + 1, text.size() - at - 2)));
+    if (const auto at = text.rfind('_'); at != std::string::npos)
+        if (auto found = understood(column, text.substr(0, at), text.substr(at + 1)))
+            return found;
+    return understood(column, text, "");
+}
+
+ColumnQuantity parseColumnQuantity(std::string_view text)
+{
+    const auto refuse = [&](const std::string& why) {
+        throw Error(Error::Kind::usage, "'" + std::string(text) + "' " + why + "; write COLUMN=QUANTITY or "
+                                        "COLUMN=QUANTITY:UNIT, for example V1=voltage or V2=displacement:mm.");
+    };
+    const auto equals = text.rfind('=');
+    if (equals == std::string_view::npos || equals == 0)
+        refuse("maps no column to a quantity");
+    ColumnQuantity mapped;
+    mapped.column = std::string(text.substr(0, equals));
+    auto quantity = text.substr(equals + 1);
+    if (const auto colon = quantity.find(':'); colon != std::string_view::npos) {
+        mapped.unit = std::string(quantity.substr(colon + 1));
+        quantity = quantity.substr(0, colon);
+    }
+    const auto known = quantityNamed(quantity);
+    if (!known)
+        refuse("names no known quantity (voltage, current, displacement, velocity, acceleration, pressure or force)");
+    mapped.quantity = *known;
+    if (!mapped.unit.empty() && !unitNamed(*known, mapped.unit))
+        refuse("gives a unit that is not " + acceptedUnits(*known));
+    return mapped;
+}
+
+Measurement measurementOfColumns(const std::vector<ColumnQuantity>& columns, const std::vector<std::vector<double>>& samples,
+                                 double sampleRate, const ImportOptions& options, const std::string& source)
+{
+    const auto refuse = [&source](Error::Kind kind, const std::string& why) { throw Error(kind, "'" + source + "' " + why); };
+    if (columns.empty())
+        refuse(Error::Kind::input, "has no column that names a quantity; map its columns with --map, for example --map V1=voltage.");
+    if (!(std::isfinite(sampleRate) && sampleRate > 0))
+        refuse(Error::Kind::usage, "does not say its sample rate; give it with --rate.");
+    const std::size_t length = samples.front().size(), to = options.to.value_or(length);
+    if (to > length || options.from >= to)
+        refuse(Error::Kind::usage, "has " + std::to_string(length) + " samples a channel, so samples "
+                                       + std::to_string(options.from) + " to " + std::to_string(to) + " cannot be taken.");
+    Measurement measurement;
+    measurement.sampleRate = sampleRate;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const auto& [column, quantity, unit] = columns[c];
+        const auto& x = samples[c];
+        if (measurement.find(quantity))
+            refuse(Error::Kind::input, "has more than one column for the " + std::string(name(quantity)) + "; map the one that is meant with --map.");
+        if (x.size() != length)
+            refuse(Error::Kind::input, "has " + std::to_string(x.size()) + " samples in '" + column + "' and "
+                                           + std::to_string(length) + " in '" + columns.front().column + "'.");
+        const auto scale = unitNamed(quantity, unit.empty() ? siUnit(quantity) : std::string_view(unit));
+        if (!scale)
+            refuse(Error::Kind::usage, "has '" + column + "' in '" + unit + "', expected " + acceptedUnits(quantity) + ".");
+        Channel channel;
+        channel.quantity = quantity;
+        channel.unit = scale->unit;
+        channel.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(options.from), x.begin() + static_cast<std::ptrdiff_t>(to));
+        const double mean = options.removeMean ? std::accumulate(channel.samples.begin(), channel.samples.end(), 0.0)
+                                                     / static_cast<double>(channel.samples.size())
+                                               : 0.0;
+        for (double& value : channel.samples)
+            value = (value - mean) * scale->factor;
+        channel.fullScale = roundFullScale(channel.samples, 1.1);
+        measurement.channels.push_back(std::move(channel));
+    }
+    try {
+        measurement.input();
+    } catch (const Error& e) {
+        refuse(e.kind(), std::string("is not a take yet. ") + e.what());
+    }
+    return measurement;
+}
+
+} // namespace excursion
