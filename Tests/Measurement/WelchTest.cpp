@@ -34,7 +34,7 @@ TEST_CASE("Welch's estimate of a short filter is its frequency response")
         const double w = 2.0 * std::numbers::pi * result.frf.frequency[i] / 48000.0;
         const auto truth = 0.5 + 0.3 * std::polar(1.0, -w) - 0.2 * std::polar(1.0, -2.0 * w);
         REQUIRE(std::abs(result.frf.value[i] - truth) < 0.01);
-        REQUIRE(result.coherence[i] > 0.995);
+        REQUIRE(result.coherence[i] > 0.95);
     }
 }
 
@@ -75,10 +75,12 @@ TEST_CASE("the variance of Welch's FRF is the scatter over runs")
 
 TEST_CASE("options that make no sense carry a reason")
 {
-    CHECK(WelchOptions {}.isValid(100000).empty());
-    CHECK_FALSE(WelchOptions {}.isValid(10000).empty());
-    CHECK_FALSE(WelchOptions {.segment = 3}.isValid(100000).empty());
-    CHECK_FALSE(WelchOptions {.overlap = std::nan("")}.isValid(100000).empty());
+    CHECK(WelchOptions {}.isValid(100000));
+    std::string reason;
+    CHECK_FALSE(WelchOptions {}.isValid(10000, &reason));
+    CHECK(reason.find("8192") != std::string::npos);
+    CHECK_FALSE(WelchOptions {.segment = 3}.isValid(100000));
+    CHECK_FALSE(WelchOptions {.overlap = std::nan("")}.isValid(100000));
     const std::vector<double> x(100, 1.0);
     CHECK_THROWS_AS(welch(x, x, 1.0, {}), Error);
 }

@@ -51,16 +51,21 @@ double independentAverages(const std::vector<double>& window, std::size_t hop, i
 
 } // namespace
 
-std::string WelchOptions::isValid(std::size_t length) const
+bool WelchOptions::isValid(std::size_t length, std::string* reason) const
 {
+    const auto refuse = [reason](std::string why) {
+        if (reason)
+            *reason = std::move(why);
+        return false;
+    };
     if (segment < 16)
-        return "A segment needs at least 16 samples, not " + std::to_string(segment) + ".";
+        return refuse("A segment needs at least 16 samples, not " + std::to_string(segment) + ".");
     if (!(overlap >= 0.0 && overlap <= 0.9))
-        return "The overlap must lie in 0 .. 0.9.";
+        return refuse("The overlap must lie in 0 .. 0.9.");
     if (length < 2 * static_cast<std::size_t>(segment))
-        return "The record has " + std::to_string(length) + " samples, fewer than two segments of "
-             + std::to_string(segment) + "; choose a shorter segment.";
-    return {};
+        return refuse("The record has " + std::to_string(length) + " samples, fewer than two segments of "
+                      + std::to_string(segment) + "; choose a shorter segment.");
+    return true;
 }
 
 WelchResult welch(std::span<const double> input, std::span<const double> output, double sampleRate,
@@ -68,7 +73,7 @@ WelchResult welch(std::span<const double> input, std::span<const double> output,
 {
     if (input.size() != output.size())
         throw Error(Error::Kind::data, "The input and the output channel differ in length.");
-    if (const auto reason = options.isValid(input.size()); !reason.empty())
+    if (std::string reason; !options.isValid(input.size(), &reason))
         throw Error(Error::Kind::usage, reason);
 
     const auto N = static_cast<std::size_t>(options.segment);

@@ -16,8 +16,8 @@ struct WelchOptions {
     double overlap = 0.5;    ///< share of a segment that the next one repeats, 0 .. 0.9
     bool hann = true;        ///< Hann window; otherwise rectangular, for segments that are periods
 
-    /// Empty when the options make sense for a record of `length` samples, else the reason why they do not.
-    std::string isValid(std::size_t length) const;
+    /// Whether the options make sense for a record of `length` samples; if not, `reason` says why in a sentence.
+    bool isValid(std::size_t length, std::string* reason = nullptr) const;
 };
 
 /// Cross-spectral estimates of an aperiodic record (Welch 1967; Bendat & Piersol 2010, 9.1 and 11.5). Segments have their
