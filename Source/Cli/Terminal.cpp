@@ -111,7 +111,7 @@ void Terminal::table(const std::vector<std::string>& header, const std::vector<s
     const auto line = [&](const std::vector<std::string>& cells) {
         std::string text;
         for (std::size_t c = 0; c < header.size(); ++c)
-            text += "  " + padded(c < cells.size() ? cells[c] : std::string(), widths[c], numeric[c]);
+            text.append("  ").append(padded(c < cells.size() ? cells[c] : std::string(), widths[c], numeric[c]));
         while (!text.empty() && text.back() == ' ')
             text.pop_back();
         return text + '\n';
@@ -145,11 +145,11 @@ void Terminal::drawBar(double fraction, std::string_view what)
     constexpr int cells = 32;
     const double shown = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
     const auto full = static_cast<std::size_t>(std::lround(shown * cells));
-    const std::string bar = "[" + std::string(full, '=') + std::string(cells - full, ' ') + "] "
-                          + padded(fixed(100 * shown, 0), 3, true) + " %  " + std::string(what.substr(0, 40));
+    std::string bar = padded(std::string(full, '='), cells, false);
+    bar.append("| ").append(padded(fixed(100 * shown, 0), 3, true)).append(" %  ").append(what.substr(0, 40));
     if (bar == lastBar_)
         return;
-    std::cerr << "\r\x1b[K" << bar << std::flush;
+    std::cerr << "\r\x1b[K|" << bar << std::flush;
     lastBar_ = bar;
     barIsDrawn_ = true;
 }
@@ -164,6 +164,17 @@ void Terminal::clearBar()
 
 std::string fixed(double value, int decimals) { return formatted(value, std::chars_format::fixed, decimals); }
 
-std::string significant(double value, int digits) { return formatted(value, std::chars_format::general, digits); }
+std::string significant(double value, int digits)
+{
+    const double size = std::abs(value);
+    if (!(size >= 1e-3 && size < 1e7))
+        return formatted(value, std::chars_format::general, digits);
+    auto text = fixed(value, std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size)))));
+    if (text.find('.') != std::string::npos)
+        text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.')
+        text.pop_back();
+    return text;
+}
 
 } // namespace excursion::cli

@@ -35,7 +35,7 @@ public:
     /// Text for a person, on stdout, ended by a line break.
     void say(std::string_view text);
 
-    /// A table for a person: columns aligned, numbers (cells that begin as one) to the right.
+    /// A table for a person: columns aligned, those of numbers (all cells begin as one) to the right.
     void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
 
     /// The document of the verb, on stdout, when --json asked for it.
@@ -58,7 +58,8 @@ private:
 /// "-61.0": a number with a fixed count of decimals, for tables. Locale-free.
 std::string fixed(double value, int decimals);
 
-/// "1.43e-05" or "3.30": a number with that many significant digits, for tables. Locale-free.
+/// "1.43e-05", "22000" or "3.3": a number with that many significant digits (whole parts in full),
+/// without zeros at its end; for tables. Locale-free.
 std::string significant(double value, int digits = 4);
 
 } // namespace excursion::cli

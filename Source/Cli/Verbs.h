@@ -20,6 +20,7 @@ inline constexpr auto use = "5. Use the model";
 } // namespace step
 
 // Declared here in the order of the method, called in the same order by main.
-
+void addExcite(CLI::App&, Terminal&);
+void addImport(CLI::App&, Terminal&);
 
 } // namespace excursion::cli

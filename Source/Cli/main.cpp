@@ -71,6 +71,8 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
 
     // In the order of the method: --help prints them so.
+    cli::addExcite(app, terminal);
+    cli::addImport(app, terminal);
 
     return run(app, terminal, argc, argv);
 }

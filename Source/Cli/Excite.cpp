@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Error.h"
+#include "Engine/Measurement/ExcitationPlan.h"
+#include "Engine/Measurement/TakeFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+struct Options {
+    ExcitationPlanOptions plan;
+    std::vector<double> band {20.0, 20000.0};
+    double fullScale = 0.0;   ///< V; 0: chosen
+    std::string grid = "odd-random", shape = "pink", out;
+};
+
+double peakOf(const std::vector<double>& samples)
+{
+    double peak = 0.0;
+    for (const double u : samples)
+        peak = std::max(peak, std::abs(u));
+    return peak;
+}
+
+void run(Options options, Terminal& terminal)
+{
+    auto& plan = options.plan;
+    plan.multisine.grid = gridNamed(options.grid).value();     // CLI11 let only known names pass
+    plan.multisine.shape = shapeNamed(options.shape).value();
+    plan.multisine.bandLow = options.band[0];
+    plan.multisine.bandHigh = options.band[1];
+    auto take = planExcitation(plan);
+    auto& voltage = take.channels.front();
+    const double peak = peakOf(voltage.samples);
+    if (options.fullScale > 0 && options.fullScale < peak)
+        throw Error(Error::Kind::usage, "The excitation peaks at " + fixed(peak, 2) + " V, above the full scale of "
+                                            + fixed(options.fullScale, 2) + " V; raise --full-scale or lower --levels.");
+    if (options.fullScale > 0)
+        voltage.fullScale = options.fullScale;
+    writePlan(take, options.out);
+
+    const auto& e = *take.excitation;
+    const double seconds = static_cast<double>(e.totalSamples()) / take.sampleRate;
+    terminal.say("Wrote " + options.out + "/excitation.wav, " + fixed(seconds, 2) + " s, and its plan.");
+    terminal.table({"level V rms", "peak V", "starts at s"}, [&] {
+        std::vector<std::vector<std::string>> rows;
+        const double loudest = e.levels.back();
+        for (std::size_t i = 0; i < e.levels.size(); ++i)
+            rows.push_back({significant(e.levels[i]), significant(peak * e.levels[i] / loudest),
+                            fixed(static_cast<double>(i) * seconds / static_cast<double>(e.levels.size()), 2)});
+        return rows;
+    }());
+    terminal.say(std::to_string(e.lines.size()) + " lines, " + fixed(take.sampleRate / e.period, 3) + " Hz apart at the least. A sample of 1.0 stands for "
+                 + significant(voltage.fullScale) + " V at the loudspeaker: set the amplifier's gain so.");
+    terminal.document({{"format", "excursion-excite"},
+                       {"version", 1},
+                       {"folder", options.out},
+                       {"audio", "excitation.wav"},
+                       {"plan", "plan.json"},
+                       {"samples", e.totalSamples()},
+                       {"seconds", seconds},
+                       {"fullScale", voltage.fullScale},
+                       {"peak", peak},
+                       {"levels", e.levels},
+                       {"lines", e.lines.size()},
+                       {"detectionLines", oddDetectionLines(e.lines).size()}});
+}
+
+} // namespace
+
+void addExcite(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("excite", "Write the multisine to play, and its plan")->group(step::measure);
+    verb->add_option("--out", o->out, "folder for excitation.wav and plan.json")->required();
+    auto& m = o->plan.multisine;
+    verb->add_option("--levels", o->plan.levels, "V rms, quiet to loud")->delimiter(',')->capture_default_str();
+    verb->add_option("--realizations", o->plan.realizations, "draws of the phases at each level")->capture_default_str();
+    verb->add_option("--periods", o->plan.periods, "periods to be used in each realization")->capture_default_str();
+    verb->add_option("--settle", o->plan.settlePeriods, "periods before them, for the loudspeaker to settle")->capture_default_str();
+    verb->add_option("--period", m.period, "samples of one period")->capture_default_str();
+    verb->add_option("--rate", m.sampleRate, "sample rate in Hz")->capture_default_str();
+    verb->add_option("--band", o->band, "lowest and highest frequency in Hz")->expected(2)->delimiter(',')->capture_default_str();
+    verb->add_option("--grid", o->grid, "which lines are excited; odd-random shows even and odd distortion between them")
+        ->check(CLI::IsMember({"full", "odd", "odd-odd", "odd-random", "R10", "R20", "R40", "R80"}))
+        ->capture_default_str();
+    verb->add_option("--shape", o->shape, "amplitude over frequency")->check(CLI::IsMember({"white", "pink", "red"}))->capture_default_str();
+    verb->add_option("--group", m.groupSize, "odd-random: odd lines in a group that misses one")->capture_default_str();
+    verb->add_option("--seed", m.seed, "of the lines and phases; the same seed gives the same bytes")->capture_default_str();
+    verb->add_option("--full-scale", o->fullScale, "V at the loudspeaker for a sample of 1.0 (chosen when not given)")->check(CLI::PositiveNumber);
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Error.h"
+#include "Engine/Measurement/Export.h"
+#include "Engine/Measurement/ImportCsv.h"
+#include "Engine/Measurement/ImportMat.h"
+#include "Engine/Measurement/TakeFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+struct Options {
+    std::string file, out, name;
+    std::vector<std::string> map;
+    double rate = 0.0;
+    std::size_t from = 0, to = 0;
+    bool removeMean = false;
+};
+
+bool endsIn(const std::filesystem::path& path, const std::string& extension)
+{
+    auto text = path.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text == extension;
+}
+
+ImportOptions importOptions(const Options& options)
+{
+    ImportOptions result;
+    for (const auto& mapping : options.map)
+        result.columns.push_back(parseColumnQuantity(mapping));
+    result.sampleRate = options.rate;
+    result.from = options.from;
+    if (options.to > 0)
+        result.to = options.to;
+    result.removeMean = options.removeMean;
+    return result;
+}
+
+void describe(const Measurement& take, Terminal& terminal, const std::string& out)
+{
+    std::vector<std::vector<std::string>> rows;
+    auto channels = nlohmann::json::array();
+    for (const auto& channel : take.channels) {
+        double peak = 0.0;
+        for (const double x : channel.samples)
+            peak = std::max(peak, std::abs(x));
+        rows.push_back({std::string(name(channel.quantity)), channel.unit, significant(peak), significant(channel.fullScale)});
+        channels.push_back({{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"peak", peak}, {"fullScale", channel.fullScale}});
+    }
+    terminal.say("Wrote the take " + out + ": " + std::to_string(take.length()) + " samples at " + significant(take.sampleRate, 8) + " Hz.");
+    terminal.table({"channel", "unit", "peak", "full scale"}, rows);
+    terminal.document({{"format", "excursion-import"}, {"version", 1}, {"take", out}, {"kind", "samples"},
+                       {"sampleRate", take.sampleRate}, {"samples", take.length()}, {"channels", channels}});
+}
+
+/// A frequency response is a take as one CSV of spectra.
+void importSpectra(const Spectra& spectra, const std::string& out, Terminal& terminal)
+{
+    if (!endsIn(out, ".csv"))
+        throw Error(Error::Kind::usage, "The file is a frequency response, which is written as one file; give --out a name that ends in .csv.");
+    writeCsv(spectra, out);
+    terminal.say("Wrote the spectra " + out + ": " + std::to_string(spectra.frequency.size()) + " frequencies from "
+                 + significant(spectra.frequency.front()) + " to " + significant(spectra.frequency.back()) + " Hz.");
+    terminal.document({{"format", "excursion-import"}, {"version", 1}, {"take", out}, {"kind", "spectra"},
+                       {"frequencies", spectra.frequency.size()}});
+}
+
+Take read(const Options& options)
+{
+    if (endsIn(options.file, ".mat"))
+        return importMat(options.file, importOptions(options));
+    if (endsIn(options.file, ".csv") || endsIn(options.file, ".txt"))
+        return importCsv(options.file, importOptions(options));
+    if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean)
+        throw Error(Error::Kind::usage, "--map, --rate, --from, --to and --remove-mean are for CSV and MAT files of time signals.");
+    return readTake(options.file);
+}
+
+void run(const Options& options, Terminal& terminal)
+{
+    auto take = read(options);
+    if (auto* spectra = std::get_if<Spectra>(&take))
+        return importSpectra(*spectra, options.out, terminal);
+    auto& measurement = std::get<Measurement>(take);
+    if (!options.name.empty())
+        measurement.driver.name = options.name;
+    if (endsIn(options.out, ".csv"))
+        writeCsv(measurement, options.out);
+    else
+        writeMeasurement(measurement, options.out);
+    describe(measurement, terminal, options.out);
+}
+
+} // namespace
+
+void addImport(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("import", "Turn a CSV, MAT, ZMA or FRD file into a take, or a take into a CSV")->group(step::measure);
+    verb->add_option("FILE", o->file, ".csv, .mat, .zma, .frd, or a take")->required();
+    verb->add_option("--out", o->out, "folder of the new take, or a .csv")->required();
+    verb->add_option("--map", o->map, "COLUMN=QUANTITY or COLUMN=QUANTITY:UNIT, for example V1=force:V; may be repeated")
+        ->expected(1)->take_all();
+    verb->add_option("--rate", o->rate, "sample rate in Hz, when the file has none")->check(CLI::PositiveNumber);
+    verb->add_option("--from", o->from, "first sample to take, counted from 0");
+    verb->add_option("--to", o->to, "one beyond the last sample to take")->check(CLI::PositiveNumber);
+    verb->add_flag("--remove-mean", o->removeMean, "subtract the mean of each channel");
+    verb->add_option("--name", o->name, "name of the loudspeaker");
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli
