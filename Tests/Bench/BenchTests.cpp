@@ -139,6 +139,7 @@ TEST_CASE("draws are plausible, repeatable and reach the excursion they are made
         options.hidden = std::vector<HiddenEffect> {{effectIds()[seed % effectIds().size()], 0.0}};
         options.channels = std::vector {Quantity::voltage, Quantity::displacement};
         options.noiseDb = -INFINITY;
+        options.seconds = 5.0;
         auto drawn = draw(seed, options);
         INFO("seed " << seed << " " << drawn.driver << " " << drawn.hidden.front().id);
         CHECK(truthOf(drawn) == truthOf(draw(seed, options)));

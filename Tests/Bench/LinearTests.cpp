@@ -11,6 +11,8 @@ using namespace excursion::bench;
 namespace {
 
 // Largest relative error of current, displacement and pressure per volt against the closed form, in dB.
+// Displacement is read up to 500 Hz: a memory that still settles drifts, and above, where the cone hardly moves, the
+// line's share of that drift is all there is to see.
 double againstClosedForm(const Loudspeaker& speaker, const BenchSetup& setup)
 {
     const auto take = measure(speaker, setup);
@@ -24,7 +26,8 @@ double againstClosedForm(const Loudspeaker& speaker, const BenchSetup& setup)
         const auto flight = std::polar(1.2 * speaker.coneArea / (2.0 * std::numbers::pi * setup.microphoneDistance),
                                        -2.0 * std::numbers::pi * f * setup.microphoneDistance / 343.0);
         worst = std::max(worst, std::abs(I[k] / U[k] / truth.current - 1.0));
-        worst = std::max(worst, std::abs(X[k] / U[k] / truth.displacement - 1.0));
+        if (f < 500.0)
+            worst = std::max(worst, std::abs(X[k] / U[k] / truth.displacement - 1.0));
         worst = std::max(worst, std::abs(P[k] / U[k] / (flight * truth.radiated) - 1.0));
     }
     return dB(worst);

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Bench/Draw.h"
+#include "Bench/Truth.h"
+#include "Engine/Error.h"
+#include "Engine/Measurement/DraftFile.h"
+#include "Engine/Measurement/TakeFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+struct Options {
+    std::uint64_t seed = 1;
+    std::vector<std::string> hidden, channels;
+    std::string driver, out, truth;
+    double noise = 0.0, rate = 0.0, seconds = 12.0;
+    bool hasHidden = false, hasNoise = false;
+};
+
+// "stiffness", "stiffness:0.3", or "none"
+std::vector<bench::HiddenEffect> effectsOf(const std::vector<std::string>& texts)
+{
+    std::vector<bench::HiddenEffect> effects;
+    for (const auto& text : texts) {
+        if (text == "none" && texts.size() == 1)
+            return {};
+        bench::HiddenEffect effect {text.substr(0, text.find(':')), 0.0};
+        if (const auto colon = text.find(':'); colon != std::string::npos) {
+            const char *first = text.data() + colon + 1, *last = text.data() + text.size();
+            const auto [end, error] = std::from_chars(first, last, effect.strength);
+            if (error != std::errc() || end != last || !(effect.strength >= 0.01 && effect.strength <= 0.8))
+                throw Error(Error::Kind::usage, "\"" + text + "\" does not name an effect and a strength between 0.01 and 0.8, such as "
+                                                              "stiffness:0.3.");
+        }
+        effects.push_back(effect);
+    }
+    return effects;
+}
+
+std::vector<Quantity> channelsOf(const std::vector<std::string>& names)
+{
+    std::vector<Quantity> channels;
+    for (const auto& text : names) {
+        const auto quantity = quantityNamed(text);
+        if (!quantity || *quantity == Quantity::force)
+            throw Error(Error::Kind::usage, "The virtual bench has no channel \"" + text
+                                                + "\"; choose from voltage, current, displacement, velocity, acceleration and pressure.");
+        if (std::find(channels.begin(), channels.end(), *quantity) == channels.end())
+            channels.push_back(*quantity);
+    }
+    if (std::find(channels.begin(), channels.end(), Quantity::voltage) == channels.end())
+        channels.insert(channels.begin(), Quantity::voltage);
+    return channels;
+}
+
+bench::DrawOptions drawOptions(const Options& options)
+{
+    bench::DrawOptions draw;
+    if (!options.driver.empty())
+        draw.driver = options.driver;
+    if (options.hasHidden)
+        draw.hidden = effectsOf(options.hidden);
+    if (!options.channels.empty())
+        draw.channels = channelsOf(options.channels);
+    if (options.hasNoise)
+        draw.noiseDb = options.noise;
+    if (options.rate != 0.0) {
+        if (!(options.rate >= 32000.0 && options.rate <= 192000.0))
+            throw Error(Error::Kind::usage, "--rate must lie between 32000 and 192000 Hz.");
+        draw.sampleRate = options.rate;
+    }
+    draw.seconds = options.seconds;
+    return draw;
+}
+
+void run(const Options& options, Terminal& terminal)
+{
+    const auto drawn = bench::draw(options.seed, drawOptions(options));
+    const auto take = bench::measure(drawn.speaker, drawn.setup, terminal.progress());
+    writeMeasurement(take, options.out);
+    if (!options.truth.empty()) {
+        DraftFile truth(options.truth);
+        truth.write(bench::truthOf(drawn).dump(2) + "\n");
+        truth.publish();
+    }
+
+    const auto& plan = *take.excitation;
+    nlohmann::json document {{"take", options.out}, {"seed", options.seed}, {"driver", drawn.driver}, {"sampleRate", take.sampleRate},
+                             {"seconds", static_cast<double>(take.length()) / take.sampleRate}, {"period", plan.period},
+                             {"levels", plan.levels}};
+    for (const auto& channel : take.channels)
+        document["channels"].push_back(name(channel.quantity));
+    terminal.document(document);
+
+    std::string channels;
+    for (const auto& channel : take.channels)
+        channels += (channels.empty() ? "" : ", ") + std::string(name(channel.quantity));
+    terminal.say(options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 1) + " s of a virtual " + drawn.driver
+                 + " at " + fixed(take.sampleRate, 0) + " Hz (" + channels + "), up to " + significant(plan.levels.back(), 3) + " V rms.");
+    if (!options.truth.empty())
+        terminal.say("What was hidden is in " + options.truth + ".");
+}
+
+} // namespace
+
+void addVirtual(CLI::App& app, Terminal& terminal)
+{
+    auto options = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("virtual", "A take of a virtual loudspeaker with something hidden in it")->group(step::measure);
+    verb->add_option("--seed", options->seed, "what is drawn, noise included")->required();
+    auto* hidden = verb->add_option("--hidden", options->hidden,
+                                    "effects to hide, each with an optional strength (stiffness:0.3), or none; "
+                                    "without this option one is drawn and not told")
+                       ->delimiter(',');
+    verb->add_option("--driver", options->driver, "micro, midrange, midbass, woofer, subwoofer or seed");
+    auto* noise = verb->add_option("--noise", options->noise, "sensor noise in dB against the loudest level")->check(CLI::Range(-200.0, 0.0));
+    verb->add_option("--rate", options->rate, "sample rate in Hz");
+    verb->add_option("--seconds", options->seconds, "length of the take, about")->check(CLI::Range(1.0, 120.0));
+    verb->add_option("--channels", options->channels, "what is recorded, beside voltage")->delimiter(',');
+    verb->add_option("--out", options->out, "folder of the take")->required();
+    verb->add_option("--truth", options->truth, "JSON file that tells what was hidden");
+    verb->callback([options, hidden, noise, &terminal] {
+        options->hasHidden = hidden->count() > 0;
+        options->hasNoise = noise->count() > 0;
+        run(*options, terminal);
+    });
+}
+
+} // namespace excursion::cli
