@@ -86,20 +86,41 @@ double difference(std::span<const double> a, std::span<const double> b)
 
 constexpr double repeats = 0.02;   // `difference` of the same period in noise; other phases or another level differ by more
 
-/// The share of a record, silence left out, that is the same `lag` samples later.
-double repeatingShare(std::span<const double> input, std::size_t lag)
+struct Repetition {
+    double share = 0.0;         ///< of a record, silence left out, that is the same `lag` samples later
+    double difference = 0.0;    ///< mean over what is the same
+};
+
+Repetition repetition(std::span<const double> input, std::size_t lag)
 {
     const std::size_t piece = std::max<std::size_t>(8, lag / 4);
     const double silence = 1e-8 * energy(input) * static_cast<double>(piece) / static_cast<double>(input.size());
-    double pieces = 0.0, same = 0.0;
+    double pieces = 0.0, same = 0.0, sum = 0.0;
     for (std::size_t n = 0; n + lag + piece <= input.size(); n += piece) {
         const auto a = input.subspan(n, piece), b = input.subspan(n + lag, piece);
         if (energy(a) + energy(b) > silence) {
             pieces += 1.0;
-            same += difference(a, b) < repeats ? 1.0 : 0.0;
+            if (const double d = difference(a, b); d < repeats) {
+                same += 1.0;
+                sum += d;
+            }
         }
     }
-    return pieces > 0 ? same / pieces : 0.0;
+    return same > 0 ? Repetition {same / pieces, sum / same} : Repetition {};
+}
+
+/// The peak of a correlation may be a few samples off where a few low lines hold most of the power.
+std::size_t sharpened(std::span<const double> input, std::size_t lag)
+{
+    constexpr std::size_t around = 8;
+    std::size_t best = lag;
+    auto closest = repetition(input, lag);
+    for (std::size_t other = lag - around; other <= lag + around; ++other)
+        if (const auto r = repetition(input, other); r.share > 0.8 * closest.share && r.difference < closest.difference) {
+            best = other;
+            closest = r;
+        }
+    return best;
 }
 
 /// Periods of each run of periods that repeat; 0 unless all runs are of equal length, two or more.
@@ -202,10 +223,9 @@ int findPeriod(std::span<const double> input)
     std::sort(candidates.rbegin(), candidates.rend());
     candidates.resize(std::min(candidates.size(), mostCandidates));
     std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    for (const auto& [r, lag] : candidates)
-        if (repeatingShare(input, lag) > share)
-            return static_cast<int>(lag);
-    return 0;
+    const auto found = std::find_if(candidates.begin(), candidates.end(),
+                                    [&](const auto& c) { return repetition(input, c.second).share > share; });
+    return found == candidates.end() ? 0 : static_cast<int>(sharpened(input, found->second));
 }
 
 std::optional<Excitation> findExcitation(std::span<const double> input, double sampleRate)
