@@ -208,11 +208,14 @@ Measurement record(const Loudspeaker& driver, const Plan& plan, std::mt19937_64&
             }
         }
     for (auto& channel : take.channels) {
+        // The recorder is stopped a little late, so that a shifted record does not end in silence.
+        const std::vector<double> tail(channel.samples.end() - e.period, channel.samples.end() - e.period / 2);
+        channel.samples.insert(channel.samples.end(), tail.begin(), tail.end());
         const auto loudest = static_cast<std::ptrdiff_t>(e.samplesPerRealization()) * e.realizations;
         const double loud = rms({channel.samples.end() - loudest, channel.samples.end()});
         addNoise(channel.samples, loud * std::pow(10.0, plan.noiseDb / 20.0), random);
         for (const double value : channel.samples)
-            channel.fullScale = std::max(channel.fullScale * 1.0, 1.2 * std::abs(value));
+            channel.fullScale = std::max(channel.fullScale, 1.2 * std::abs(value));
     }
     return take;
 }

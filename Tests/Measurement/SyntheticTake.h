@@ -42,7 +42,7 @@ struct Plan {
 /// Lines of an odd-random grid: one odd line at random left out of each four.
 std::vector<int> oddRandomLines(const Plan&, std::mt19937_64&);
 
-/// The take, settled from the first sample.
+/// The take, settled from the first sample and half a period longer than its excitation.
 Measurement record(const Loudspeaker&, const Plan&, std::mt19937_64&);
 
 /// Adds white Gaussian noise.

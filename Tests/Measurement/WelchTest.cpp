@@ -34,7 +34,7 @@ TEST_CASE("Welch's estimate of a short filter is its frequency response")
         const double w = 2.0 * std::numbers::pi * result.frf.frequency[i] / 48000.0;
         const auto truth = 0.5 + 0.3 * std::polar(1.0, -w) - 0.2 * std::polar(1.0, -2.0 * w);
         REQUIRE(std::abs(result.frf.value[i] - truth) < 0.01);
-        REQUIRE(result.coherence[i] > 0.95);
+        REQUIRE((result.frf.frequency[i] > 23000.0 || result.coherence[i] > 0.98));   // zero at the Nyquist frequency
     }
 }
 

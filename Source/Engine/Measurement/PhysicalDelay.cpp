@@ -259,4 +259,18 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, Drive drive)
     return verdict;
 }
 
+bool pressureIsInverted(const Frf& pressure, Quantity motion)
+{
+    const int derivatives = motion == Quantity::acceleration ? 0 : motion == Quantity::velocity ? 1 : 2;
+    auto lines = reciprocalLines(pressure, derivatives);   // acceleration / pressure
+    if (lines.size() < 8)
+        return false;
+    lines = band(lines, 0.0, 30.0 * lines.front().omega);   // the cone is rigid, if anywhere, down there
+    const auto fit = fitLines(lines, {power(0)});
+    PhysicalDelay flight;
+    flight.seconds = fit.seconds;
+    flight.clear = true;
+    return fit.misfit < 0.3 && mostlyNegative(lines, flight, [](Complex, Complex Q) { return Q.real(); });
+}
+
 } // namespace excursion

@@ -43,4 +43,9 @@ enum class Drive {
 /// @param motion  motion/drive with its variance
 PhysicalDelay motionDelay(const Frf& motion, Quantity, Drive);
 
+/// Whether the microphone turns the sign: the pressure of a piston is a positive multiple of its acceleration, delayed
+/// by a time of flight, which is not judged. Said only when that law holds within 30 %.
+/// @param pressure  pressure/motion with its variance
+bool pressureIsInverted(const Frf& pressure, Quantity motion);
+
 } // namespace excursion

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Measurement/Measurement.h"
+
+#include <optional>
+#include <vector>
+
+namespace excursion {
+
+/// By how much each period of a channel is late against the one before: player and recorder on different clocks make
+/// it a constant, lost samples a jump. From the excited lines,
+///     arg(Y_{p+1}(k) conj(Y_p(k))) = -2 pi k shift / N,
+/// by weighted least squares. The weights come from the scatter of neighbouring lines about the fit, so that
+/// lines lost in noise, or turned by a transient at the resonance, do not vote.
+struct PeriodShift {
+    double samples = 0.0;
+    double standardError = 0.0;
+    double explained = 0.0;   ///< share of the lines' mean squared phase that the shift explains, 0..1
+};
+
+/// The mean shift over all pairs of periods of one level; empty when a realization has a single period.
+std::optional<PeriodShift> periodShift(const Measurement&, const Channel&, int level);
+
+/// A pair of neighbouring periods that differ far more than such pairs do elsewhere in this channel.
+struct PeriodJump {
+    int level = 0, realization = 0, period = 0;   ///< between `period` and the next, counted from the first used one
+    double db = 0.0;                              ///< power of the difference over power of the period
+    PeriodShift shift;
+};
+std::vector<PeriodJump> periodJumps(const Measurement&, const Channel&);
+
+} // namespace excursion

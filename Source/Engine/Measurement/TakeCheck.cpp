@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Measurement/TakeCheck.h"
+
+#include "Engine/Error.h"
+#include "Engine/Measurement/PeriodCheck.h"
+#include "Engine/Measurement/PhysicsCheck.h"
+#include "Engine/Measurement/WaveformCheck.h"
+#include "Engine/Measurement/Welch.h"
+
+#include <algorithm>
+
+namespace excursion {
+namespace {
+
+/// Without periods: a channel that has nothing in common with the input is dead.
+bool isCoherent(const Measurement& take, const Channel& channel, std::vector<Problem>& problems)
+{
+    const Channel& input = take.input();
+    if (&channel == &input)
+        return true;
+    WelchOptions options;
+    options.segment = 4096;
+    while (options.segment > 64 && input.samples.size() < 32 * static_cast<std::size_t>(options.segment))
+        options.segment /= 2;
+    if (!options.isValid(input.samples.size()))
+        return true;
+    const auto spectra = welch(input.samples, channel.samples, take.sampleRate, options);
+    double coherent = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < spectra.coherence.size(); ++i) {
+        coherent += spectra.coherence[i] * spectra.outputPower[i];
+        all += spectra.outputPower[i];
+    }
+    // Pure noise is coherent by 1/n with anything.
+    if (!(all > 0.0) || coherent / all > 4.0 / spectra.effectiveAverages)
+        return true;
+    problems.push_back({"channel-dead", channel.quantity, coherent / all, "", true,
+                        "The " + std::string(name(channel.quantity))
+                            + " channel has nothing in common with the input: connect its sensor, or remove the channel."});
+    return false;
+}
+
+/// A channel that drifts or breaks does not repeat either, and seems unsettled or to hum: only the cause is told.
+void dropConsequences(std::vector<Problem>& problems)
+{
+    const auto causes = problems;
+    std::erase_if(problems, [&](const Problem& p) {
+        if (p.kind != "not-settled" && p.kind != "poor-repeatability" && p.kind != "low-snr" && p.kind != "hum")
+            return false;
+        return std::any_of(causes.begin(), causes.end(), [&](const Problem& cause) {
+            return (cause.kind == "clock-drift" || cause.kind == "dropout") && cause.fatal
+                && (!cause.channel || cause.channel == p.channel);
+        });
+    });
+}
+
+} // namespace
+
+bool CheckReport::fitForUse() const
+{
+    return std::none_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; });
+}
+
+std::string CheckReport::verdict() const
+{
+    const auto fatal = std::count_if(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; });
+    if (fatal > 0)
+        return "The take is not fit for use. " + problems.front().sentence;
+    if (problems.empty())
+        return "The take is fit for use.";
+    return "The take is fit for use, with " + std::to_string(problems.size())
+         + (problems.size() == 1 ? " remark." : " remarks.");
+}
+
+CheckReport check(const Measurement& take)
+{
+    take.input();   // throws when there is none
+    if (take.length() == 0)
+        throw Error(Error::Kind::data, "The take has no samples.");
+    CheckReport report;
+    report.channels.resize(take.channels.size());
+    auto& problems = report.problems;
+
+    std::vector<bool> alive;
+    for (std::size_t c = 0; c < take.channels.size(); ++c)
+        alive.push_back(checkWaveform(take.channels[c], report.channels[c], problems));
+
+    const bool described = take.excitation && !take.excitation->lines.empty() && take.excitation->period > 1;
+    const long missing = described ? take.excitation->totalSamples() - static_cast<long>(take.length()) : 0;
+    if (missing > 0) {
+        problems.push_back({"dropout", std::nullopt, static_cast<double>(missing), "samples", true,
+                            "The record is " + std::to_string(missing)
+                                + " samples shorter than its excitation: it was stopped early or samples were lost; "
+                                  "record again."});
+    } else {
+        for (std::size_t c = 0; c < take.channels.size(); ++c)
+            if (alive[c])
+                alive[c] = described && take.excitation->periods > 1
+                             ? checkPeriods(take, take.channels[c], report.channels[c], problems)
+                             : isCoherent(take, take.channels[c], problems);
+        if (described)
+            checkClocks(take, alive, report.channels, problems);
+
+        dropConsequences(problems);
+
+        // On a channel that drifts a delay has no meaning.
+        auto judgeable = alive;
+        for (std::size_t c = 0; c < take.channels.size(); ++c)
+            for (const auto& p : problems)
+                if (p.kind == "clock-drift" && p.fatal && p.channel == take.channels[c].quantity)
+                    judgeable[c] = false;
+        checkPhysics(take, judgeable, report.channels, problems);
+    }
+    std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) { return a.fatal && !b.fatal; });
+    return report;
+}
+
+} // namespace excursion
