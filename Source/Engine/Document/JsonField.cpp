@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Document/JsonField.h"
+
+#include "Engine/Error.h"
+#include "Engine/Measurement/TextFile.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string written(double number)
+{
+    std::array<char, 64> text {};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+    return {text.data(), end};
+}
+
+std::string expectedWithin(double least, double most)
+{
+    if (least > std::numeric_limits<double>::lowest() && most < std::numeric_limits<double>::max())
+        return "a number from " + written(least) + " to " + written(most);
+    if (least > std::numeric_limits<double>::lowest())
+        return "a number of at least " + written(least);
+    return "a number of at most " + written(most);
+}
+
+} // namespace
+
+JsonField::JsonField(const Json& value, std::string path, std::string source)
+    : value_(value), path_(std::move(path)), source_(std::move(source))
+{
+}
+
+void JsonField::refuse(const std::string& expected) const
+{
+    auto found = value_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (found.size() > 60)
+        found = "a long " + std::string(value_.type_name());
+    const auto what = path_.empty() ? std::string("the document") : "field '" + path_ + "'";
+    throw Error(Error::Kind::input, "'" + source_ + "': " + what + " is " + found + ", expected " + expected + ".");
+}
+
+bool JsonField::has(const char* key) const
+{
+    return value_.is_object() && value_.contains(key) && !value_.at(key).is_null();
+}
+
+JsonField JsonField::at(const char* key) const
+{
+    if (!value_.is_object())
+        refuse("an object");
+    const auto name = path_.empty() ? std::string(key) : path_ + "." + key;
+    if (!value_.contains(key))
+        throw Error(Error::Kind::input, "'" + source_ + "': field '" + name
+                                            + "' is missing; the file is not whole, or another program wrote it.");
+    return {value_.at(key), name, source_};
+}
+
+std::vector<JsonField> JsonField::items() const
+{
+    if (!value_.is_array())
+        refuse("an array");
+    std::vector<JsonField> fields;
+    for (std::size_t i = 0; i < value_.size(); ++i)
+        fields.emplace_back(value_[i], path_ + "[" + std::to_string(i) + "]", source_);
+    return fields;
+}
+
+std::vector<std::string> JsonField::keys() const
+{
+    if (!value_.is_object())
+        refuse("an object");
+    std::vector<std::string> names;
+    for (const auto& item : value_.items())
+        names.push_back(item.key());
+    return names;
+}
+
+std::string JsonField::text() const
+{
+    if (!value_.is_string())
+        refuse("a text");
+    return value_.get<std::string>();
+}
+
+bool JsonField::flag() const
+{
+    if (!value_.is_boolean())
+        refuse("true or false");
+    return value_.get<bool>();
+}
+
+double JsonField::number() const
+{
+    if (!value_.is_number() || !std::isfinite(value_.get<double>()))
+        refuse("a finite number");
+    return value_.get<double>();
+}
+
+double JsonField::numberOrNaN() const
+{
+    if (isNull())
+        return std::numeric_limits<double>::quiet_NaN();
+    if (!value_.is_number() || !std::isfinite(value_.get<double>()))
+        refuse("a finite number or null");
+    return value_.get<double>();
+}
+
+double JsonField::numberWithin(double least, double most) const
+{
+    const double found = number();
+    if (found < least || found > most)
+        refuse(expectedWithin(least, most));
+    return found;
+}
+
+int JsonField::count(int least, int most) const
+{
+    const double found = value_.is_number() ? value_.get<double>() : std::numeric_limits<double>::quiet_NaN();
+    if (!(found >= least && found <= most) || found != std::floor(found))   // 4.0 is as good as 4
+        refuse("a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    return static_cast<int>(found);
+}
+
+std::vector<double> JsonField::numbers() const
+{
+    std::vector<double> values;
+    for (const auto& item : items())
+        values.push_back(item.numberOrNaN());
+    return values;
+}
+
+std::string JsonField::oneOf(const std::vector<std::string>& known) const
+{
+    if (value_.is_string() && std::find(known.begin(), known.end(), value_.get<std::string>()) != known.end())
+        return value_.get<std::string>();
+    std::string list;
+    for (std::size_t k = 0; k < known.size(); ++k)
+        list += (k == 0 ? "" : k + 1 == known.size() ? " or " : ", ") + known[k];
+    refuse(list);
+}
+
+void JsonField::requireFormat(std::string_view format, int version) const
+{
+    if (!value_.is_object())
+        refuse("an object of format " + std::string(format));
+    const auto found = at("format");
+    if (!found.value().is_string() || found.text() != format)
+        found.refuse("\"" + std::string(format) + "\"; give another file");
+    const auto number = at("version");
+    if (!number.value().is_number() || number.value().get<double>() != version)
+        number.refuse(std::to_string(version) + ", the only version that this program reads");
+}
+
+Json readJson(const std::filesystem::path& path)
+{
+    const auto text = readText(path);
+    try {
+        return Json::parse(text);
+    } catch (const Json::exception& e) {   // its text names line and column
+        throw Error(Error::Kind::input, "'" + path.string() + "' is not a JSON document: " + e.what() + ".");
+    }
+}
+
+} // namespace excursion

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace excursion {
+
+/// A value in a JSON document that knows its name, so that every refusal can say which file, which field,
+/// what was found and what was expected. Refers to the document, which must outlive it.
+class JsonField {
+public:
+    JsonField(const nlohmann::json& value, std::string path, std::string source);
+
+    /// Throws Error (input): "'source': field 'path' is <value>, expected <expected>."
+    [[noreturn]] void refuse(const std::string& expected) const;
+
+    bool isNull() const { return value_.is_null(); }
+    bool has(const char* key) const;                  ///< there and not null
+    JsonField at(const char* key) const;              ///< throws Error (input) when missing
+    std::vector<JsonField> items() const;             ///< of an array, which may be empty
+    std::vector<std::string> keys() const;            ///< of an object
+    const std::string& path() const { return path_; }
+    const std::string& source() const { return source_; }
+    const nlohmann::json& value() const { return value_; }
+
+    std::string text() const;
+    bool flag() const;
+    double number() const;                            ///< finite
+    double numberOrNaN() const;                       ///< null is NaN: a number that is not known
+    double numberWithin(double least, double most) const;
+    int count(int least, int most) const;
+    std::vector<double> numbers() const;              ///< array of numbers or nulls
+    std::string oneOf(const std::vector<std::string>& known) const;
+
+    /// The two fields that every document begins with. Throws unless they are this format, this version.
+    void requireFormat(std::string_view format, int version) const;
+
+private:
+    const nlohmann::json& value_;
+    std::string path_, source_;
+};
+
+/// Parses a file that must hold one JSON object; throws Error (input).
+nlohmann::json readJson(const std::filesystem::path&);
+
+} // namespace excursion
