@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/ComparisonFile.h"
+
+#include "Engine/Document/JsonText.h"
+
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr auto formatName = "excursion-comparison";
+constexpr int formatVersion = 1;
+
+Json optionalNumber(const std::optional<double>& value) { return value ? numberOrNull(*value) : Json(nullptr); }
+
+std::optional<double> optionalNumberFrom(const JsonField& field)
+{
+    if (field.isNull())
+        return std::nullopt;
+    return field.number();
+}
+
+Json kindsJson(const ErrorKinds& kinds)
+{
+    return {{"linear", optionalNumber(kinds.linear)},
+            {"odd", optionalNumber(kinds.odd)},
+            {"even", optionalNumber(kinds.even)},
+            {"noise", optionalNumber(kinds.noise)}};
+}
+
+ErrorKinds kindsFrom(const JsonField& field)
+{
+    return {optionalNumberFrom(field.at("linear")), optionalNumberFrom(field.at("odd")),
+            optionalNumberFrom(field.at("even")), optionalNumberFrom(field.at("noise"))};
+}
+
+Json spectrumJson(const ErrorSpectrum& s)
+{
+    return {{"frequency", curveJson(s.frequency)},
+            {"measured", curveJson(s.measured)},
+            {"model", curveJson(s.model)},
+            {"error", curveJson(s.error)},
+            {"noise", curveJson(s.noise)}};
+}
+
+/// A curve over `points` values, or none at all (a noise that is not known).
+std::vector<double> curveFrom(const JsonField& field, std::size_t points)
+{
+    auto values = field.numbers();
+    if (!values.empty() && values.size() != points)
+        field.refuse("as many numbers as the curve has points, " + std::to_string(points));
+    return values;
+}
+
+ErrorSpectrum spectrumFrom(const JsonField& field)
+{
+    ErrorSpectrum s;
+    s.frequency = field.at("frequency").numbers();
+    s.measured = curveFrom(field.at("measured"), s.frequency.size());
+    s.model = curveFrom(field.at("model"), s.frequency.size());
+    s.error = curveFrom(field.at("error"), s.frequency.size());
+    s.noise = curveFrom(field.at("noise"), s.frequency.size());
+    return s;
+}
+
+Json channelJson(const ChannelComparison& channel, const std::vector<double>& levels)
+{
+    Json document {{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"error", toJson(channel.total)}};
+    auto& list = document["levels"] = Json::array();
+    for (std::size_t k = 0; k < channel.byLevel.size(); ++k) {
+        Json level {{"rms", k < levels.size() ? numberOrNull(levels[k]) : Json(nullptr)},
+                    {"error", toJson(channel.byLevel[k])}};
+        level["kinds"] = k < channel.kindsByLevel.size() ? kindsJson(channel.kindsByLevel[k]) : Json(nullptr);
+        level["spectrum"] = k < channel.spectrumByLevel.size() ? spectrumJson(channel.spectrumByLevel[k]) : Json(nullptr);
+        list.push_back(std::move(level));
+    }
+    return document;
+}
+
+ChannelComparison channelFrom(const JsonField& field)
+{
+    ChannelComparison channel;
+    channel.quantity = quantityFromJson(field.at("quantity"));
+    channel.unit = field.at("unit").text();
+    channel.total = errorLevelFromJson(field.at("error"));
+    for (const auto& level : field.at("levels").items()) {
+        channel.byLevel.push_back(errorLevelFromJson(level.at("error")));
+        if (level.has("kinds"))
+            channel.kindsByLevel.push_back(kindsFrom(level.at("kinds")));
+        if (level.has("spectrum"))
+            channel.spectrumByLevel.push_back(spectrumFrom(level.at("spectrum")));
+    }
+    return channel;
+}
+
+Json residualJson(const ResidualCurve& r)
+{
+    return {{"residual", r.residual},       {"unit", r.unit},
+            {"against", r.against},         {"againstUnit", r.againstUnit},
+            {"at", curveJson(r.argument)},  {"mean", curveJson(r.mean)},
+            {"scatter", curveJson(r.scatter)}};
+}
+
+ResidualCurve residualFrom(const JsonField& field)
+{
+    ResidualCurve r;
+    r.residual = field.at("residual").text();
+    r.unit = field.at("unit").text();
+    r.against = field.at("against").text();
+    r.againstUnit = field.at("againstUnit").text();
+    r.argument = field.at("at").numbers();
+    r.mean = curveFrom(field.at("mean"), r.argument.size());
+    r.scatter = curveFrom(field.at("scatter"), r.argument.size());
+    return r;
+}
+
+} // namespace
+
+Json toJson(const ErrorLevel& error)
+{
+    return {{"db", numberOrNull(error.db)},
+            {"noiseFloorDb", optionalNumber(error.noiseFloorDb)},
+            {"chi", numberOrNull(error.chi)}};
+}
+
+ErrorLevel errorLevelFromJson(const JsonField& field)
+{
+    return {field.at("db").numberOrNaN(), optionalNumberFrom(field.at("noiseFloorDb")), field.at("chi").numberOrNaN()};
+}
+
+Quantity quantityFromJson(const JsonField& field)
+{
+    const auto quantity = quantityNamed(field.text());
+    if (!quantity)
+        field.refuse("voltage, current, displacement, velocity, acceleration, pressure or force");
+    return *quantity;
+}
+
+Json toJson(const std::map<Quantity, ErrorLevel>& errors)
+{
+    auto document = Json::object();
+    for (const auto& [quantity, error] : errors)
+        document[std::string(name(quantity))] = toJson(error);
+    return document;
+}
+
+std::map<Quantity, ErrorLevel> errorByChannelFromJson(const JsonField& field)
+{
+    std::map<Quantity, ErrorLevel> errors;
+    for (const auto& key : field.keys())
+        if (const auto quantity = quantityNamed(key))
+            errors[*quantity] = errorLevelFromJson(field.at(key.c_str()));
+    return errors;
+}
+
+Json toJson(const std::map<Quantity, double>& decibels)
+{
+    auto document = Json::object();
+    for (const auto& [quantity, db] : decibels)
+        document[std::string(name(quantity))] = numberOrNull(db);
+    return document;
+}
+
+std::map<Quantity, double> decibelsFromJson(const JsonField& field)
+{
+    std::map<Quantity, double> decibels;
+    for (const auto& key : field.keys())
+        if (const auto quantity = quantityNamed(key))
+            decibels[*quantity] = field.at(key.c_str()).numberOrNaN();
+    return decibels;
+}
+
+std::map<Quantity, ErrorLevel> errorByChannel(const Comparison& comparison)
+{
+    std::map<Quantity, ErrorLevel> errors;
+    for (const auto& channel : comparison.channels)
+        errors[channel.quantity] = channel.total;
+    return errors;
+}
+
+Json toJson(const Comparison& comparison)
+{
+    Json document {{"format", formatName},
+                   {"version", formatVersion},
+                   {"validated", comparison.validated},
+                   {"noiseKnown", comparison.noiseKnown},
+                   {"chi", numberOrNull(comparison.chi)},
+                   {"error", toJson(errorByChannel(comparison))},
+                   {"levels", numbersOrNulls(comparison.levels)}};
+    document["channels"] = Json::array();
+    for (const auto& channel : comparison.channels)
+        document["channels"].push_back(channelJson(channel, comparison.levels));
+    document["residuals"] = Json::array();
+    for (const auto& residual : comparison.residuals)
+        document["residuals"].push_back(residualJson(residual));
+    return document;
+}
+
+Comparison comparisonFromJson(const JsonField& field)
+{
+    field.requireFormat(formatName, formatVersion);
+    Comparison comparison;
+    comparison.validated = field.at("validated").flag();
+    comparison.noiseKnown = field.at("noiseKnown").flag();
+    comparison.chi = field.at("chi").numberOrNaN();
+    comparison.levels = field.at("levels").numbers();
+    for (const auto& channel : field.at("channels").items())
+        comparison.channels.push_back(channelFrom(channel));
+    for (const auto& residual : field.at("residuals").items())
+        comparison.residuals.push_back(residualFrom(residual));
+    return comparison;
+}
+
+} // namespace excursion

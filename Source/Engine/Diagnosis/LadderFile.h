@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Driver/FitResponse.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// What the take was, in words and numbers that a report shows.
+struct TakeSummary {
+    std::string path;                    ///< as it was given
+    std::string driver;                  ///< its name; empty when not told
+    double sampleRate = 0.0;             ///< Hz; 0 for a frequency response
+    double seconds = 0.0;
+    std::vector<std::string> channels;   ///< "voltage", ...
+    std::vector<double> levels;          ///< V rms
+    int realizations = 0, periods = 0;   ///< 0 when the take has no such structure
+};
+TakeSummary summarize(const Take&, const std::string& path);
+
+/// A ladder with all that a report needs, so that `report` can be run again without the take. Format "excursion-ladder",
+/// version 1 (Docs/Formats.md).
+struct LadderFile {
+    Ladder ladder;
+    TakeSummary take;
+    std::vector<ResponseTarget> responses;   ///< measured at the quietest level; of an electrical driver the impedance is among them
+};
+
+/// @throws Error (data) when the take has no channel to compare
+LadderFile makeLadderFile(Ladder, const Take&, const std::string& path);
+
+nlohmann::ordered_json toJson(const LadderFile&);
+LadderFile ladderFromJson(const nlohmann::json&, const std::string& where);
+
+LadderFile readLadder(const std::filesystem::path&);
+void writeLadder(const LadderFile&, const std::filesystem::path&);
+
+} // namespace excursion

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Diagnosis/SyntheticLadder.h"
+
+#include "Engine/Diagnosis/DiagnosisFile.h"
+#include "Engine/Document/JsonText.h"
+#include "Engine/Error.h"
+
+#include <catch2/catch.hpp>
+
+using namespace excursion;
+
+TEST_CASE("A ladder saved, read and saved again is the same, byte for byte", "[files]")
+{
+    const auto first = jsonText(toJson(test::syntheticLadder()));
+    const auto read = ladderFromJson(nlohmann::json::parse(first), "ladder.json");
+    CHECK(jsonText(toJson(read)) == first);
+    CHECK(read.ladder.rungs.size() == 4);
+    CHECK(read.ladder.rungs[2].model.effectIds().size() == 2);
+}
+
+TEST_CASE("A diagnosis has the fields that scripts read", "[files]")
+{
+    auto diagnosis = test::syntheticLadder().ladder.rungs[1].diagnosis;
+    diagnosis.problems = {{"channel-delay", Quantity::current, 3.4, "samples", true, "The current is late by 3.4 samples."},
+                          {"dropout", std::nullopt, 2.0, "1", false, "Samples are missing."}};
+    diagnosis.error[Quantity::current].noiseFloorDb.reset();
+    const auto document = toJson(diagnosis);
+    CHECK(document["format"] == "excursion-diagnosis");
+    CHECK(document["version"] == 1);
+    CHECK(document["verdict"] == "missing-effect");
+    CHECK(document["error"]["current"]["db"].is_number());
+    CHECK(document["error"]["current"]["noiseFloorDb"].is_null());
+    CHECK(document["ranking"][0]["effect"] == diagnosis.ranking.front().effect);
+    CHECK(document["ranking"][0]["predictedErrorDb"]["current"].is_number());
+    CHECK(document["ranking"][0]["confirmedErrorDb"]["current"].is_number());
+    CHECK(document["ranking"].back()["confirmedErrorDb"].is_null());
+    CHECK(document["problems"][0]["channel"] == "current");
+    CHECK(document["problems"][0]["value"] == 3.4);
+    CHECK(document["problems"][1]["channel"].is_null());
+    CHECK(document["indistinguishable"].size() == 1);
+    const nlohmann::json plain = document;
+    CHECK(jsonText(toJson(diagnosisFromJson({plain, "", "d.json"}))) == jsonText(document));
+}
+
+TEST_CASE("Numbers that are not finite are written as null", "[files]")
+{
+    Comparison comparison;
+    comparison.chi = std::numeric_limits<double>::quiet_NaN();
+    comparison.levels = {std::numeric_limits<double>::infinity()};
+    ChannelComparison channel;
+    channel.total.db = -std::numeric_limits<double>::infinity();
+    comparison.channels = {channel};
+    const auto text = jsonText(toJson(comparison));
+    CHECK(text.find("nan") == std::string::npos);
+    CHECK(text.find("inf") == std::string::npos);
+    CHECK(toJson(comparison)["error"]["current"]["db"].is_null());
+}
+
+TEST_CASE("A ladder that cannot be is refused with file and field", "[files]")
+{
+    const auto good = nlohmann::json::parse(jsonText(toJson(test::syntheticLadder())));
+    const auto refusal = [&good](const char* pointer, const nlohmann::json& value) -> std::string {
+        auto document = good;
+        document[nlohmann::json::json_pointer(pointer)] = value;
+        try {
+            ladderFromJson(document, "ladder.json");
+            return {};
+        } catch (const Error& e) {
+            return e.what();
+        }
+    };
+    using Catch::Contains;
+    CHECK_THAT(refusal("/verdict", "perhaps"), Contains("ladder.json") && Contains("'verdict'") && Contains("missing-effect"));
+    CHECK_THAT(refusal("/rungs/1/model/version", 7), Contains("rungs[1].model.version"));
+    CHECK_THAT(refusal("/rungs/0/comparison/channels/0/levels/0/spectrum/model", nlohmann::json::array({1.0})),
+               Contains("as many numbers"));
+    CHECK_THAT(refusal("/rungs/0/comparison/channels/0/quantity", "taste"), Contains("quantity"));
+    CHECK_THAT(refusal("/responses/0/re", nlohmann::json::array()), Contains("responses[0].re"));
+}
