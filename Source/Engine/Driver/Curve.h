@@ -4,6 +4,7 @@
 #include "Engine/Driver/Effect.h"
 
 #include <array>
+#include <cmath>
 #include <string>
 
 namespace excursion {
@@ -15,7 +16,7 @@ namespace excursion {
 /// Coefficients are those of the monomials in q/Q, from degree 0 upwards (n + 1 of them).
 namespace curve {
 
-inline constexpr int maximumDegree = 12;
+inline constexpr int maximumDegree = 18;
 
 /// Monomial coefficients b_0..b_n of sum c_k [T_k - T_k(0)], by the recurrence T_{k+1} = 2 s T_k - T_{k-1}.
 template <class T>
@@ -67,15 +68,20 @@ inline double valueAt(int n, const double* c, double q, double range)
     return at(n, b.data(), q, range).value;
 }
 
+/// What a coefficient of degree k may plausibly be: the coefficients of a smooth law fall geometrically. So weak a prior yields to
+/// any data, but keeps the ends of the range, where a record seldom is, from running off.
+inline double plausible(int k, double scale) { return 2.0 * std::abs(scale) * std::pow(0.75, k); }
+
 /// The n coefficients c_1..c_n as parameters, all strengths.
-inline std::vector<Parameter> parameters(int n, const std::string& unit)
+inline std::vector<Parameter> parameters(const Extent& extent, const std::string& unit)
 {
     std::vector<Parameter> result;
-    for (int k = 1; k <= n; ++k) {
+    for (int k = 1; k <= extent.degree; ++k) {
         Parameter p;
         p.name = "c" + std::to_string(k);
         p.unit = unit;
         p.strength = true;
+        p.prior = plausible(k, extent.scale);
         result.push_back(p);
     }
     return result;

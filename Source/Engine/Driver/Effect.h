@@ -41,7 +41,8 @@ struct Extent {
     double current = 1.0;          ///< peak, A
     double lowFrequency = 10.0;    ///< Hz, lowest frequency of interest
     double highFrequency = 1.0e4;  ///< Hz, highest frequency of interest
-    int degree = 4;                ///< of a law's expansion
+    int degree = 6;                ///< of a law's expansion
+    double scale = 1.0;            ///< the base parameter that a law bends, in its unit: what is large for the law
 };
 
 struct Parameter {
@@ -52,6 +53,7 @@ struct Parameter {
     double upper = std::numeric_limits<double>::infinity();
     bool free = true;          ///< may a fit move it
     bool strength = false;     ///< an effect whose strengths are all zero is absent
+    double prior = std::numeric_limits<double>::infinity();   ///< standard deviation about zero that is plausible beforehand
     double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown or not identifiable
 };
 

@@ -55,8 +55,8 @@ bool FitOptions::isValid(std::string* reason) const
 {
     if (!search.isValid(reason))
         return false;
-    if (!(simulationTolerance > 0.0 && simulationTolerance < 1.0)) {
-        *reason = "the tolerance of the simulation must lie between 0 and 1";
+    if (!(simulationTolerance >= 0.0 && simulationTolerance < 1.0)) {
+        *reason = "the tolerance of the simulation must lie between 0 (chosen from the noise) and 1";
         return false;
     }
     if (substeps < 0 || threads < 1) {
@@ -75,6 +75,18 @@ int substepsFor(const Model& model, const Record& record, double tolerance)
             peak = p;
             loudest = &section;
         }
+    if (tolerance <= 0.0) {
+        tolerance = 1e-4;
+        for (std::size_t c = 0; c < record.channels.size() && record.noiseKnown; ++c) {
+            double noise = 0.0, signal = 0.0;
+            for (std::size_t k = 1; k < loudest->measured[c].size(); ++k) {
+                noise += loudest->deviation[c][k] * loudest->deviation[c][k];
+                signal += std::norm(loudest->measured[c][k]);
+            }
+            tolerance = std::min(tolerance, 0.15 * std::sqrt(noise / signal));
+        }
+        tolerance = std::max(tolerance, 1e-6);
+    }
     SimulationOptions options;
     options.tolerance = tolerance;
     options.maximumSubsteps = 16;
@@ -122,8 +134,9 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
     extent.lowFrequency = record.bandLow;
     extent.highFrequency = record.bandHigh;
     double x = 0.0, v = 0.0, i = 0.0;
-    for (const auto& section : record.sections)
+    for (const auto index : estimationSections(record))
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
+            const auto& section = record.sections[index];
             if (record.channels[c] == Quantity::current)
                 i = std::max(i, measuredPeak(record, section, c, 0));
             if (const auto n = integrationsToDisplacement(record.channels[c])) {
@@ -135,7 +148,8 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
         const auto theta = parameterVector(model);
         const int substeps = stableSubsteps(model, record.sampleRate);
         double simulatedX = 0.0, simulatedV = 0.0, simulatedI = 0.0;
-        for (const auto& section : record.sections) {
+        for (const auto index : estimationSections(record)) {
+            const auto& section = record.sections[index];
             Trajectory<double> run;
             const auto drive = record.drive(section);
             if (!integrate(model, {theta.begin(), theta.end()}, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
@@ -151,9 +165,9 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
         if (i == 0.0)
             i = simulatedI;
     }
-    extent.displacement = std::max(1.05 * x, 1e-12);
-    extent.velocity = std::max(1.05 * v, 1e-12);
-    extent.current = std::max(1.05 * i, 1e-12);
+    extent.displacement = std::max(1.02 * x, 1e-12);
+    extent.velocity = std::max(1.02 * v, 1e-12);
+    extent.current = std::max(1.02 * i, 1e-12);
     return extent;
 }
 
@@ -178,6 +192,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     }
     OutputErrorOptions run;
     run.substeps = summary.substeps;
+    run.gradientSubsteps = std::min(summary.substeps, stableSubsteps(model, record.sampleRate));
     run.threads = options.threads;
     const auto place = [&](const Eigen::VectorXd& at) {
         for (Eigen::Index k = 0; k < P; ++k)
@@ -193,6 +208,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
             for (const auto& channel : section.channels)
                 sum.add(channel);
         }
+        addPrior(model, active, sum);
         if (gradient)
             last = sum;
         return true;

@@ -12,7 +12,7 @@ namespace excursion {
 
 struct FitOptions {
     LeastSquaresOptions search;
-    double simulationTolerance = 3e-6;   ///< relative accuracy of the integration, see SimulationOptions
+    double simulationTolerance = 0.0;    ///< relative accuracy of the integration; 0: a seventh of the noise, at most 1e-4
     int substeps = 0;                    ///< integration steps a sample; 0: chosen from the tolerance
     unsigned threads = 2;
 
@@ -26,7 +26,7 @@ struct FitSummary : LeastSquaresSummary {
 
 /// What the take visits: the peaks of displacement, velocity and current, measured where a channel tells them, else
 /// simulated by the model, and the band that was excited.
-Extent visitedExtent(const Model&, const Record&, int degree = 4);
+Extent visitedExtent(const Model&, const Record&, int degree = 6);
 
 /// Output-error fit of all free parameters,
 ///     min sum_{sections, channels, lines} |Y_model - Y_measured|^2 / sigma^2,
@@ -40,8 +40,8 @@ FitSummary fit(Model&, const Record&, const std::vector<std::size_t>& sections, 
 ///     sigma^2 += |G|^2 sigma_u^2  on the lines that are played.
 void adapt(Record&, const Model&);
 
-/// Steps a sample for simulating this model on this record.
-int substepsFor(const Model&, const Record&, double tolerance);
+/// Steps a sample for simulating this model on this record; tolerance as FitOptions::simulationTolerance.
+int substepsFor(const Model&, const Record&, double tolerance = 0.0);
 
 /// Start values, path, and the first linear fit of a take in the time domain.
 Model startModel(const Record&);

@@ -84,8 +84,11 @@ Model makeModel(std::string_view baseId)
     return model;
 }
 
-Model withEffect(Model model, const Effect& effect, const Extent& extent, std::size_t start)
+Model withEffect(Model model, const Effect& effect, const Extent& visited, std::size_t start)
 {
+    Extent extent = visited;
+    if (const auto law = effect.law())
+        extent.scale = model.baseParameter(law->base).value;
     Component component {&effect, extent, effect.parameters(extent)};
     const auto starts = effect.starts(extent);
     const auto& values = starts.at(start);

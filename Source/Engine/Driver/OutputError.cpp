@@ -42,6 +42,8 @@ public:
         std::tie(first_, last_) = record.lineRange(section);
         const auto drive = record.drive(section);
         drive_.emplace(drive, record.sampleRate, options.substeps);
+        if (options.gradient && options.gradientSubsteps != options.substeps)
+            gradientDrive_.emplace(drive, record.sampleRate, options.gradientSubsteps);
         start_ = drive.size() - section.window;
     }
 
@@ -142,7 +144,7 @@ private:
                 parameters[index] = Jet(parameters[index].a, static_cast<int>(b));
             }
             Trajectory<Jet> run;
-            if (!integrate(model_, parameters, *drive_, start_, run))
+            if (!integrate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, run))
                 return false;
             for (std::size_t c = 0; c < record_.channels.size(); ++c) {
                 const auto& jets = observed(run, record_.channels[c]);
@@ -175,7 +177,7 @@ private:
     const Section& section_;
     const std::vector<Eigen::Index>& active_;
     const OutputErrorOptions& options_;
-    std::optional<Drive> drive_;
+    std::optional<Drive> drive_, gradientDrive_;
     std::size_t first_ = 0, last_ = 0, start_ = 0;
 };
 
@@ -229,6 +231,23 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     if (progress.stop.stop_requested())
         progress.at(0.0, "");
     return fits;
+}
+
+void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum)
+{
+    const auto all = parametersOf(model);
+    for (std::size_t j = 0; j < active.size(); ++j) {
+        const auto& p = *all[static_cast<std::size_t>(active[j])];
+        if (!std::isfinite(p.prior))
+            continue;
+        const double weight = 1.0 / (p.prior * p.prior);
+        sum.cost += weight * p.value * p.value;
+        if (sum.N.size() > 0) {
+            const auto k = static_cast<Eigen::Index>(j);
+            sum.N(k, k) += weight;
+            sum.g[k] += weight * p.value;
+        }
+    }
 }
 
 std::vector<Eigen::Index> freeParameters(const Model& model)

@@ -40,7 +40,8 @@ struct SectionFit {
 struct OutputErrorOptions {
     bool gradient = true;      ///< fill N and g
     bool spectra = false;      ///< fill predicted
-    int substeps = 1;
+    int substeps = 1;          ///< of the simulation
+    int gradientSubsteps = 1;  ///< of the sensitivities: they may be coarser, as they only steer the search
     unsigned threads = 2;
 };
 
@@ -51,6 +52,9 @@ struct OutputErrorOptions {
 std::vector<SectionFit> outputError(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                     const std::vector<Eigen::Index>& active, const OutputErrorOptions&,
                                     const Progress& = {});
+
+/// Adds what is plausible beforehand: (parameter/prior)^2 for each active parameter that has a prior.
+void addPrior(const Model&, const std::vector<Eigen::Index>& active, NormalEquations&);
 
 /// Indices of the free parameters of a model.
 std::vector<Eigen::Index> freeParameters(const Model&);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace excursion {
@@ -68,12 +69,38 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
     period = inverseFft(spectrum, period.size());
 }
 
+/// The realization whose peaks are lowest at the loudest level: of the displacement if a channel tells it, else of the input's low
+/// frequencies, which move the cone.
+int quietestRealization(const Measurement& take)
+{
+    const auto& e = *take.excitation;
+    const int loudest = static_cast<int>(e.levels.size()) - 1;
+    const auto* displacement = take.find(Quantity::displacement);
+    int quietest = e.realizations - 1;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int realization = 0; realization < e.realizations; ++realization) {
+        auto spectrum = fft(averagePeriod(take, displacement ? *displacement : take.input(), loudest, realization));
+        spectrum.front() = 0.0;
+        if (!displacement)
+            for (std::size_t k = 1; k < spectrum.size(); ++k)
+                spectrum[k] /= static_cast<double>(k);
+        double peak = 0.0;
+        for (const double s : inverseFft(spectrum, static_cast<std::size_t>(e.period)))
+            peak = std::max(peak, std::abs(s));
+        if (peak < lowest) {
+            lowest = peak;
+            quietest = realization;
+        }
+    }
+    return quietest;
+}
+
 void addPeriodicSections(const Measurement& take, const RecordOptions& options, Record& record)
 {
     const auto& e = *take.excitation;
     record.levels = e.levels;
     record.noiseKnown = e.periods > 1;
-    const bool holdRealization = options.holdOut && e.realizations > 1;
+    const int held = options.holdOut && e.realizations > 1 ? quietestRealization(take) : -1;
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
         const auto scatter = periodNoise(take, take.input(), level).variance;
@@ -88,7 +115,7 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
             section.level = level;
             section.realization = realization;
             section.periodic = true;
-            section.validation = holdRealization && realization == e.realizations - 1;
+            section.validation = realization == held;
             section.input = averagePeriod(take, take.input(), level, realization);
             section.window = section.input.size();
             section.excited = e.lines;
@@ -201,7 +228,7 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
     const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
     if (periodic && take.excitation->lines.empty()) {
         Measurement completed = take;
-        completed.excitation->lines = findExcitedLines(take);
+        completed.excitation->lines = findLines(take.input().samples, *take.excitation);
         return makeRecord(completed, options);
     }
     record.bandLow = 0.0;

@@ -52,7 +52,9 @@ struct Record {
 };
 
 struct RecordOptions {
-    bool holdOut = true;             ///< keep the last realization (or the last third of an aperiodic take) for validation
+    /// Keep one realization (or the last third of an aperiodic take) for validation: the one that goes least far, as no model can be
+    /// asked about where it was never measured.
+    bool holdOut = true;
     double windowSeconds = 0.5;      ///< of aperiodic sections, at least 2048 samples
     double leadInSeconds = 0.25;     ///< before an aperiodic window
     /// Lines are never weighted as if they were known better than this, relative to the channel's rms: the accuracy of

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Curve.h"
 #include "Engine/Driver/Effects/Effects.h"
 
 #include <array>
@@ -7,9 +8,9 @@
 namespace excursion {
 namespace {
 
-/// Rms(v) = Rms + sum_{k=1..n} c_k s^k + a_1 w + a_3 w^3,  w = v/V,  s = sqrt(w^2 + e^2) - e,  e = 1/50.
-/// Damping of air flow grows like |v|, which no short polynomial in v imitates: s is |w|, rounded at
-/// rest so that the law stays differentiable. The odd terms let inward and outward differ.
+/// Rms(v) = Rms + sum_{k=1..n} c_k [T_k(2 s - 1) - T_k(-1)] + a_1 w + a_3 w^3,  w = v/V,  s = sqrt(w^2 + e^2) - e,  e = 1/50,
+/// with Chebyshev polynomials T_k. Damping of air flow grows like |v|, which no short polynomial in v imitates: s is |w|, rounded
+/// at rest so that the law stays differentiable. The odd terms let inward and outward differ.
 class DampingVelocity final : public EffectOf<DampingVelocity> {
 public:
     std::string id() const override { return "damping-velocity"; }
@@ -32,27 +33,41 @@ public:
     std::vector<Parameter> parameters(const Extent& e) const override
     {
         std::vector<Parameter> result;
-        const auto add = [&result](const std::string& name) {
-            Parameter p;
-            p.name = name;
-            p.unit = "N s/m";
-            p.strength = true;
+        result = curve::parameters(e, "N s/m");
+        for (const int k : {1, 3}) {
+            Parameter p = result.front();
+            p.name = "a" + std::to_string(k);
+            p.prior = curve::plausible(k, e.scale);
             result.push_back(p);
-        };
-        for (int k = 1; k <= e.degree; ++k)
-            add("c" + std::to_string(k));
-        add("a1");
-        add("a3");
+        }
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"Rms(v)", "N s/m", "v", "m/s", "Rms"}; }
-    double lawAt(const Extent& e, const double* p, double v) const override { return at(e, p, v); }
-    int coefficientCount(const Extent& e) const override { return e.degree + 2; }
+    double lawAt(const Extent& e, const double* p, double v) const override
+    {
+        std::array<double, curve::maximumDegree + 3> c {};
+        prepareFor(e, p, c.data());
+        return at(e, c.data(), v);
+    }
+    int coefficientCount(const Extent& e) const override { return e.degree + 3; }
 
     template <class T>
     void prepareFor(const Extent& e, const T* p, T* c) const
     {
-        std::copy(p, p + coefficientCount(e), c);
+        // Powers of s: with y = 2 s - 1 Horner's rule is applied to whole polynomials, p <- p (2 s - 1) + b_j.
+        const int n = e.degree;
+        std::array<T, curve::maximumDegree + 1> b;
+        curve::prepare(n, p, b.data());
+        for (int j = 0; j <= n; ++j)
+            c[j] = T(0.0);
+        for (int j = n; j >= 0; --j) {
+            for (int k = n; k >= 0; --k)
+                c[k] = (k > 0 ? 2.0 * c[k - 1] : T(0.0)) - c[k];
+            c[0] += b[static_cast<std::size_t>(j)];
+        }
+        c[0] = T(0.0);   // no difference at rest
+        c[n + 1] = p[n];
+        c[n + 2] = p[n + 1];
     }
 
     template <class T>
@@ -72,10 +87,11 @@ private:
             w = w > T(0.0) ? T(1.0) : T(-1.0);
         const T square = w * w;
         const T s = sqrt(square + rounding * rounding) - rounding;
-        T value = c[e.degree - 1];
-        for (int k = e.degree - 2; k >= 0; --k)
+        const int n = e.degree;
+        T value = c[n];
+        for (int k = n - 1; k >= 0; --k)
             value = value * s + c[k];
-        return value * s + w * (c[e.degree] + square * c[e.degree + 1]);
+        return value + w * (c[n + 1] + square * c[n + 2]);
     }
 };
 

@@ -27,7 +27,7 @@ public:
     bool electrical() const override { return true; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e.degree, "N/A"); }
+    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, "N/A"); }
     std::optional<LawInfo> law() const override { return LawInfo {"Bl(x)", "N/A", "x", "m", "Bl"}; }
     double lawAt(const Extent& e, const double* p, double x) const override
     {

@@ -26,7 +26,7 @@ public:
     bool electrical() const override { return true; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e.degree, "H"); }
+    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, "H"); }
     std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
     double lawAt(const Extent& e, const double* p, double x) const override
     {

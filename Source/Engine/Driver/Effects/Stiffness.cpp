@@ -25,7 +25,7 @@ public:
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e.degree, "N/m"); }
+    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, "N/m"); }
     std::optional<LawInfo> law() const override { return LawInfo {"K(x)", "N/m", "x", "m", "K"}; }
     double lawAt(const Extent& e, const double* p, double x) const override
     {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+#include "Engine/Driver/Record.h"
+#include "Engine/Progress.h"
+
+#include <optional>
+#include <vector>
+
+namespace excursion {
+
+/// How far a model's channel is from the measurement: relative rms error (seed 4.26) and the rms of the noise against the same
+/// reference, dB. `chi` is the mean of |error|^2/sigma^2 over the lines: 1 when only noise is left.
+struct ErrorLevel {
+    double db = 0.0;
+    std::optional<double> noiseFloorDb;   ///< empty when the take cannot tell its noise
+    double chi = 0.0;
+};
+
+/// What kind of error is left, as powers relative to the measured channel, dB. Needs known excited lines; grids without
+/// detection lines leave `odd` empty, as odd distortion then hides under the excited lines.
+struct ErrorKinds {
+    std::optional<double> linear;   ///< on excited lines
+    std::optional<double> odd;      ///< on odd lines that are not excited
+    std::optional<double> even;     ///< on even lines that are not excited
+    std::optional<double> noise;    ///< expected on as many lines by the scatter over the periods
+};
+
+/// Error of one channel against frequency, in bands of 1/24 octave or finer; rms per band, in the channel's unit.
+struct ErrorSpectrum {
+    std::vector<double> frequency, measured, model, error, noise;
+};
+
+/// The forces and voltages that the model lacks, against motion: with the model linearized at rest,
+///     voltage = Z_e(jw) e_i + Bl j w e_x,   force = (K + Rms s + m s^2 + ...) e_x - Bl e_i,
+/// from the errors e of current and displacement (or what the channels give of it), sorted by the simulated x, v and i.
+struct ResidualCurve {
+    std::string residual;              ///< "force" or "voltage"
+    std::string unit;                  ///< "N" or "V"
+    std::string against;               ///< "x", "v" or "i"
+    std::string againstUnit;
+    std::vector<double> argument, mean, scatter;   ///< mean and standard deviation in each bin
+};
+
+struct ChannelComparison {
+    Quantity quantity = Quantity::current;
+    std::string unit;
+    ErrorLevel total;                       ///< all validation sections
+    std::vector<ErrorLevel> byLevel;        ///< one a level of the excitation
+    std::vector<ErrorKinds> kindsByLevel;
+    std::vector<ErrorSpectrum> spectrumByLevel;
+};
+
+struct Comparison {
+    std::vector<double> levels;             ///< V rms; one entry 0 when the take has no levels
+    std::vector<ChannelComparison> channels;
+    std::vector<ResidualCurve> residuals;   ///< at the loudest level
+    double chi = 0.0;                       ///< over all channels and levels
+    bool noiseKnown = false;
+    bool validated = false;                 ///< on sections that no fit saw
+};
+
+struct CompareOptions {
+    int substeps = 0;          ///< 0: chosen
+    bool spectra = true;       ///< fill spectra, kinds and residual curves
+};
+
+/// Compares a model with the validation sections of a record (all sections when none was held out).
+/// Throws Error (numerical) when the simulation runs away.
+Comparison compare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
+
+/// Compares the linear part of a model with a take that is a frequency response only; one level, no noise, spectra filled
+/// with the magnitudes of the responses.
+Comparison compare(const Model&, const Spectra&);
+
+} // namespace excursion

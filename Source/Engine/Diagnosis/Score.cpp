@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/Score.h"
+
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/Curve.h"
+#include "Engine/Driver/Fit.h"
+#include "Engine/Driver/Simulate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+/// Normal equations on both kinds of sections, by channel and summed.
+struct Sums {
+    NormalEquations estimation, validation;
+    std::vector<NormalEquations> byChannel;     // of the validation sections
+    std::vector<ErrorPower> power;              // of the validation sections
+    bool finite = true;
+};
+
+Sums sum(const Model& model, const Record& record, const std::vector<Eigen::Index>& active, const ScoreOptions& options,
+         const Progress& progress)
+{
+    Sums sums;
+    sums.byChannel.resize(record.channels.size());
+    sums.power.resize(record.channels.size());
+    OutputErrorOptions run;
+    run.substeps = options.substeps;
+    run.gradientSubsteps = std::min(options.substeps, stableSubsteps(model, record.sampleRate));
+    run.threads = options.threads;
+    std::vector<std::size_t> all(record.sections.size());
+    for (std::size_t n = 0; n < all.size(); ++n)
+        all[n] = n;
+    const auto held = validationSections(record);
+    const auto fits = outputError(model, record, all, active, run, progress);
+    for (std::size_t n = 0; n < fits.size(); ++n) {
+        if (!fits[n].finite) {
+            sums.finite = false;
+            return sums;
+        }
+        const bool validates = std::find(held.begin(), held.end(), n) != held.end();
+        for (std::size_t c = 0; c < record.channels.size(); ++c) {
+            if (!record.sections[n].validation)
+                sums.estimation.add(fits[n].channels[c]);
+            if (validates) {
+                sums.validation.add(fits[n].channels[c]);
+                sums.byChannel[c].add(fits[n].channels[c]);
+                sums.power[c].error += fits[n].power[c].error;
+                sums.power[c].measured += fits[n].power[c].measured;
+            }
+        }
+    }
+    addPrior(model, active, sums.estimation);
+    return sums;
+}
+
+double predictedCost(const NormalEquations& e, const Eigen::VectorXd& d)
+{
+    return std::max(0.0, e.cost + 2.0 * e.g.dot(d) + d.dot(e.N * d));
+}
+
+/// Indices of the strengths of component k, as positions in `active`.
+std::vector<Eigen::Index> strengthPositions(const Model& model, std::size_t k, const std::vector<Eigen::Index>& active)
+{
+    Eigen::Index first = 0;
+    for (std::size_t j = 0; j < k; ++j)
+        first += static_cast<Eigen::Index>(model.components[j].parameters.size());
+    std::vector<Eigen::Index> positions;
+    for (std::size_t j = 0; j < model.components[k].parameters.size(); ++j)
+        if (model.components[k].parameters[j].strength) {
+            const auto index = first + static_cast<Eigen::Index>(j);
+            positions.push_back(std::lower_bound(active.begin(), active.end(), index) - active.begin());
+        }
+    return positions;
+}
+
+/// A strength that the step would push below its lower bound stays there: the effect is absent.
+bool feasible(const Model& model, std::size_t k, const Eigen::VectorXd& d, const std::vector<Eigen::Index>& positions)
+{
+    std::size_t n = 0;
+    for (const auto& p : model.components[k].parameters)
+        if (p.strength && p.value + d[positions[n++]] <= p.lower)
+            return false;
+    return true;
+}
+
+} // namespace
+
+ScoreResult score(const Model& model, const Record& record, const ScoreOptions& options, const Progress& progress)
+{
+    Model augmented = model;
+    const Extent extent = visitedExtent(model, record, options.degree);
+    struct Entry {
+        const Effect* effect;
+        std::size_t start, component;
+    };
+    std::vector<Entry> entries;
+    for (const auto* effect : catalogue()) {
+        if (model.has(effect->id()) || (effect->electrical() && !model.electrical()))
+            continue;
+        for (std::size_t start = 0; start < effect->starts(extent).size(); ++start) {
+            augmented = withEffect(std::move(augmented), *effect, extent, start);
+            entries.push_back({effect, start, augmented.components.size() - 1});
+        }
+    }
+    // Shapes do not matter at zero strength: only the model's own parameters and the strengths have a sensitivity.
+    std::vector<Eigen::Index> own, active;
+    const auto all = parametersOf(augmented);
+    std::size_t position = 0;
+    for (std::size_t k = 0; k < augmented.components.size(); ++k)
+        for (const auto& p : augmented.components[k].parameters) {
+            const bool isOwn = k < model.components.size();
+            if (isOwn ? p.free : p.strength) {
+                if (isOwn)
+                    own.push_back(static_cast<Eigen::Index>(active.size()));
+                active.push_back(static_cast<Eigen::Index>(position));
+            }
+            ++position;
+        }
+    for (; position < all.size(); ++position)
+        if (all[position]->free) {
+            own.push_back(static_cast<Eigen::Index>(active.size()));
+            active.push_back(static_cast<Eigen::Index>(position));
+        }
+
+    progress.at(0.1, "testing every effect of the catalogue");
+    const auto sums = sum(augmented, record, active, options, progress);
+    ScoreResult result;
+    if (!sums.finite)
+        throw Error(Error::Kind::numerical, "The model runs away on this take, so nothing can be said about what it lacks; fit it again.");
+    const double rows = std::max(1.0, sums.validation.rows);
+    result.chi = sums.validation.cost / rows;
+
+    std::vector<Eigen::Index> together = own;
+    for (const auto& entry : entries) {
+        const auto positions = strengthPositions(augmented, entry.component, active);
+        auto use = own;
+        use.insert(use.end(), positions.begin(), positions.end());
+        together.insert(together.end(), positions.begin(), positions.end());
+        auto d = gaussNewtonStep(sums.estimation, use);
+        if (!feasible(augmented, entry.component, d, positions))
+            d.setZero();
+        Score score;
+        score.effect = entry.effect;
+        score.chi = predictedCost(sums.validation, d) / rows;
+        for (std::size_t c = 0; c < record.channels.size(); ++c) {
+            const auto& channel = sums.byChannel[c];
+            const double ratio = channel.cost > 0.0 ? predictedCost(channel, d) / channel.cost : 1.0;
+            score.errorDb[record.channels[c]]
+                = 10.0 * std::log10(std::max(ratio * sums.power[c].error / std::max(sums.power[c].measured, 1e-300), 1e-30));
+        }
+        const auto known = std::find_if(result.scores.begin(), result.scores.end(),
+                                        [&](const Score& s) { return s.effect == entry.effect; });
+        if (known != result.scores.end() && known->chi <= score.chi)
+            continue;
+        // The model at the end of the step; the trial shortens the step should it be too long.
+        score.model = withEffect(model, *entry.effect, extent, entry.start);
+        auto& parameters = score.model.components.back().parameters;
+        std::size_t n = 0;
+        for (auto& p : parameters)
+            if (p.strength)
+                p.value += d[positions[n++]];
+        if (known != result.scores.end())
+            *known = std::move(score);
+        else
+            result.scores.push_back(std::move(score));
+    }
+    std::sort(together.begin(), together.end());
+    result.togetherChi = predictedCost(sums.validation, gaussNewtonStep(sums.estimation, together)) / rows;
+    std::stable_sort(result.scores.begin(), result.scores.end(), [](const Score& a, const Score& b) { return a.chi < b.chi; });
+    return result;
+}
+
+std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, int by)
+{
+    std::vector<std::string> raised;
+    const auto withHigher = [&](const Model& from, std::size_t k) {
+        Model to = from;
+        auto& component = to.components[k];
+        const auto before = component.parameters;
+        component.extent.degree += by;
+        component.parameters = component.effect->parameters(component.extent);
+        for (auto& p : component.parameters)
+            for (const auto& old : before)
+                if (old.name == p.name)
+                    p.value = old.value;
+        to.covariance.resize(0, 0);
+        return to;
+    };
+    // All laws with room are raised at once; then each is judged on its own columns.
+    Model higher = model;
+    std::vector<std::size_t> candidates;
+    for (std::size_t k = 1; k < model.components.size(); ++k)
+        if (model.components[k].effect->law() && model.components[k].extent.degree + by <= curve::maximumDegree) {
+            higher = withHigher(higher, k);
+            candidates.push_back(k);
+        }
+    if (candidates.empty())
+        return raised;
+    const auto active = freeParameters(higher);
+    const auto sums = sum(higher, record, active, options, {});
+    if (!sums.finite)
+        return raised;
+    std::vector<Eigen::Index> old;
+    std::vector<std::vector<Eigen::Index>> added(higher.components.size());
+    Eigen::Index position = 0, index = 0;
+    const auto visit = [&](const Parameter& p, bool isNew, std::size_t k) {
+        if (p.free) {
+            if (isNew)
+                added[k].push_back(position);
+            else
+                old.push_back(position);
+            ++position;
+        }
+        ++index;
+    };
+    for (std::size_t k = 0; k < higher.components.size(); ++k)
+        for (const auto& p : higher.components[k].parameters) {
+            const auto& before = model.components[k].parameters;
+            const bool isNew = std::none_of(before.begin(), before.end(), [&](const Parameter& b) { return b.name == p.name; });
+            visit(p, isNew, k);
+        }
+    for (const auto& p : higher.path)
+        visit(p, false, 0);
+    // The prior keeps new coefficients from bending to noise, so the estimation sections may judge; each coefficient must pay
+    // ln(rows), as in the Bayesian information criterion, in units of what the residuals are now.
+    const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
+    const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
+    const double price = unit * std::log(std::max(2.0, sums.estimation.rows));
+    Model result = model;
+    for (const auto k : candidates) {
+        auto use = old;
+        use.insert(use.end(), added[k].begin(), added[k].end());
+        std::sort(use.begin(), use.end());
+        const double then = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, use));
+        if (now - then > price * static_cast<double>(added[k].size())) {
+            result = withHigher(result, k);
+            raised.push_back(model.components[k].effect->id());
+        }
+    }
+    model = std::move(result);
+    return raised;
+}
+
+} // namespace excursion

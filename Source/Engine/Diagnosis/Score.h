@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+#include "Engine/Driver/OutputError.h"
+#include "Engine/Driver/Record.h"
+
+#include <map>
+#include <vector>
+
+namespace excursion {
+
+/// What the score test says of one effect: the model with it, moved by one Gauss-Newton step on the estimation sections, and what
+/// that step promises on the validation sections.
+struct Score {
+    const Effect* effect = nullptr;
+    Model model;
+    double chi = 0.0;                          ///< predicted, all channels
+    std::map<Quantity, double> errorDb;        ///< predicted, by channel
+};
+
+struct ScoreOptions {
+    int substeps = 1;
+    unsigned threads = 2;
+    int degree = 6;      ///< of the laws that are tried
+};
+
+struct ScoreResult {
+    double chi = 0.0;            ///< of the model as it is, on the validation sections
+    double togetherChi = 0.0;    ///< predicted with all candidates at once
+    std::vector<Score> scores;   ///< one an effect, best start each, lowest chi first
+};
+
+/// Score (Lagrange multiplier) test of every applicable effect of the catalogue that the model lacks: all are put in at zero strength,
+/// one run on jets gives the sensitivities to every strength besides those to the model's own parameters, and
+///     d = argmin |r + J d|^2   over the model's parameters and the effect's strengths
+/// predicts the residual r + J d. Levels, channels and sections all count, weighted by their noise.
+ScoreResult score(const Model&, const Record&, const ScoreOptions&, const Progress& = {});
+
+/// Raises the degree of the model's laws by `by` where the same test says that the new coefficients pay for themselves; returns
+/// the effects that were raised. The new coefficients start at zero.
+std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&, int by = 4);
+
+} // namespace excursion
