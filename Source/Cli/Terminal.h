@@ -27,6 +27,7 @@ public:
 
     bool json = false;
     bool quiet = false;
+    int answer = 0;   ///< exit code of a verb that ran well: 1 when its answer is no
 
     /// What long work is given: draws the bar and carries the stop of Ctrl-C. Valid as long as the terminal.
     Progress progress();

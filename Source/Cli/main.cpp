@@ -27,16 +27,16 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
 A take is a folder (measurement.json and its WAV), a .zma or a .csv. Each verb has its own --help.)";
 
 constexpr auto footer = R"(
-Exit codes: 0 done, 2 a wrong option, 3 a file that cannot be used, 4 data that cannot answer the
+Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file that cannot be used, 4 data that cannot answer the
 question, 5 a computation that failed, 6 stopped by Ctrl-C.)";
 
-constexpr int internalError = 1;
+constexpr int internalError = 70;   // as sysexits.h has it; 1 is an answer
 
 int run(CLI::App& app, cli::Terminal& terminal, int argc, char** argv)
 {
     try {
         app.parse(argc, argv);
-        return 0;
+        return terminal.answer;
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0)   // --help and --version
             return app.exit(e);
@@ -73,6 +73,8 @@ int main(int argc, char** argv)
     // In the order of the method: --help prints them so.
     cli::addExcite(app, terminal);
     cli::addImport(app, terminal);
+    cli::addCheck(app, terminal);
+    cli::addBla(app, terminal);
 
     return run(app, terminal, argc, argv);
 }

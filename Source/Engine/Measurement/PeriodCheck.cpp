@@ -219,8 +219,20 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
         }
     }
 
-    const auto drifting = std::count_if(judged.begin(), judged.end(), [](const Drift& d) { return d.drifts; });
-    const bool common = drifting > 1 && static_cast<std::size_t>(drifting) == judged.size();
+    // All drift together when every channel, to its own accuracy, runs as those do that drift for certain.
+    double shared = 0.0, weights = 0.0;
+    std::size_t drifting = 0;
+    for (const auto& drift : judged)
+        if (drift.drifts) {
+            const double weight = 1.0 / (drift.shift.standardError * drift.shift.standardError);
+            shared += weight * drift.shift.samples;
+            weights += weight;
+            ++drifting;
+        }
+    shared /= std::max(weights, 1e-300);
+    const bool common = drifting > 1 && std::all_of(judged.begin(), judged.end(), [shared](const Drift& d) {
+        return std::abs(d.shift.samples - shared) < 6.0 * d.shift.standardError + 0.1 * std::abs(shared);
+    });
     for (const auto& drift : judged) {
         if (!drift.drifts)
             continue;

@@ -2,6 +2,7 @@
 #include "Engine/Measurement/TakeCheck.h"
 
 #include "Engine/Error.h"
+#include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/PeriodCheck.h"
 #include "Engine/Measurement/PhysicsCheck.h"
 #include "Engine/Measurement/WaveformCheck.h"
@@ -76,6 +77,12 @@ CheckReport check(const Measurement& take)
     take.input();   // throws when there is none
     if (take.length() == 0)
         throw Error(Error::Kind::data, "The take has no samples.");
+    if (take.excitation && take.excitation->lines.empty() && take.excitation->totalSamples() <= static_cast<long>(take.length())) {
+        auto completed = take;
+        completeExcitation(completed);
+        if (!completed.excitation->lines.empty())
+            return check(completed);
+    }
     CheckReport report;
     report.channels.resize(take.channels.size());
     auto& problems = report.problems;

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Document/JsonText.h"
+#include "Engine/Error.h"
+#include "Engine/Measurement/Bla.h"
+#include "Engine/Measurement/Distortion.h"
+#include "Engine/Measurement/Export.h"
+#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Measurement/Welch.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::string take, output, out;
+    int level = -1;
+    int segment = 8192;
+};
+
+/// What one verb run found: the response, and the rows and fields that only one of the two estimators has.
+struct Found {
+    Frf frf;
+    Json document;
+    std::vector<std::string> header;
+    std::vector<std::vector<double>> columns;   ///< after the frequency, in dB
+    std::vector<std::string> remarks;
+};
+
+double decibels(double powerRatio) { return 10.0 * std::log10(std::max(powerRatio, 1e-40)); }
+
+std::string extensionOf(const std::string& path)
+{
+    auto text = std::filesystem::path(path).extension().string();
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+Quantity outputOf(const Measurement& take, const std::string& wanted)
+{
+    if (!wanted.empty()) {
+        const auto quantity = quantityNamed(wanted);
+        if (!quantity || !take.find(*quantity))
+            throw Error(Error::Kind::usage, "The take has no channel \"" + wanted + "\".");
+        return *quantity;
+    }
+    for (const auto& channel : take.channels)
+        if (channel.quantity != take.input().quantity)
+            return channel.quantity;
+    throw Error(Error::Kind::data, "The take has no channel beside its input.");
+}
+
+std::vector<double> relativeTo(const std::vector<double>& variance, const Frf& frf)
+{
+    std::vector<double> db;
+    for (std::size_t i = 0; i < variance.size(); ++i)
+        db.push_back(decibels(variance[i] / std::norm(frf.value[i])));
+    return db;
+}
+
+void add(Found& found, const std::string& title, std::vector<double> column)
+{
+    if (column.empty())
+        return;
+    found.header.push_back(title);
+    found.columns.push_back(std::move(column));
+}
+
+Json json(const DetectionLines& lines, const std::optional<DistortionTotal>& total)
+{
+    Json object;
+    if (total)
+        object = {{"db", total->db}, {"significant", total->significant}};
+    object["frequency"] = numbersOrNulls(lines.frequency);
+    object["power"] = numbersOrNulls(lines.power);
+    object["noise"] = numbersOrNulls(lines.noise);
+    return object;
+}
+
+std::string remark(const char* parity, const std::optional<DistortionTotal>& total)
+{
+    if (!total)
+        return std::string(parity) + " distortion: this grid leaves no such lines out";
+    return std::string(parity) + " distortion: " + (total->significant ? "" : "below ") + fixed(total->db, 1)
+         + " dB of the output" + (total->significant ? "" : " (not above the noise)");
+}
+
+Found fromPeriods(const Measurement& take, Quantity output, int level)
+{
+    const auto result = bla(take, output, level);
+    Found found;
+    found.frf = result.frf;
+    found.document = {{"method", "periods"}, {"level", level}, {"levelRms", take.excitation->levels[static_cast<std::size_t>(level)]},
+                      {"realizations", result.realizations}, {"periods", result.periods}};
+    found.document["nonlinearVariance"] = numbersOrNulls(result.nonlinearVariance);
+    found.document["stochasticNonlinear"] = numbersOrNulls(result.stochasticNonlinear);
+    found.document["coherence"] = numbersOrNulls(result.coherence);
+    add(found, "noise dB", relativeTo(result.frf.noiseVariance, result.frf));
+    add(found, "total dB", relativeTo(result.frf.totalVariance, result.frf));
+    add(found, "nonlinear dB", relativeTo(result.stochasticNonlinear, result.frf));
+    found.remarks.push_back("noise and total: variance of this response over its power; nonlinear: of one realization");
+
+    const auto& lines = take.excitation->lines;
+    if (std::all_of(lines.begin(), lines.end(), [](int k) { return k % 2 != 0; })) {
+        const auto levels = distortion(take, output, level);
+        found.document["odd"] = json(levels.odd, levels.oddTotal);
+        found.document["even"] = json(levels.even, levels.evenTotal);
+        found.remarks.push_back(remark("odd", levels.oddTotal));
+        found.remarks.push_back(remark("even", levels.evenTotal));
+        if (levels.noiseDb) {
+            found.document["noiseDb"] = *levels.noiseDb;
+            found.remarks.push_back("noise: " + fixed(*levels.noiseDb, 1) + " dB of the output");
+        }
+    }
+    return found;
+}
+
+Found fromRecord(const Measurement& take, Quantity output, int segment)
+{
+    const auto result = welch(take, output, {.segment = segment});
+    Found found;
+    found.frf = result.frf;
+    found.document = {{"method", "welch"}, {"segments", result.segments}, {"effectiveAverages", result.effectiveAverages}};
+    found.document["coherence"] = numbersOrNulls(result.coherence);
+    found.document["inputPower"] = numbersOrNulls(result.inputPower);
+    found.document["outputPower"] = numbersOrNulls(result.outputPower);
+    found.document["nonCoherentPower"] = numbersOrNulls(result.nonCoherentPower);
+    std::vector<double> added;
+    double power = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < result.outputPower.size(); ++i) {
+        added.push_back(decibels(result.nonCoherentPower[i] / result.outputPower[i]));
+        power += result.nonCoherentPower[i];
+        all += result.outputPower[i];
+    }
+    add(found, "not coherent dB", added);
+    found.document["nonCoherentDb"] = decibels(power / all);
+    found.remarks.push_back("not coherent with the input (noise and added distortion): " + fixed(decibels(power / all), 1)
+                            + " dB of the output");
+    return found;
+}
+
+/// One row each third of an octave: the line nearest to it.
+void print(const Found& found, const std::string& title, Terminal& terminal)
+{
+    std::vector<std::string> header {"Hz", "magnitude", "phase deg"};
+    header.insert(header.end(), found.header.begin(), found.header.end());
+    std::vector<std::vector<std::string>> rows;
+    double next = 0.0;
+    for (std::size_t i = 0; i < found.frf.frequency.size(); ++i) {
+        const double f = found.frf.frequency[i];
+        if (f < next)
+            continue;
+        next = f * std::cbrt(2.0);
+        rows.push_back({fixed(f, 1), significant(std::abs(found.frf.value[i])),
+                        fixed(std::arg(found.frf.value[i]) * 180.0 / 3.14159265358979323846, 1)});
+        for (const auto& column : found.columns)
+            rows.back().push_back(fixed(column[i], 1));
+    }
+    terminal.say(title);
+    terminal.table(header, rows);
+    for (const auto& line : found.remarks)
+        terminal.say(line);
+}
+
+void write(const Found& found, const Measurement& take, Quantity output, int level, const Options& options)
+{
+    const auto extension = extensionOf(options.out);
+    if (extension == ".json")
+        return writeJson(found.document, options.out);
+    if (extension == ".csv")
+        return writeCsv(found.frf, options.out);
+    if (extension == ".frd")
+        return writeFrd(found.frf, options.out);
+    if (extension != ".zma")
+        throw Error(Error::Kind::usage, "The file \"" + options.out + "\" should end in .csv, .frd, .zma or .json.");
+    if (output != Quantity::current || take.input().quantity != Quantity::voltage)
+        throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");
+    auto impedance = level >= 0 ? bla(take, Quantity::voltage, level, Quantity::current).frf : found.frf;
+    if (level < 0)
+        for (auto& value : impedance.value)
+            value = 1.0 / value;
+    writeZma(impedance, options.out);
+}
+
+void run(const Options& options, Terminal& terminal)
+{
+    auto take = readMeasurement(options.take);
+    completeExcitation(take);
+    const auto output = outputOf(take, options.output);
+    const bool periodic = take.excitation && !take.excitation->lines.empty();
+    const int level = !periodic           ? -1
+                    : options.level >= 0 ? options.level
+                                         : static_cast<int>(take.excitation->levels.size()) - 1;
+    auto found = periodic ? fromPeriods(take, output, level) : fromRecord(take, output, options.segment);
+
+    const auto input = take.input().quantity;
+    Json head {{"format", "excursion-bla"}, {"version", 1}, {"take", options.take}, {"input", name(input)}, {"output", name(output)}};
+    head.update(found.document);
+    std::vector<double> re, im;
+    for (const auto& value : found.frf.value) {
+        re.push_back(value.real());
+        im.push_back(value.imag());
+    }
+    head["frequency"] = numbersOrNulls(found.frf.frequency);
+    head["re"] = numbersOrNulls(re);
+    head["im"] = numbersOrNulls(im);
+    head["noiseVariance"] = numbersOrNulls(found.frf.noiseVariance);
+    head["totalVariance"] = numbersOrNulls(found.frf.totalVariance);
+    found.document = std::move(head);
+
+    print(found,
+          std::string(name(output)) + " / " + std::string(name(input))
+              + (periodic ? ", best linear approximation at level " + std::to_string(level) + " ("
+                                + significant(take.excitation->levels[static_cast<std::size_t>(level)], 3) + " rms)"
+                          : std::string(", cross-spectra of the whole record")),
+          terminal);
+    if (!options.out.empty()) {
+        write(found, take, output, level, options);
+        terminal.say("Wrote " + options.out + ".");
+    }
+    terminal.document(found.document);
+}
+
+} // namespace
+
+void addBla(CLI::App& app, Terminal& terminal)
+{
+    auto* verb = app.add_subcommand("bla", "frequency response with its noise and its odd and even distortion")->group(step::look);
+    auto options = std::make_shared<Options>();
+    verb->add_option("take", options->take, "the take: a folder, or a .csv of time signals")->required();
+    verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")
+        ->check(CLI::NonNegativeNumber);
+    verb->add_option("--output", options->output, "the channel to explain; by default the first beside the input");
+    verb->add_option("--segment", options->segment, "samples of a segment, for a take without periods")->capture_default_str();
+    verb->add_option("--out", options->out, "also write a .csv, .frd, .zma (of --output current) or .json");
+    verb->callback([options, &terminal] { run(*options, terminal); });
+}
+
+} // namespace excursion::cli

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Measurement/TakeFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+std::string figure(const std::optional<double>& value, int decimals)
+{
+    return value ? fixed(*value, decimals) : std::string("-");
+}
+
+std::string delayText(const ChannelFigures& c, double sampleRate)
+{
+    if (!c.delay || !c.delay->conclusive)
+        return "-";
+    return c.delay->clear ? fixed(c.delay->seconds * sampleRate, 2) : std::string("none");
+}
+
+template <class Json>
+void put(Json& json, const char* key, const std::optional<double>& value)
+{
+    if (value)
+        json[key] = *value;
+}
+
+nlohmann::json documentOf(const CheckReport& report, const std::string& file, double sampleRate)
+{
+    nlohmann::json document {{"format", "excursion-check"}, {"version", 1}, {"take", file},
+                             {"fitForUse", report.fitForUse()}, {"verdict", report.verdict()}};
+    auto& channels = document["channels"] = nlohmann::json::array();
+    for (const auto& c : report.channels) {
+        nlohmann::json channel {{"quantity", name(c.quantity)}, {"unit", c.unit}, {"rms", c.rms}, {"peak", c.peak},
+                                {"offset", c.offset}, {"clippedSamples", c.clipped}};
+        put(channel, "snrDb", c.snrDb);
+        put(channel, "repeatabilityDb", c.repeatabilityDb);
+        put(channel, "driftPpm", c.driftPpm);
+        if (c.settlingDb && *c.settlingDb > -300.0)
+            channel["settlingDb"] = *c.settlingDb;
+        for (const auto& band : c.bands)
+            channel["bands"].push_back({{"low", band.low}, {"high", band.high}, {"snrDb", band.db}});
+        if (c.delay && c.delay->conclusive)
+            channel["delay"] = {{"against", name(c.delayReference)},
+                                {"samples", c.delay->seconds * sampleRate},
+                                {"standardError", c.delay->standardError * sampleRate},
+                                {"clear", c.delay->clear},
+                                {"inverted", c.delay->inverted}};
+        channels.push_back(channel);
+    }
+    auto& problems = document["problems"] = nlohmann::json::array();
+    for (const auto& p : report.problems) {
+        nlohmann::json problem {{"kind", p.kind}, {"value", p.value}, {"unit", p.unit}, {"fatal", p.fatal}, {"sentence", p.sentence}};
+        problem["channel"] = p.channel ? nlohmann::json(name(*p.channel)) : nlohmann::json();
+        problems.push_back(problem);
+    }
+    return document;
+}
+
+void print(const CheckReport& report, double sampleRate, Terminal& terminal)
+{
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& c : report.channels) {
+        std::string worst = "-";
+        if (!c.bands.empty()) {
+            const auto band = *std::min_element(c.bands.begin(), c.bands.end(),
+                                                [](const auto& a, const auto& b) { return a.db < b.db; });
+            worst = fixed(band.db, 0) + " at " + fixed(band.low, 0) + " Hz";
+        }
+        const bool settled = !c.settlingDb || *c.settlingDb < -60.0;
+        rows.push_back({std::string(name(c.quantity)), c.unit, significant(c.rms), significant(c.peak),
+                        c.rms > 0.0 ? fixed(100.0 * c.offset / c.rms, 1) : "-", std::to_string(c.clipped), figure(c.snrDb, 0),
+                        worst, figure(c.repeatabilityDb, 0),
+                        !c.settlingDb ? "-" : settled ? "yes" : fixed(*c.settlingDb, 0), figure(c.driftPpm, 2),
+                        delayText(c, sampleRate)});
+    }
+    terminal.table({"channel", "unit", "rms", "peak", "DC %", "clipped", "SNR dB", "worst octave", "repeats dB", "settled",
+                    "drift ppm", "delay"},
+                   rows);
+    if (!report.problems.empty())
+        terminal.say("");
+    for (const auto& p : report.problems)
+        terminal.say((p.fatal ? "fault   " : "remark  ") + p.kind + ": " + p.sentence);
+    terminal.say("");
+    terminal.say(report.fitForUse() ? report.verdict() : std::string("The take is not fit for use."));
+}
+
+} // namespace
+
+void addCheck(CLI::App& app, Terminal& terminal)
+{
+    auto* verb = app.add_subcommand("check", "say whether a take is fit for use, and if not, which channel is at fault")
+                     ->group(step::look);
+    auto take = std::make_shared<std::string>();
+    verb->add_option("take", *take, "the take: a folder, or a .csv of time signals")->required();
+    verb->footer("Exit code 0: fit for use; 1: not.");
+    verb->callback([take, &terminal] {
+        auto measurement = readMeasurement(*take);
+        completeExcitation(measurement);
+        const auto report = check(measurement);
+        print(report, measurement.sampleRate, terminal);
+        terminal.document(documentOf(report, *take, measurement.sampleRate));
+        if (!report.fitForUse())
+            terminal.answer = 1;
+    });
+}
+
+} // namespace excursion::cli
