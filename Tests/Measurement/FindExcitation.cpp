@@ -108,7 +108,30 @@ TEST_CASE("A single repeating period is an excitation too")
     CHECK(found->realizations == 1);
 }
 
-TEST_CASE("Noise, silence, a late start and records that are too short have no excitation")
+TEST_CASE("A record that starts late, or settles slowly, is cut where it is steady")
+{
+    auto plan = planExcitation(options(Grid::oddRandom, Shape::pink));
+    auto late = plan.input().samples;
+    late.insert(late.begin(), 1234, 0.0);
+    const auto shifted = findExcitation(late, 48000);
+    REQUIRE(shifted);
+    CHECK(shifted->period == 4096);
+    CHECK(shifted->settlePeriods == 1);
+    CHECK(shifted->periods == 3);
+    CHECK(shifted->lines == plan.excitation->lines);
+
+    auto& u = plan.channels[0].samples;   // each realization fades in
+    for (std::size_t n = 0; n < u.size(); ++n)
+        u[n] *= 1 - std::exp(-double(n % (4 * 4096)) / 500);
+    const auto faded = findExcitation(u, 48000);
+    REQUIRE(faded);
+    CHECK(faded->period == 4096);
+    CHECK(faded->settlePeriods == 1);
+    CHECK(faded->realizations == 3);
+    CHECK(faded->lines == plan.excitation->lines);
+}
+
+TEST_CASE("Noise, silence and records that are too short have no excitation")
 {
     std::mt19937_64 random(2);
     std::normal_distribution<double> normal;
@@ -120,11 +143,6 @@ TEST_CASE("Noise, silence, a late start and records that are too short have no e
     CHECK(findPeriod(x) == 0);
     CHECK_FALSE(findExcitation(std::vector<double> {1, 2, 1, 2}, 48000));
     CHECK_FALSE(findExcitation({}, 48000));
-
-    auto late = planExcitation(options(Grid::full, Shape::white)).input().samples;
-    late.insert(late.begin(), 1234, 0.0);
-    CHECK(findPeriod(late) == 4096);
-    CHECK_FALSE(findExcitation(late, 48000));
 
     auto plan = planExcitation(options(Grid::full, Shape::white));
     plan.channels[0].samples.pop_back();

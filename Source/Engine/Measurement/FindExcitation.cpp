@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace excursion {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr double excitedOverNoise = 10.0;       // 10 dB
 constexpr double excitedBelowShape = 0.025;     // -16 dB
 constexpr std::size_t noiseNeighbours = 12;     // lines to either side
+constexpr double steady = 0.02;                 // `difference` of the same period in noise; other phases or levels differ by more
 
 /// Powers of the lines of a period: of the average, and of its noise.
 struct LinePowers {
@@ -84,59 +86,77 @@ double difference(std::span<const double> a, std::span<const double> b)
     return size > 0 ? sum / size : 0.0;
 }
 
-constexpr double repeats = 0.02;   // `difference` of the same period in noise; other phases or another level differ by more
-
-struct Repetition {
-    double share = 0.0;         ///< of a record, silence left out, that is the same `lag` samples later
-    double difference = 0.0;    ///< mean over what is the same
-};
-
-Repetition repetition(std::span<const double> input, std::size_t lag)
+/// The differences between the pieces of a record and what comes `lag` samples later, ascending; silence left out.
+std::vector<double> differencesAfter(std::span<const double> input, std::size_t lag)
 {
     const std::size_t piece = std::max<std::size_t>(8, lag / 4);
     const double silence = 1e-8 * energy(input) * static_cast<double>(piece) / static_cast<double>(input.size());
-    double pieces = 0.0, same = 0.0, sum = 0.0;
+    std::vector<double> differences;
     for (std::size_t n = 0; n + lag + piece <= input.size(); n += piece) {
         const auto a = input.subspan(n, piece), b = input.subspan(n + lag, piece);
-        if (energy(a) + energy(b) > silence) {
-            pieces += 1.0;
-            if (const double d = difference(a, b); d < repeats) {
-                same += 1.0;
-                sum += d;
-            }
-        }
+        if (energy(a) + energy(b) > silence)
+            differences.push_back(difference(a, b));
     }
-    return same > 0 ? Repetition {same / pieces, sum / same} : Repetition {};
+    std::sort(differences.begin(), differences.end());
+    return differences;
 }
 
-/// The peak of a correlation may be a few samples off where a few low lines hold most of the power.
+double repeatingShare(std::span<const double> input, std::size_t lag)
+{
+    const auto differences = differencesAfter(input, lag);
+    const auto same = std::lower_bound(differences.begin(), differences.end(), steady) - differences.begin();
+    return differences.empty() ? 0.0 : static_cast<double>(same) / static_cast<double>(differences.size());
+}
+
+/// The peak of a correlation may be a few samples off where a few low lines hold most of the power. The
+/// steps from sample to sample are whiter, so they repeat at no other lag; what repeats best, the loud
+/// and settled part, decides.
 std::size_t sharpened(std::span<const double> input, std::size_t lag)
 {
     constexpr std::size_t around = 8;
+    std::vector<double> steps(input.size() - 1);
+    for (std::size_t n = 0; n < steps.size(); ++n)
+        steps[n] = input[n + 1] - input[n];
     std::size_t best = lag;
-    auto closest = repetition(input, lag);
-    for (std::size_t other = lag - around; other <= lag + around; ++other)
-        if (const auto r = repetition(input, other); r.share > 0.8 * closest.share && r.difference < closest.difference) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t other = lag - around; other <= lag + around; ++other) {
+        const auto differences = differencesAfter(steps, other);
+        if (!differences.empty() && differences[differences.size() / 10] < least) {
             best = other;
-            closest = r;
+            least = differences[differences.size() / 10];
         }
+    }
     return best;
 }
 
-/// Periods of each run of periods that repeat; 0 unless all runs are of equal length, two or more.
-std::size_t equalRuns(std::span<const double> input, std::size_t N)
+/// Realizations as they show in the record: each a run of periods, the first ones still settling.
+struct Runs {
+    std::size_t length = 0;     ///< periods of each; 0 where they are not all equal, or never settle
+    std::size_t settling = 0;   ///< most periods before one that is as the next
+};
+
+Runs equalRuns(std::span<const double> input, std::size_t N)
 {
     const std::size_t periods = input.size() / N;
+    std::vector<bool> asBefore(periods, false);
+    for (std::size_t p = 1; p < periods; ++p)
+        asBefore[p] = difference(input.subspan(p * N, N), input.subspan((p - 1) * N, N)) < steady;
+    // A realization begins where what had settled changes.
     std::vector<std::size_t> starts {0};
     for (std::size_t p = 1; p < periods; ++p)
-        if (difference(input.subspan(p * N, N), input.subspan((p - 1) * N, N)) > repeats)
+        if (!asBefore[p] && asBefore[p - 1])
             starts.push_back(p);
     starts.push_back(periods);
-    const auto length = starts[1];
-    for (std::size_t r = 1; r < starts.size(); ++r)
-        if (starts[r] - starts[r - 1] != length)
-            return 0;
-    return length >= 2 ? length : 0;
+    Runs runs {starts[1], 0};
+    for (std::size_t r = 1; r < starts.size(); ++r) {
+        std::size_t settled = starts[r - 1] + 1;
+        while (settled < starts[r] && !asBefore[settled])
+            ++settled;
+        if (starts[r] - starts[r - 1] != runs.length || settled == starts[r])
+            return {};
+        runs.settling = std::max(runs.settling, settled - starts[r - 1] - 1);
+    }
+    return runs;
 }
 
 /// The levels of realizations that go from quiet to loud, each the same number of times; empty when they do not.
@@ -209,9 +229,9 @@ int findPeriod(std::span<const double> input)
         return both > 0 ? correlation[lag] / std::sqrt(both) : 0.0;
     };
 
-    // Half of a record or more repeats after a period; the whole of it may after several (the same
+    // A third of a record or more repeats after a period (settling, used, used); the whole of it may after several (the same
     // phases at the next level), so that the highest peak is not always the one.
-    constexpr double share = 0.4;
+    constexpr double share = 0.3;
     constexpr std::size_t mostCandidates = 200;
     std::size_t first = 1;
     while (first <= L / 2 && similarity(first) > 0)   // out of the main lobe
@@ -224,7 +244,7 @@ int findPeriod(std::span<const double> input)
     candidates.resize(std::min(candidates.size(), mostCandidates));
     std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     const auto found = std::find_if(candidates.begin(), candidates.end(),
-                                    [&](const auto& c) { return repetition(input, c.second).share > share; });
+                                    [&](const auto& c) { return repeatingShare(input, c.second) > share; });
     return found == candidates.end() ? 0 : static_cast<int>(sharpened(input, found->second));
 }
 
@@ -235,7 +255,8 @@ std::optional<Excitation> findExcitation(std::span<const double> input, double s
     if (e.period == 0)
         return std::nullopt;
     const auto N = static_cast<std::size_t>(e.period);
-    const std::size_t run = equalRuns(input, N), runs = run > 0 ? input.size() / N / run : 0;
+    const auto [run, settling] = equalRuns(input, N);
+    const std::size_t runs = run > 0 ? input.size() / N / run : 0;
     std::vector<double> rmsOfRun;
     for (std::size_t r = 0; r < runs; ++r)
         rmsOfRun.push_back(rms(input.subspan(((r + 1) * run - 1) * N, N)));
@@ -244,7 +265,7 @@ std::optional<Excitation> findExcitation(std::span<const double> input, double s
     e.levels = ascendingLevels(rmsOfRun);
     if (e.levels.empty())
         return std::nullopt;
-    e.settlePeriods = run >= 3 ? 1 : 0;
+    e.settlePeriods = static_cast<int>(run >= 3 ? std::max<std::size_t>(1, settling) : 0);
     e.periods = static_cast<int>(run) - e.settlePeriods;
     e.realizations = static_cast<int>(runs / e.levels.size());
     e.lines = findLines(input, e);

@@ -22,13 +22,13 @@ std::vector<int> findLines(std::span<const double> input, const Excitation& exci
 
 /// What can be told of the excitation from the input alone, when nobody said it: the period and, where
 /// the record from its first sample on is a whole number of realizations of equal length (each a period
-/// that repeats at least once), their number, the levels and the lines. The first period of each
-/// realization is taken for settling, when three or more are there. Grid is given as "full", shape as
+/// that repeats at least once), their number, the levels and the lines. The periods that
+/// differ from the next, and the first of three or more at all events, are taken for settling. Grid is given as "full", shape as
 /// "white" and the band by the outer lines: they are not looked for.
 /// Absent where any of this does not come out cleanly: then the record is as good as aperiodic.
 std::optional<Excitation> findExcitation(std::span<const double> input, double sampleRate);
 
-/// The shortest lag in samples, 16 or more, after which at least 40 % of a record comes again (what is loud
+/// The shortest lag in samples, 16 or more, after which at least 30 % of a record comes again (what is loud
 /// counts most, silence does not count); 0 when there is none up to half its length.
 int findPeriod(std::span<const double> input);
 
