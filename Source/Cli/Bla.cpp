@@ -37,7 +37,9 @@ struct Found {
     std::vector<std::string> remarks;
 };
 
-double decibels(double powerRatio) { return 10.0 * std::log10(std::max(powerRatio, 1e-40)); }
+constexpr double nothing = -400.0;   ///< dB of a power of zero
+
+double decibels(double powerRatio) { return powerRatio > 1e-40 ? 10.0 * std::log10(powerRatio) : nothing; }
 
 std::string extensionOf(const std::string& path)
 {
@@ -164,7 +166,7 @@ void print(const Found& found, const std::string& title, Terminal& terminal)
         rows.push_back({fixed(f, 1), significant(std::abs(found.frf.value[i])),
                         fixed(std::arg(found.frf.value[i]) * 180.0 / 3.14159265358979323846, 1)});
         for (const auto& column : found.columns)
-            rows.back().push_back(fixed(column[i], 1));
+            rows.back().push_back(column[i] > nothing ? fixed(column[i], 1) : "-");
     }
     terminal.say(title);
     terminal.table(header, rows);
@@ -172,7 +174,7 @@ void print(const Found& found, const std::string& title, Terminal& terminal)
         terminal.say(line);
 }
 
-void write(const Found& found, const Measurement& take, Quantity output, int level, const Options& options)
+void write(const Found& found, const Measurement& take, int level, const Options& options)
 {
     const auto extension = extensionOf(options.out);
     if (extension == ".json")
@@ -181,10 +183,6 @@ void write(const Found& found, const Measurement& take, Quantity output, int lev
         return writeCsv(found.frf, options.out);
     if (extension == ".frd")
         return writeFrd(found.frf, options.out);
-    if (extension != ".zma")
-        throw Error(Error::Kind::usage, "The file \"" + options.out + "\" should end in .csv, .frd, .zma or .json.");
-    if (output != Quantity::current || take.input().quantity != Quantity::voltage)
-        throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");
     auto impedance = level >= 0 ? bla(take, Quantity::voltage, level, Quantity::current).frf : found.frf;
     if (level < 0)
         for (auto& value : impedance.value)
@@ -192,11 +190,23 @@ void write(const Found& found, const Measurement& take, Quantity output, int lev
     writeZma(impedance, options.out);
 }
 
+/// Said before the work, not after it.
+void checkExtension(const Options& options)
+{
+    const auto extension = extensionOf(options.out);
+    if (options.out.empty() || extension == ".csv" || extension == ".frd" || extension == ".zma" || extension == ".json")
+        return;
+    throw Error(Error::Kind::usage, "The file \"" + options.out + "\" should end in .csv, .frd, .zma or .json.");
+}
+
 void run(const Options& options, Terminal& terminal)
 {
+    checkExtension(options);
     auto take = readMeasurement(options.take);
     completeExcitation(take);
     const auto output = outputOf(take, options.output);
+    if (extensionOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
+        throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");
     const bool periodic = take.excitation && !take.excitation->lines.empty();
     const int level = !periodic           ? -1
                     : options.level >= 0 ? options.level
@@ -225,7 +235,7 @@ void run(const Options& options, Terminal& terminal)
                           : std::string(", cross-spectra of the whole record")),
           terminal);
     if (!options.out.empty()) {
-        write(found, take, output, level, options);
+        write(found, take, level, options);
         terminal.say("Wrote " + options.out + ".");
     }
     terminal.document(found.document);
@@ -235,7 +245,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addBla(CLI::App& app, Terminal& terminal)
 {
-    auto* verb = app.add_subcommand("bla", "frequency response with its noise and its odd and even distortion")->group(step::look);
+    auto* verb = app.add_subcommand("bla", "Frequency response, with its noise and its odd and even distortion")->group(step::look);
     auto options = std::make_shared<Options>();
     verb->add_option("take", options->take, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace excursion::cli {
@@ -19,11 +20,13 @@ std::string figure(const std::optional<double>& value, int decimals)
     return value ? fixed(*value, decimals) : std::string("-");
 }
 
-std::string delayText(const ChannelFigures& c, double sampleRate)
+/// The delay that the channel is blamed for; "none" when it was looked at and acquitted.
+std::string delayText(const CheckReport& report, const ChannelFigures& c)
 {
-    if (!c.delay || !c.delay->conclusive)
-        return "-";
-    return c.delay->clear ? fixed(c.delay->seconds * sampleRate, 2) : std::string("none");
+    for (const auto& p : report.problems)
+        if (p.kind == "channel-delay" && p.channel == c.quantity)
+            return fixed(p.value, 2);
+    return c.delay && c.delay->conclusive ? "none" : "-";
 }
 
 template <class Json>
@@ -65,7 +68,7 @@ nlohmann::json documentOf(const CheckReport& report, const std::string& file, do
     return document;
 }
 
-void print(const CheckReport& report, double sampleRate, Terminal& terminal)
+void print(const CheckReport& report, Terminal& terminal)
 {
     std::vector<std::vector<std::string>> rows;
     for (const auto& c : report.channels) {
@@ -77,10 +80,10 @@ void print(const CheckReport& report, double sampleRate, Terminal& terminal)
         }
         const bool settled = !c.settlingDb || *c.settlingDb < -60.0;
         rows.push_back({std::string(name(c.quantity)), c.unit, significant(c.rms), significant(c.peak),
-                        c.rms > 0.0 ? fixed(100.0 * c.offset / c.rms, 1) : "-", std::to_string(c.clipped), figure(c.snrDb, 0),
+                        c.rms > 0.0 ? fixed(100.0 * std::abs(c.offset) / c.rms, 1) : "-", std::to_string(c.clipped), figure(c.snrDb, 0),
                         worst, figure(c.repeatabilityDb, 0),
                         !c.settlingDb ? "-" : settled ? "yes" : fixed(*c.settlingDb, 0), figure(c.driftPpm, 2),
-                        delayText(c, sampleRate)});
+                        delayText(report, c)});
     }
     terminal.table({"channel", "unit", "rms", "peak", "DC %", "clipped", "SNR dB", "worst octave", "repeats dB", "settled",
                     "drift ppm", "delay"},
@@ -97,7 +100,7 @@ void print(const CheckReport& report, double sampleRate, Terminal& terminal)
 
 void addCheck(CLI::App& app, Terminal& terminal)
 {
-    auto* verb = app.add_subcommand("check", "say whether a take is fit for use, and if not, which channel is at fault")
+    auto* verb = app.add_subcommand("check", "Say whether a take is fit for use, and if not, which channel is at fault")
                      ->group(step::look);
     auto take = std::make_shared<std::string>();
     verb->add_option("take", *take, "the take: a folder, or a .csv of time signals")->required();
@@ -106,7 +109,7 @@ void addCheck(CLI::App& app, Terminal& terminal)
         auto measurement = readMeasurement(*take);
         completeExcitation(measurement);
         const auto report = check(measurement);
-        print(report, measurement.sampleRate, terminal);
+        print(report, terminal);
         terminal.document(documentOf(report, *take, measurement.sampleRate));
         if (!report.fitForUse())
             terminal.answer = 1;

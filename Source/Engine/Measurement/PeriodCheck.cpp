@@ -49,7 +49,8 @@ Powers powersOf(const Measurement& take, const Channel& channel, int level)
 
 struct SignalAndNoise {
     double signal = 0.0, noise = 0.0;
-    double db() const { return decibels(std::max(signal, 0.0) / std::max(noise, 1e-30 * signal)); }
+    /// Not below -20 dB, where the estimate of the signal is noise itself.
+    double db() const { return decibels(std::max(signal, 0.01 * noise) / std::max(noise, 1e-30 * signal)); }
 };
 
 SignalAndNoise between(const Powers& powers, const std::vector<int>& lines, int periods, int low, int high)
