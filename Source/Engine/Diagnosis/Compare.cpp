@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/Compare.h"
+
+#include "Engine/Diagnosis/ResidualCurves.h"
+#include "Engine/Driver/Fit.h"
+#include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/OutputError.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace excursion {
+namespace {
+
+double db(double power, double reference)
+{
+    return 10.0 * std::log10(std::max(power, 1e-300) / std::max(reference, 1e-300));
+}
+
+ErrorLevel levelOf(const ErrorPower& power, const NormalEquations& normal, bool noiseKnown)
+{
+    ErrorLevel level;
+    level.db = db(power.error, power.measured);
+    if (noiseKnown)
+        level.noiseFloorDb = db(power.noise, power.measured);
+    level.chi = normal.cost / std::max(1.0, normal.rows);
+    return level;
+}
+
+/// Sums over the sections of one level.
+struct LevelSums {
+    ErrorPower power;
+    NormalEquations normal;
+};
+
+ErrorKinds kindsOf(const Record& record, const std::vector<std::size_t>& sections, const std::vector<SectionFit>& fits,
+                   std::size_t c, int level)
+{
+    ErrorKinds kinds;
+    double linear = 0.0, odd = 0.0, even = 0.0, noise = 0.0, measured = 0.0;
+    bool known = false, oddSeen = false, evenSeen = false;
+    for (std::size_t n = 0; n < sections.size(); ++n) {
+        const auto& section = record.sections[sections[n]];
+        if (section.level != level || section.excited.empty())
+            continue;
+        known = true;
+        const auto [first, last] = record.lineRange(section);
+        for (std::size_t k = first; k <= last; ++k) {
+            const double error = std::norm(fits[n].predicted[c][k] - section.measured[c][k]);
+            measured += std::norm(section.measured[c][k]);
+            noise += section.deviation[c][k] * section.deviation[c][k];
+            if (std::binary_search(section.excited.begin(), section.excited.end(), static_cast<int>(k)))
+                linear += error;
+            else if (k % 2 == 1) {
+                odd += error;
+                oddSeen = oddSeen || k < static_cast<std::size_t>(section.excited.back());
+            } else {
+                even += error;
+                evenSeen = true;
+            }
+        }
+    }
+    if (!known)
+        return kinds;
+    kinds.linear = db(linear, measured);
+    if (oddSeen)
+        kinds.odd = db(odd, measured);
+    if (evenSeen)
+        kinds.even = db(even, measured);
+    if (record.noiseKnown)
+        kinds.noise = db(noise, measured);
+    return kinds;
+}
+
+/// Rms per band of 1/24 octave (one line where lines are sparser), averaged over the level's sections.
+ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& sections, const std::vector<SectionFit>& fits,
+                         std::size_t c, int level)
+{
+    constexpr double bandsPerOctave = 24.0;
+    ErrorSpectrum spectrum;
+    std::vector<std::size_t> used;
+    for (std::size_t n = 0; n < sections.size(); ++n)
+        if (record.sections[sections[n]].level == level)
+            used.push_back(n);
+    if (used.empty())
+        return spectrum;
+    const auto& shape = record.sections[sections[used.front()]];
+    const auto [first, last] = record.lineRange(shape);
+    const double scale = 2.0 / (static_cast<double>(shape.window) * static_cast<double>(shape.window)) / static_cast<double>(used.size());
+    for (std::size_t k = first; k <= last;) {
+        const auto end = std::min(last + 1, std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * std::exp2(1.0 / bandsPerOctave))));
+        double measured = 0.0, model = 0.0, error = 0.0, noise = 0.0;
+        for (const auto n : used) {
+            const auto& section = record.sections[sections[n]];
+            for (std::size_t j = k; j < end; ++j) {
+                measured += std::norm(section.measured[c][j]);
+                model += std::norm(fits[n].predicted[c][j]);
+                error += std::norm(fits[n].predicted[c][j] - section.measured[c][j]);
+                noise += section.deviation[c][j] * section.deviation[c][j];
+            }
+        }
+        spectrum.frequency.push_back(record.frequency(shape, k) * std::sqrt(static_cast<double>(end - 1) / static_cast<double>(k)));
+        spectrum.measured.push_back(std::sqrt(scale * measured));
+        spectrum.model.push_back(std::sqrt(scale * model));
+        spectrum.error.push_back(std::sqrt(scale * error));
+        spectrum.noise.push_back(record.noiseKnown ? std::sqrt(scale * noise) : std::numeric_limits<double>::quiet_NaN());
+        k = end;
+    }
+    return spectrum;
+}
+
+} // namespace
+
+Comparison compare(const Model& model, const Record& record, const CompareOptions& options, const Progress& progress)
+{
+    const auto sections = validationSections(record);
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.spectra = options.spectra;
+    run.substeps = options.substeps > 0 ? options.substeps : substepsFor(model, record);
+    progress.at(0.1, "comparing");
+    const auto fits = outputError(model, record, sections, {}, run, progress);
+    for (const auto& fit : fits)
+        if (!fit.finite)
+            throw Error(Error::Kind::numerical, "The model runs away when it is simulated on this take; fit it to the take first.");
+
+    Comparison result;
+    result.levels = record.levels.empty() ? std::vector<double> {0.0} : record.levels;
+    result.noiseKnown = record.noiseKnown;
+    result.validated = std::any_of(record.sections.begin(), record.sections.end(), [](const Section& s) { return s.validation; });
+    NormalEquations everything;
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+        ChannelComparison channel;
+        channel.quantity = record.channels[c];
+        channel.unit = record.units[c];
+        std::vector<LevelSums> sums(result.levels.size());
+        LevelSums total;
+        for (std::size_t n = 0; n < fits.size(); ++n) {
+            const int level = std::max(0, record.sections[sections[n]].level);
+            for (auto* sum : {&sums[static_cast<std::size_t>(level)], &total}) {
+                sum->power.error += fits[n].power[c].error;
+                sum->power.measured += fits[n].power[c].measured;
+                sum->power.noise += fits[n].power[c].noise;
+                sum->normal.add(fits[n].channels[c]);
+            }
+        }
+        channel.total = levelOf(total.power, total.normal, record.noiseKnown);
+        everything.add(total.normal);
+        for (std::size_t level = 0; level < sums.size(); ++level) {
+            const int index = record.levels.empty() ? -1 : static_cast<int>(level);
+            channel.byLevel.push_back(levelOf(sums[level].power, sums[level].normal, record.noiseKnown));
+            if (options.spectra) {
+                channel.kindsByLevel.push_back(kindsOf(record, sections, fits, c, index));
+                channel.spectrumByLevel.push_back(spectrumOf(record, sections, fits, c, index));
+            }
+        }
+        result.channels.push_back(std::move(channel));
+    }
+    result.chi = everything.cost / std::max(1.0, everything.rows);
+    if (options.spectra)
+        result.residuals = residualCurves(model, record, sections, fits);
+    progress.at(1.0, "compared");
+    return result;
+}
+
+Comparison compare(const Model& model, const Spectra& spectra)
+{
+    Comparison result;
+    result.levels = {0.0};
+    for (const auto& target : responsesOf(spectra)) {
+        ChannelComparison channel;
+        channel.quantity = target.quantity;
+        channel.unit = target.impedance ? "ohm" : std::string(siUnit(target.quantity)) + "/V";
+        channel.total.db = responseErrorDb(model, target);
+        channel.byLevel.push_back(channel.total);
+        const auto response = respond(model, {target.quantity}, target.frequency).front();
+        ErrorSpectrum spectrum;
+        spectrum.frequency = target.frequency;
+        for (std::size_t f = 0; f < target.frequency.size(); ++f) {
+            const auto value = target.impedance ? 1.0 / response.value[f] : response.value[f];
+            spectrum.measured.push_back(std::abs(target.value[f]));
+            spectrum.model.push_back(std::abs(value));
+            spectrum.error.push_back(std::abs(value - target.value[f]));
+            spectrum.noise.push_back(std::numeric_limits<double>::quiet_NaN());
+        }
+        channel.spectrumByLevel.push_back(std::move(spectrum));
+        channel.kindsByLevel.emplace_back();
+        result.channels.push_back(std::move(channel));
+    }
+    return result;
+}
+
+} // namespace excursion

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/Diagnose.h"
+
+#include "Engine/Diagnosis/Reason.h"
+#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/FitResponse.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+/// What of the residual is not noise; never quite zero, as two models at the noise are equally good.
+double excess(double chi, bool noiseKnown) { return noiseKnown ? std::max(chi - 1.0, 0.02) : std::max(chi, 1e-12); }
+
+ErrorByChannel errorOf(const Comparison& comparison)
+{
+    ErrorByChannel error;
+    for (const auto& channel : comparison.channels)
+        error[channel.quantity] = channel.total;
+    return error;
+}
+
+bool better(const RankedEffect& a, const RankedEffect& b)
+{
+    const bool triedA = a.confirmedChi > 0.0, triedB = b.confirmedChi > 0.0;
+    if (triedA != triedB)
+        return triedA;
+    return triedA ? a.confirmedChi < b.confirmedChi : a.predictedChi < b.predictedChi;
+}
+
+/// Confidence of the tried effects: the first is sure when it explains at least half of the excess and the second leaves much more.
+void judge(std::vector<RankedEffect>& ranking, double chi, bool noiseKnown, Diagnosis& diagnosis)
+{
+    const double before = excess(chi, noiseKnown);
+    for (std::size_t k = 0; k < ranking.size(); ++k) {
+        auto& entry = ranking[k];
+        if (entry.confirmedChi <= 0.0 || !entry.significant)
+            continue;
+        const double left = excess(entry.confirmedChi, noiseKnown);
+        double rival = before;
+        for (std::size_t j = 0; j < ranking.size(); ++j)
+            if (j != k && ranking[j].confirmedChi > 0.0)
+                rival = std::min(rival, excess(ranking[j].confirmedChi, noiseKnown));
+        const double explained = std::clamp(1.0 - left / before, 0.0, 1.0);
+        entry.confidence = std::min(1.0, 2.0 * explained) * rival / (rival + left);
+    }
+    if (ranking.size() < 2 || !ranking[0].significant || !ranking[1].significant)
+        return;
+    // Two effects that each explain most of the same residual, and leave about as much, cannot be told apart.
+    for (std::size_t k = 1; k < ranking.size() && ranking[k].significant; ++k) {
+        const double first = excess(ranking[0].confirmedChi, noiseKnown), other = excess(ranking[k].confirmedChi, noiseKnown);
+        if (other < 1.25 * first && other < 0.4 * before)
+            diagnosis.indistinguishable.push_back(ranking[k].effect);
+    }
+    if (!diagnosis.indistinguishable.empty())
+        diagnosis.measureNext = "Measure again with a louder level and with the displacement as one more channel; effects that "
+                                "share a curve part where the cone moves farther.";
+}
+
+std::string sentenceFor(const Diagnosis& d, const Comparison& comparison)
+{
+    switch (d.verdict) {
+    case Verdict::complete: return "The model is complete: what is left is the noise of the measurement.";
+    case Verdict::missingEffect: {
+        std::string sentence = effectNamed(d.ranking.front().effect).title() + " is missing";
+        for (const auto& other : d.indistinguishable)
+            sentence += ", or " + effectNamed(other).title() + ", which this take cannot tell from it";
+        return sentence + ".";
+    }
+    case Verdict::unknownEffect:
+        return std::string(comparison.noiseKnown ? "Something is left that no effect of the catalogue explains: "
+                                                 : "No effect of the catalogue lowers the error further, and the take does not tell its noise: ")
+               + signatureOf(comparison) + ".";
+    case Verdict::badMeasurement: return "The measurement is at fault.";
+    }
+    return "";
+}
+
+/// The verdict once the ranking is made.
+Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& comparison, double smallestShare)
+{
+    const double before = excess(comparison.chi, comparison.noiseKnown);
+    if (!ranking.empty() && ranking.front().significant
+        && 1.0 - excess(ranking.front().confirmedChi, comparison.noiseKnown) / before >= smallestShare)
+        return Verdict::missingEffect;
+    constexpr double onlyNoise = 1.6;   // mean squared error over the noise's, 2 dB
+    bool clean = comparison.noiseKnown;
+    for (const auto& channel : comparison.channels)
+        clean = clean && channel.total.chi <= onlyNoise;
+    return clean ? Verdict::complete : Verdict::unknownEffect;
+}
+
+} // namespace
+
+std::string_view name(Verdict verdict)
+{
+    switch (verdict) {
+    case Verdict::missingEffect: return "missing-effect";
+    case Verdict::complete: return "complete";
+    case Verdict::badMeasurement: return "bad-measurement";
+    case Verdict::unknownEffect: break;
+    }
+    return "unknown-effect";
+}
+
+bool DiagnoseOptions::isValid(std::string* reason) const
+{
+    if (!fit.isValid(reason))
+        return false;
+    if (trials < 1) {
+        *reason = "at least one candidate must be tried";
+        return false;
+    }
+    if (!(significantFall > 0.0 && significantFall < 1.0)) {
+        *reason = "the significant fall is a fraction between 0 and 1";
+        return false;
+    }
+    return true;
+}
+
+Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptions& options, const Progress& progress)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The diagnosis cannot run: " + reason + ".");
+    Diagnosis diagnosis;
+    FitOptions quick = options.fit;
+    quick.substeps = substepsFor(model, record, options.fit.simulationTolerance);
+    quick.search = {10, 3e-3};
+    const auto before = compare(model, record, {quick.substeps, true}, progress.part(0.0, 0.1));
+    diagnosis.error = errorOf(before);
+
+    ScoreOptions test;
+    test.substeps = quick.substeps;
+    test.threads = options.fit.threads;
+    const auto scores = score(model, record, test, progress.part(0.1, 0.3));
+    const auto sections = trialSections(record, 2);
+    int tried = 0;
+    for (const auto& candidate : scores.scores) {
+        RankedEffect entry;
+        entry.effect = candidate.effect->id();
+        entry.predictedChi = candidate.chi;
+        entry.predictedErrorDb = candidate.errorDb;
+        entry.model = candidate.model;
+        auto errorAfter = candidate.errorDb;
+        // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
+        const bool promising = candidate.chi < scores.chi * (1.0 - 0.5 * options.significantFall);
+        if (promising && tried < options.trials) {
+            progress.at(0.3 + 0.7 * tried / options.trials, "trying " + entry.effect);
+            auto trial = candidate.model;
+            const auto summary = tryFit(trial, record, sections, quick, progress.part(0.3 + 0.7 * tried / options.trials, 0.3 + 0.7 * (tried + 1) / options.trials));
+            ++tried;
+            if (summary.usable) {
+                const auto after = compare(trial, record, {quick.substeps, false});
+                entry.model = trial;
+                entry.confirmedChi = after.chi;
+                for (const auto& channel : after.channels)
+                    entry.confirmedErrorDb[channel.quantity] = channel.total.db;
+                entry.significant = after.chi < before.chi * (1.0 - options.significantFall);
+                errorAfter = entry.confirmedErrorDb;
+            }
+        }
+        entry.reason = reasonFor(*candidate.effect, entry.model, before, errorAfter);
+        diagnosis.ranking.push_back(std::move(entry));
+    }
+    std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
+    judge(diagnosis.ranking, before.chi, before.noiseKnown, diagnosis);
+    constexpr double smallestShare = 0.15;   // of what is not noise; less is a symptom of something else
+    diagnosis.verdict = verdictOf(diagnosis.ranking, before, smallestShare);
+    if (diagnosis.verdict != Verdict::missingEffect)
+        diagnosis.indistinguishable.clear();
+    diagnosis.sentence = sentenceFor(diagnosis, before);
+    progress.at(1.0, "diagnosed");
+    return diagnosis;
+}
+
+Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress)
+{
+    Diagnosis diagnosis;
+    const auto before = compare(model, spectra);
+    diagnosis.error = errorOf(before);
+    const auto targets = responsesOf(spectra);
+    const auto cost = [&](const Model& m) {
+        double sum = 0.0;
+        for (const auto& target : targets)
+            sum += std::pow(10.0, responseErrorDb(m, target) / 10.0);
+        return sum / static_cast<double>(targets.size());
+    };
+    Extent extent;
+    extent.lowFrequency = targets.front().frequency.front();
+    extent.highFrequency = targets.front().frequency.back();
+    const double now = cost(model);
+    for (const auto* effect : catalogue()) {
+        if (!effect->linear() || model.has(effect->id()) || (effect->electrical() && !model.electrical()))
+            continue;
+        progress.at(static_cast<double>(diagnosis.ranking.size()) / static_cast<double>(catalogue().size()), "trying " + effect->id());
+        RankedEffect entry;
+        entry.effect = effect->id();
+        entry.confirmedChi = now;
+        entry.model = model;
+        for (std::size_t start = 0; start < effect->starts(extent).size(); ++start) {
+            auto trial = withEffect(model, *effect, extent, start);
+            fitResponse(trial, targets, {80, 1e-9});
+            if (const double chi = cost(trial); chi < entry.confirmedChi) {
+                entry.confirmedChi = chi;
+                entry.model = trial;
+            }
+        }
+        for (const auto& target : targets)
+            entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(entry.model, target);
+        entry.predictedChi = entry.confirmedChi;
+        // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters.
+        entry.significant = entry.confirmedChi < 0.8 * now;
+        entry.reason = reasonFor(*effect, entry.model, before, entry.confirmedErrorDb);
+        diagnosis.ranking.push_back(std::move(entry));
+    }
+    std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
+    judge(diagnosis.ranking, now, false, diagnosis);
+    diagnosis.verdict = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant ? Verdict::missingEffect
+                                                                                            : Verdict::unknownEffect;
+    diagnosis.sentence = sentenceFor(diagnosis, before);
+    static_cast<void>(options);
+    return diagnosis;
+}
+
+} // namespace excursion

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/Trial.h"
+
+#include "Engine/Driver/OutputError.h"
+
+#include <map>
+
+namespace excursion {
+namespace {
+
+double costOf(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+{
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.substeps = options.substeps;
+    run.threads = options.threads;
+    NormalEquations sum;
+    for (const auto& section : outputError(model, record, sections, {}, run)) {
+        if (!section.finite)
+            return std::numeric_limits<double>::infinity();
+        for (const auto& channel : section.channels)
+            sum.add(channel);
+    }
+    addPrior(model, freeParameters(model), sum);
+    return sum.cost;
+}
+
+/// The strengths of the newest component scaled by a factor.
+Model scaled(Model model, double factor)
+{
+    for (auto& p : model.components.back().parameters)
+        if (p.strength)
+            p.value *= factor;
+    return model;
+}
+
+} // namespace
+
+std::vector<std::size_t> trialSections(const Record& record, int realizations)
+{
+    std::map<int, int> taken;
+    std::vector<std::size_t> sections;
+    for (const auto n : estimationSections(record)) {
+        const int level = record.sections[n].level;
+        if (level >= 0 && taken[level]++ >= realizations)
+            continue;
+        sections.push_back(n);
+    }
+    return sections;
+}
+
+FitSummary tryFit(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
+                  const Progress& progress)
+{
+    FitOptions chosen = options;
+    if (chosen.substeps == 0)
+        chosen.substeps = substepsFor(model, record, options.simulationTolerance);
+    Model best = scaled(model, 0.0);
+    double lowest = costOf(best, record, sections, chosen);
+    for (const double factor : {1.0, 0.5, 0.2}) {
+        const Model candidate = scaled(model, factor);
+        const double cost = costOf(candidate, record, sections, chosen);
+        if (cost < lowest) {
+            lowest = cost;
+            best = candidate;
+            break;
+        }
+    }
+    model = std::move(best);
+    return fit(model, record, sections, chosen, progress);
+}
+
+FitSummary refine(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
+{
+    FitOptions chosen = options;
+    if (chosen.substeps == 0)
+        chosen.substeps = substepsFor(model, record, options.simulationTolerance);
+    const auto sections = estimationSections(record);
+    ScoreOptions score;
+    score.substeps = chosen.substeps;
+    score.threads = chosen.threads;
+    FitOptions quick = chosen;
+    quick.search = {8, 1e-3};
+    auto summary = fit(model, record, sections, quick, progress.part(0.0, 0.3));
+    constexpr int mostRaises = 3;
+    for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
+        summary = fit(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
+    return fit(model, record, sections, chosen, progress.part(0.75, 1.0));
+}
+
+} // namespace excursion

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/Score.h"
+#include "Engine/Driver/Fit.h"
+
+#include <vector>
+
+namespace excursion {
+
+/// Sections for a quick fit: of each level up to `realizations` of those not held out.
+std::vector<std::size_t> trialSections(const Record&, int realizations);
+
+/// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it so
+/// far. `model` is left as proposed, with zero strength, when nothing helps.
+FitSummary tryFit(Model& model, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
+                  const Progress& = {});
+
+/// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays.
+FitSummary refine(Model&, const Record&, const FitOptions&, const Progress& = {});
+
+} // namespace excursion
