@@ -38,7 +38,7 @@ inline Model syntheticModel(std::size_t effects)
     for (Eigen::Index k = 0; k < size; ++k) {
         auto& p = *all[static_cast<std::size_t>(k)];
         p.standardError = p.value != 0.0 ? std::abs(p.value) * 0.021 : std::numeric_limits<double>::quiet_NaN();
-        model.covariance(k, k) = p.standardError * p.standardError;
+        model.covariance(k, k) = p.value * p.value * 4.4e-4;
     }
     return model;
 }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Report/Engineering.h"
+#include "Report/Sections.h"
+
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+void addRows(std::vector<std::vector<Page::Cell>>& rows, const std::string& of, const std::vector<Parameter>& parameters,
+             const std::vector<Parameter>* atStart)
+{
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+        const auto& p = parameters[k];
+        std::vector<Page::Cell> row {k == 0 ? of : std::string(), p.name,
+                                     Page::figure(p.free ? withError(p.value, p.standardError, p.unit) : engineering(p.value, p.unit)),
+                                     Page::figure(atStart && k < atStart->size() ? engineering((*atStart)[k].value, p.unit) : "")};
+        row.emplace_back(!p.free ? "held, this take cannot see it" : std::isfinite(p.standardError) ? "" : "error unknown");
+        rows.push_back(std::move(row));
+    }
+}
+
+} // namespace
+
+void addParameters(Page& page, const LadderFile& file)
+{
+    const auto& model = file.ladder.model();
+    const auto& first = file.ladder.rungs.front().model;
+    page.section("Parameters");
+    std::vector<std::vector<Page::Cell>> rows;
+    for (std::size_t k = 0; k < model.components.size(); ++k) {
+        const auto& component = model.components[k];
+        const auto* start = k == 0 ? &first.base() : first.find(component.effect->id());
+        addRows(rows, component.effect->title(), component.parameters, start ? &start->parameters : nullptr);
+    }
+    addRows(rows, "Path to the microphone", model.path, &first.path);
+    page.table({"", "Parameter", "Final model", "First model", ""}, rows);
+    page.note("Values with their standard errors; those of a law are the coefficients of its expansion over the visited range.");
+}
+
+} // namespace excursion

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// What a line stands for; one colour a role, the same on every picture (Okabe & Ito's set, which colour-blind people
+/// tell apart; the roles differ in their dashes as well).
+enum class Role { measured, model, error, noise, before, after, reference };
+
+struct Series {
+    enum class Shape { line, pointsAndLine };
+    std::string title;                  ///< for the key; empty: not in it
+    Role role = Role::measured;
+    std::vector<double> x, y;           ///< a NaN interrupts the line
+    std::vector<double> lower, upper;   ///< of a band around the line; empty: none
+    Shape shape = Shape::line;
+    int dash = 0;                       ///< 0: the role's own; otherwise a pattern of gnuplot's, to tell apart lines of one role
+};
+
+struct Axis {
+    std::string title;
+    std::string unit;                   ///< typeset, see displayUnit()
+    bool logarithmic = false;
+    double least = 0.0, most = 0.0;     ///< of the range; equal: from the data
+    std::vector<std::string> names;     ///< of the values 0, 1, 2, ...; empty: numbers
+};
+
+/// A picture with two axes. Data is in the axes' display units.
+struct Plot {
+    std::string title;
+    Axis x, y;
+    std::vector<Series> series;
+    bool key = true;
+    int width = 460, height = 300;
+};
+
+/// Draws all plots in one run of gnuplot and returns an SVG element for each, to be put into a page that defines the colours
+/// of style.css. Same plots, same text. Throws Error (numerical) when gnuplot is not there or refuses.
+std::vector<std::string> draw(const std::vector<Plot>&);
+
+} // namespace excursion

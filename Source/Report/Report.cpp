@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Report/Report.h"
+
+#include "Engine/Measurement/DraftFile.h"
+#include "Report/Sections.h"
+
+namespace excursion {
+
+std::string reportHtml(const LadderFile& file)
+{
+    Page page("Excursion report" + (file.take.driver.empty() ? "" : " \u00b7 " + file.take.driver));
+    addVerdict(page, file);
+    addProblems(page, file);
+    if (!file.ladder.rungs.empty()) {
+        addRungs(page, file);
+        addLaws(page, file);
+        addResponses(page, file);
+        addSpectra(page, file);
+        addResiduals(page, file);
+        addRanking(page, file);
+        addParameters(page, file);
+    }
+    return page.html();
+}
+
+void writeReport(const LadderFile& file, const std::filesystem::path& path)
+{
+    const auto html = reportHtml(file);
+    DraftFile draft(path);
+    draft.write(html);
+    draft.publish();
+}
+
+} // namespace excursion

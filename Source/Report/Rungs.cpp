@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/ComparisonFile.h"
+#include "Report/Engineering.h"
+#include "Report/Sections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+Plot fallOf(const Ladder& ladder, Quantity quantity)
+{
+    Series error {"error", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+    Series predicted {"predicted", Role::model, {}, {}, {}, {}, Series::Shape::pointsAndLine, 3};
+    Series noise {"noise floor", Role::noise, {}, {}, {}, {}, Series::Shape::line, 0};
+    for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
+        const auto& rung = ladder.rungs[k];
+        const auto errors = errorByChannel(rung.comparison);
+        const auto found = errors.find(quantity);
+        const auto at = static_cast<double>(k);
+        for (auto* series : {&error, &predicted, &noise})
+            series->x.push_back(at);
+        error.y.push_back(found == errors.end() ? nothing : found->second.db);
+        noise.y.push_back(found == errors.end() ? nothing : found->second.noiseFloorDb.value_or(nothing));
+        const auto guess = rung.predictedErrorDb.find(quantity);
+        predicted.y.push_back(rung.added.empty() || guess == rung.predictedErrorDb.end() ? nothing : guess->second);
+    }
+    Plot plot;
+    plot.title = capitalized(name(quantity));
+    plot.x.title = "rung";
+    for (std::size_t k = 0; k < ladder.rungs.size(); ++k)
+        plot.x.names.push_back(std::to_string(k));
+    plot.x.least = -0.3;
+    plot.x.most = static_cast<double>(ladder.rungs.size()) - 0.7;
+    plot.y = {"relative rms error", "dB", false, 0.0, 0.0, {}};
+    double lowest = 0.0;
+    for (const auto* series : {&error, &predicted, &noise})
+        for (const double db : series->y)
+            if (std::isfinite(db))
+                lowest = std::min(lowest, db);
+    plot.y.least = std::max(-200.0, 10.0 * std::floor(lowest / 10.0 - 0.2));
+    plot.series = {error, predicted, noise};
+    return plot;
+}
+
+} // namespace
+
+void addRungs(Page& page, const LadderFile& file)
+{
+    const auto& ladder = file.ladder;
+    page.section("The ladder");
+    std::vector<std::string> header {"Rung"};
+    const auto& channels = ladder.rungs.front().comparison.channels;
+    for (const auto& channel : channels) {
+        header.push_back(capitalized(name(channel.quantity)));
+        header.emplace_back("predicted");
+    }
+    header.emplace_back("Misfit \u03c7\u00b2");
+    std::vector<std::vector<Page::Cell>> rows;
+    for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
+        const auto& rung = ladder.rungs[k];
+        const auto errors = errorByChannel(rung.comparison);
+        std::vector<Page::Cell> row {rungTitle(ladder, k)};
+        for (const auto& channel : channels) {
+            const auto error = errors.find(channel.quantity);
+            const auto guess = rung.predictedErrorDb.find(channel.quantity);
+            row.push_back(Page::figure(error == errors.end() ? "\u2013" : decibels(error->second.db)));
+            row.push_back(Page::figure(rung.added.empty() || guess == rung.predictedErrorDb.end() ? "\u2013" : decibels(guess->second)));
+        }
+        row.push_back(Page::figure(rung.comparison.noiseKnown ? engineering(rung.comparison.chi, "1", 3) : "\u2013"));
+        rows.push_back(std::move(row));
+    }
+    std::vector<Page::Cell> floors {"noise floor"};
+    for (const auto& channel : ladder.rungs.back().comparison.channels) {
+        floors.push_back(Page::figure(decibels(channel.total.noiseFloorDb.value_or(nothing))));
+        floors.emplace_back("");
+    }
+    floors.push_back(Page::figure("1"));
+    rows.push_back(std::move(floors));
+    page.table(header, rows);
+    page.note(std::string("Errors are relative rms over all levels, on ")
+              + (ladder.rungs.back().comparison.validated ? "data that no fit saw. " : "the data that was fitted, as nothing could be held out. ")
+              + "A misfit of 1 means that nothing but noise is left.");
+    for (const auto& id : ladder.withdrawn)
+        page.paragraph("Tried and withdrawn: " + effectTitle(id) + "; what it left was as large as what it explained.");
+    std::vector<Plot> plots;
+    for (const auto& channel : channels)
+        plots.push_back(fallOf(ladder, channel.quantity));
+    const int columns = columnsFor(plots.size());
+    page.figures(std::move(plots), columns,
+                 "Each rung adds one effect and refits everything: the model is complete where the error meets the noise floor.");
+}
+
+} // namespace excursion
