@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Terminal.h"
 
-#include <nlohmann/json.hpp>
+#include "Engine/Document/JsonText.h"
 
 #include <algorithm>
 #include <array>
@@ -93,7 +93,7 @@ Progress Terminal::progress()
 void Terminal::say(std::string_view text)
 {
     clearBar();
-    if (!json && !quiet)
+    if (jsonFile != "-" && !quiet)
         std::cout << text << '\n' << std::flush;
 }
 
@@ -127,11 +127,13 @@ void Terminal::table(const std::vector<std::string>& header, const std::vector<s
     say(text);
 }
 
-void Terminal::document(const nlohmann::json& document)
+void Terminal::document(const nlohmann::ordered_json& document)
 {
     clearBar();
-    if (json)   // a path need not be UTF-8; a document must be
-        std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n' << std::flush;
+    if (jsonFile == "-")
+        std::cout << jsonText(document) << std::flush;
+    else if (!jsonFile.empty())
+        writeJson(document, jsonFile);
 }
 
 void Terminal::complain(std::string_view sentence)

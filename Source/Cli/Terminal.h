@@ -16,6 +16,7 @@ namespace excursion::cli {
 /// Where a verb speaks. Results go to stdout, everything about the work to stderr:
 ///  - by default text and tables for a person, and a progress bar when stderr is a terminal;
 ///  - with --json the one document of the verb on stdout, and nothing else;
+///  - with --json FILE.json the document in that file, and the text for a person on stdout;
 ///  - with --quiet nothing but errors (and the document, when --json asks for it too).
 /// Ctrl-C asks the work to stop (`stop()`); a second Ctrl-C ends the program on the spot.
 class Terminal {
@@ -25,7 +26,7 @@ public:
     Terminal(const Terminal&) = delete;
     Terminal& operator=(const Terminal&) = delete;
 
-    bool json = false;
+    std::string jsonFile;   ///< where the document goes: empty: nowhere; "-": stdout
     bool quiet = false;
     int answer = 0;   ///< exit code of a verb that ran well: 1 when its answer is no
 
@@ -39,8 +40,8 @@ public:
     /// A table for a person: columns aligned, those of numbers (all cells begin as one) to the right.
     void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
 
-    /// The document of the verb, on stdout, when --json asked for it.
-    void document(const nlohmann::json&);
+    /// The document of the verb, on stdout or in the file, when --json asked for it.
+    void document(const nlohmann::ordered_json&);
 
     /// One sentence "excursion: ..." on stderr.
     void complain(std::string_view sentence);

@@ -32,10 +32,24 @@ question, 5 a computation that failed, 6 stopped by Ctrl-C.)";
 
 constexpr int internalError = 70;   // as sysexits.h has it; 1 is an answer
 
-int run(CLI::App& app, cli::Terminal& terminal, int argc, char** argv)
+/// The arguments, last one first as CLI11 wants them. "--json out.json" is made "--json=out.json": an option whose value
+/// may be left out would take the take that follows it.
+std::vector<std::string> argumentsFrom(int argc, char** argv)
+{
+    std::vector<std::string> arguments;
+    for (int k = 1; k < argc; ++k) {
+        std::string argument = argv[k];
+        if (argument == "--json" && k + 1 < argc && std::string_view(argv[k + 1]).ends_with(".json"))
+            argument += std::string("=") + argv[++k];
+        arguments.insert(arguments.begin(), argument);
+    }
+    return arguments;
+}
+
+int run(CLI::App& app, cli::Terminal& terminal, std::vector<std::string> arguments)
 {
     try {
-        app.parse(argc, argv);
+        app.parse(std::move(arguments));
         return terminal.answer;
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0)   // --help and --version
@@ -66,15 +80,16 @@ int main(int argc, char** argv)
     app.footer(footer);
     app.fallthrough();   // so that --json may stand after the verb
     app.set_version_flag("--version", EXCURSION_VERSION);
-    app.add_flag("--json", terminal.json, "print one JSON document and nothing else");
+    app.add_flag("--json{-}", terminal.jsonFile, "print one JSON document and nothing else; --json FILE.json writes it there");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
     app.require_subcommand(1);
 
     // In the order of the method: --help prints them so.
     cli::addExcite(app, terminal);
     cli::addImport(app, terminal);
+    cli::addVirtual(app, terminal);
     cli::addCheck(app, terminal);
     cli::addBla(app, terminal);
 
-    return run(app, terminal, argc, argv);
+    return run(app, terminal, argumentsFrom(argc, argv));
 }

@@ -113,7 +113,8 @@ TEST_CASE("A driver without a coil reads and writes, and takes no electrical eff
 {
     auto document = parsed(makeModel("mechanical"));
     CHECK(refusal(document).empty());
-    for (const auto& effect : parsed(everything())["effects"])
+    const auto full = parsed(everything());
+    for (const auto& effect : full["effects"])
         if (effectNamed(effect["id"].get<std::string>()).electrical()) {
             document["effects"] = nlohmann::json::array({effect});
             CHECK_THAT(refusal(document), Catch::Contains("no coil"));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace excursion {
@@ -50,6 +51,17 @@ double signalPower(const Measurement& take, const Channel& channel)
     return power;
 }
 
+/// The share of a sinusoid's power that is left when the average of P periods is taken away: 1 - |D|^2 with
+/// D = 1/P sum_p exp(2 pi j f N p / fs).
+double shareLeft(double frequency, const Measurement& take)
+{
+    const Excitation& e = *take.excitation;
+    std::complex<double> sum = 0.0;
+    for (int p = 0; p < e.periods; ++p)
+        sum += std::polar(1.0 / e.periods, 2.0 * std::numbers::pi * frequency * e.period / take.sampleRate * p);
+    return std::max(0.1, 1.0 - std::norm(sum));
+}
+
 double medianOf(std::vector<double> values)
 {
     if (values.empty())
@@ -77,7 +89,7 @@ std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
     for (const double mains : {50.0, 60.0}) {
         Hum hum;
         hum.mains = mains;
-        double total = 0.0, highest = 0.0;
+        double total = 0.0, seen = 0.0, highest = 0.0;
         for (int harmonic = 1; harmonic <= 6; ++harmonic) {
             const double centre = harmonic * mains / spacing;
             // The mains wander by 0.3 %, a Hann line is two bins wide on either side.
@@ -88,12 +100,14 @@ std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
             double peak = 0.0, sum = 0.0;
             std::vector<double> beside;
             for (auto k = static_cast<std::size_t>(centre - surroundings); static_cast<double>(k) <= centre + surroundings; ++k) {
+                const bool near = std::abs(static_cast<double>(k) - centre) <= reach;
+                if (near)
+                    sum += power[k];
                 // Multiples of the number of periods were taken away with the average.
                 if (k % static_cast<std::size_t>(e.periods) == 0)
                     continue;
-                if (std::abs(static_cast<double>(k) - centre) <= reach) {
+                if (near) {
                     peak = std::max(peak, power[k]);
-                    sum += power[k];
                 } else {
                     beside.push_back(power[k]);
                 }
@@ -104,12 +118,13 @@ std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
                 continue;
             ++hum.harmonics;
             highest = std::max(highest, standsOut);
-            total += sum;
+            seen += sum;
+            total += sum / shareLeft(harmonic * mains, take);
         }
         if (hum.harmonics < 2 && highest < 25.0)
             continue;
         hum.db = 10.0 * std::log10(total / signal);
-        hum.aboveNoise = 10.0 * std::log10(total / std::max(all - total, 1e-30 * signal));
+        hum.aboveNoise = 10.0 * std::log10(total / std::max(all - seen, 1e-30 * signal));
         if (!found || hum.db > found->db)
             found = hum;
     }

@@ -174,11 +174,22 @@ PhysicalDelay currentDelay(const Frf& admittance)
     const auto all = reciprocalLines(admittance, 0);
     if (all.size() < 20)
         return {};
-    const auto lines = band(all, 2.5 * impedancePeak(all), all.back().omega);
-    if (lines.size() < 16 || lines.back().omega < 3.0 * lines.front().omega)
-        return {};
+    const auto realPart = [](Complex, Complex Z) { return Z.real(); };
+    PhysicalDelay undecided;
+    undecided.inverted = mostlyNegative(all, undecided, realPart);
 
-    const Basis tail {power(0), power(-1), power(-2), power(-3)};
+    const double peak = impedancePeak(all);
+    Basis tail {power(0), power(-1), power(-2), power(-3)};
+    Thresholds thresholds {.radians = 0.3, .fall = 3.0};
+    auto lines = band(all, 2.5 * peak, all.back().omega);
+    if (lines.size() < 16 || lines.back().omega < 3.0 * lines.front().omega) {
+        // Little is left above a high resonance: go nearer to it, with one more term and more doubt.
+        lines = band(all, 1.7 * peak, all.back().omega);
+        tail.push_back(power(-4));
+        thresholds.fall = 6.0;
+        if (lines.size() < 16 || lines.back().omega < 2.0 * lines.front().omega)
+            return undecided;
+    }
     std::vector<DelayFit> fits;
     const auto tryModel = [&](std::initializer_list<std::function<Complex(Complex)>> inductive) {
         Basis basis(tail);
@@ -208,9 +219,8 @@ PhysicalDelay currentDelay(const Frf& admittance)
     keepBest(std::move(mixed));
     keepBest(std::move(shunted));
 
-    auto verdict = judge(fits, lines.back().omega, {.radians = 0.3, .fall = 3.0});
-    verdict.inverted = verdict.conclusive
-                    && mostlyNegative(lines, verdict, [](Complex, Complex Z) { return Z.real(); });
+    auto verdict = judge(fits, lines.back().omega, thresholds);
+    verdict.inverted = mostlyNegative(all, verdict, realPart);
     return verdict;
 }
 

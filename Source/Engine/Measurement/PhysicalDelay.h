@@ -22,8 +22,9 @@ struct PhysicalDelay {
 /// single law, so the inductive part is L s, K s^a, L s + K s^a and L s + R2 s/(s + p) in turn
 /// (0.4 <= a <= 0.95; p within the band). A dispersive inductance resembles a delay over a narrow band; the
 /// delay is clear only when all models that fit well agree on it, it turns the phase by 0.3 rad within the band, exceeds
-/// 5 standard errors, and lets the misfit of the best model fall by 3 dB.
-/// Inverted: Re Z < 0 on most lines, which no passive impedance can (Brune 1931).
+/// 5 standard errors, and lets the misfit of the best model fall by 3 dB. When less than 1.6 octaves lie above 2.5 times the
+/// resonance, the fit begins at 1.7 times with a c4/s^4, and the misfit must fall by 6 dB.
+/// Inverted: Re Z < 0 on most lines of the whole band, which no passive impedance can (Brune 1931).
 /// @param admittance  current/voltage with its variance
 PhysicalDelay currentDelay(const Frf& admittance);
 

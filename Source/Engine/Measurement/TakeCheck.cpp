@@ -40,7 +40,7 @@ bool isCoherent(const Measurement& take, const Channel& channel, std::vector<Pro
     return false;
 }
 
-/// A channel that drifts or breaks does not repeat either, and seems unsettled or to hum: only the cause is told.
+/// A channel that drifts, breaks or hums does not repeat either and seems unsettled: only the cause is told.
 void dropConsequences(std::vector<Problem>& problems)
 {
     const auto causes = problems;
@@ -48,8 +48,8 @@ void dropConsequences(std::vector<Problem>& problems)
         if (p.kind != "not-settled" && p.kind != "poor-repeatability" && p.kind != "low-snr" && p.kind != "hum")
             return false;
         return std::any_of(causes.begin(), causes.end(), [&](const Problem& cause) {
-            return (cause.kind == "clock-drift" || cause.kind == "dropout") && cause.fatal
-                && (!cause.channel || cause.channel == p.channel);
+            return (cause.kind == "clock-drift" || cause.kind == "dropout" || (cause.kind == "hum" && p.kind != "hum"))
+                && cause.fatal && (!cause.channel || cause.channel == p.channel);
         });
     });
 }

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many seconds of loudspeaker a second of one core simulates, with every effect of the catalogue. Target: 20.
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/Simulate.h"
+#include "Engine/Signal/Multisine.h"
+
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+
+using namespace excursion;
+
+namespace {
+
+/// A midbass with all effects at moderate strength.
+Model everything()
+{
+    auto model = makeModel("electrodynamic");
+    const std::pair<const char*, double> base[] {{"Re", 3.3}, {"Le", 266e-6}, {"Bl", 4.95}, {"m", 0.01435}, {"Rms", 0.786}, {"K", 1852.0}};
+    for (const auto& [name, value] : base)
+        model.baseParameter(name).value = value;
+    Extent extent;
+    extent.displacement = 4e-3;
+    extent.velocity = 1.5;
+    extent.current = 6.0;
+    extent.lowFrequency = 15.0;
+    extent.highFrequency = 8000.0;
+    for (const auto* effect : catalogue()) {
+        model = withEffect(model, *effect, extent);
+        auto& added = model.components.back();
+        if (effect->law())
+            added.parameters[1].value = (effect->id() == "stiffness" ? 0.1 : -0.1) * added.extent.scale;
+        else
+            for (auto& parameter : added.parameters)
+                if (parameter.strength)
+                    parameter.value = effect->id() == "creep" ? 300.0 : 0.01;
+    }
+    return model;
+}
+
+double wallNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double coreNow() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+} // namespace
+
+int main()
+{
+    MultisineOptions stimulus;
+    stimulus.period = 1 << 20;
+    stimulus.bandLow = 15.0;
+    stimulus.bandHigh = 8000.0;
+    stimulus.rms = 4.0;
+    const auto input = multisine(stimulus, chooseLines(stimulus), 0);
+    const double seconds = static_cast<double>(input.size()) / stimulus.sampleRate;
+    const auto model = everything();
+    for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
+        SimulationOptions options;
+        options.tolerance = tolerance;
+        SimulationSummary summary;
+        const double wall = wallNow(), core = coreNow();
+        simulate(model, input, stimulus.sampleRate, options, &summary);
+        std::printf("simulate, %zu effects, 48 kHz, tolerance %.0e: %d steps a sample, accuracy %.1e, %.1f x real time of core time "
+                    "(%.1f x by the clock); target 20 x\n",
+                    model.effectIds().size(), tolerance, summary.substeps, summary.accuracy, seconds / (coreNow() - core),
+                    seconds / (wallNow() - wall));
+    }
+}

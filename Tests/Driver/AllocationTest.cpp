@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Driver/EffectBench.h"
+
+#include "Engine/Driver/Dynamics.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+using namespace excursion;
+
+namespace {
+
+thread_local bool watching = false;
+thread_local int allocations = 0;
+
+void* counted(std::size_t size)
+{
+    if (watching)
+        ++allocations;
+    if (void* place = std::malloc(size ? size : 1))
+        return place;
+    throw std::bad_alloc();
+}
+
+template <class Work>
+int allocationsIn(const Work& work)
+{
+    allocations = 0;
+    watching = true;
+    work();
+    watching = false;
+    return allocations;
+}
+
+} // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void operator delete(void* place) noexcept { std::free(place); }
+void operator delete[](void* place) noexcept { std::free(place); }
+void operator delete(void* place, std::size_t) noexcept { std::free(place); }
+void operator delete[](void* place, std::size_t) noexcept { std::free(place); }
+
+TEST_CASE("The detector of allocations detects one", "[effects]")
+{
+    std::unique_ptr<int> kept;
+    CHECK(allocationsIn([&kept] { kept = std::make_unique<int>(3); }) == 1);
+}
+
+TEST_CASE("No step of the simulation allocates", "[effects]")
+{
+    auto model = makeModel("electrodynamic");
+    for (const auto* effect : catalogue())
+        model = withEffect(model, *effect, someExtent(1.0));
+    const auto theta = parameterVector(model);
+    Dynamics<double> dynamics(model, {theta.begin(), theta.end()});
+    std::vector<double> state(static_cast<std::size_t>(dynamics.order()), 0.0);
+    CHECK(allocationsIn([&] {
+              for (int n = 0; n < 100; ++n)
+                  dynamics.step(state.data(), 1.0, 1.0, 1.0, 1e-6);
+          }) == 0);
+    CHECK(state[0] != 0.0);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace excursion::study {
+
+/// One random take of the study.
+struct Case {
+    std::uint64_t seed = 1;
+    std::string hidden;        ///< the effect's id; empty: a control, nothing is hidden
+    double seconds = 12.0;     ///< about, of the take
+    unsigned threads = 1;      ///< of the fits
+};
+
+/// Of one law of the final model: how much of the truth lies within its 95 % band, over 90 % of the visited range.
+struct LawCoverage {
+    std::string effect;
+    bool hidden = false;   ///< the effect is really there; else the truth is a constant
+    int points = 0, inside = 0;
+};
+
+struct Outcome {
+    Case what;
+    std::string driver;
+    double sampleRate = 0.0, noiseDb = 0.0, strength = 0.0, takeSeconds = 0.0, improveSeconds = 0.0;
+    std::string verdict, first;                 ///< first of the ranking of the base's diagnosis
+    std::vector<std::string> added, withdrawn;
+    double standsDb = 0.0;   ///< validation error of the base over the noise floor, in the worst channel
+    double finalDb = 0.0;    ///< the same of the final model
+    std::vector<LawCoverage> laws;
+    std::string failure;     ///< what was thrown
+
+    bool control() const { return what.hidden.empty(); }
+    bool named() const { return first == what.hidden; }
+    bool nothingAdded() const;    ///< and not refused either
+    bool explained() const;       ///< the effect that is hidden was added and no other; of a control none
+};
+
+/// Draws the loudspeaker and its take, lets it be improved, and compares with the truth. Never throws.
+Outcome run(const Case&);
+
+} // namespace excursion::study

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How often is the diagnosis right? Random loudspeakers with one hidden effect, and controls with none, are measured on the virtual
+// bench, improved, and compared with the truth.
+#include "Study/Summary.h"
+
+#include "Bench/Draw.h"
+#include "Engine/Document/JsonText.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+
+using namespace excursion;
+using namespace excursion::study;
+
+namespace {
+
+/// The hidden effects take turns; the controls follow with seeds of their own.
+std::vector<Case> cases(int takes, int controls, std::uint64_t firstSeed, double seconds, unsigned threads)
+{
+    const auto& effects = bench::drawnEffects();
+    std::vector<Case> result;
+    for (int n = 0; n < takes + controls; ++n)
+        result.push_back({firstSeed + static_cast<std::uint64_t>(n),
+                          n < takes ? effects[static_cast<std::size_t>(n) % effects.size()] : "", seconds, threads});
+    return result;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    int takes = 200, controls = 50, jobs = 2;
+    std::uint64_t firstSeed = 1;
+    double seconds = 12.0;
+    std::string json;
+    bool demand = false;
+    CLI::App app {"Draws random takes of virtual loudspeakers with one hidden effect (and controls with none), improves each, and says "
+                  "how often the diagnosis was right."};
+    app.add_option("--takes", takes, "with a hidden effect")->check(CLI::NonNegativeNumber)->capture_default_str();
+    app.add_option("--controls", controls, "without one")->check(CLI::NonNegativeNumber)->capture_default_str();
+    app.add_option("--first-seed", firstSeed, "of the first take; the others follow")->capture_default_str();
+    app.add_option("--seconds", seconds, "about, of each take")->check(CLI::Range(0.5, 120.0))->capture_default_str();
+    app.add_option("--jobs", jobs, "takes at once; with more than one, each fit has one thread")->check(CLI::Range(1, 64))->capture_default_str();
+    app.add_option("--json", json, "file for all results, kept up to date while the study runs");
+    app.add_flag("--demand", demand, "exit with 1 unless the shares reach their targets");
+    CLI11_PARSE(app, argc, argv);
+
+    const auto plan = cases(takes, controls, firstSeed, seconds, jobs > 1 ? 1 : 2);
+    std::vector<Outcome> outcomes;
+    std::mutex mutex;
+    std::size_t next = 0;
+    const auto work = [&] {
+        for (;;) {
+            Case mine;
+            {
+                const std::lock_guard lock(mutex);
+                if (next == plan.size())
+                    return;
+                mine = plan[next++];
+            }
+            auto outcome = run(mine);
+            const std::lock_guard lock(mutex);
+            std::printf("%s\n", line(outcome).c_str());
+            std::fflush(stdout);
+            outcomes.push_back(std::move(outcome));
+            std::sort(outcomes.begin(), outcomes.end(), [](const Outcome& a, const Outcome& b) { return a.what.seed < b.what.seed; });
+            if (!json.empty())
+                writeJson(toJson(summarize(outcomes), outcomes), json);
+        }
+    };
+    {
+        std::vector<std::jthread> workers;
+        for (int n = 1; n < jobs; ++n)
+            workers.emplace_back(work);
+        work();
+    }
+    const auto summary = summarize(outcomes);
+    std::printf("%s", text(summary, outcomes).c_str());
+    return demand && !summary.reached() ? 1 : 0;
+}

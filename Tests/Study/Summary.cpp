@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Study/Summary.h"
+
+#include "Engine/Document/JsonText.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace excursion::study {
+namespace {
+
+constexpr double standsOutDb = 6.0, nearNoiseDb = 3.0;
+
+template <class... Values>
+std::string formatted(const char* format, Values... values)
+{
+    char buffer[400];
+    const int length = std::snprintf(buffer, sizeof buffer, format, values...);
+    return {buffer, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof buffer) - 1))};
+}
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string all;
+    for (const auto& word : words)
+        all += (all.empty() ? "" : ",") + word;
+    return all.empty() ? "-" : all;
+}
+
+std::string row(const char* what, const Share& share, double target)
+{
+    auto result = formatted("  %-58s %5.1f %%  (%d of %d)", what, 100.0 * share.value(), share.count, share.of);
+    if (target > 0.0)
+        result += formatted("  %s %.0f %%", share.value() >= target ? "reaches" : "MISSES", 100.0 * target);
+    return result + "\n";
+}
+
+} // namespace
+
+bool Summary::reached() const
+{
+    return named.value() >= 0.98 && untouched.value() >= 0.99 && atNoise.value() >= 0.90 && inBand.value() >= 0.85;
+}
+
+Summary summarize(const std::vector<Outcome>& outcomes)
+{
+    Summary summary;
+    std::vector<double> ratios;
+    for (const auto& o : outcomes) {
+        if (o.control()) {
+            summary.untouched.add(o.nothingAdded());
+        } else if (o.standsDb >= standsOutDb) {
+            summary.named.add(o.named());
+            summary.alone.add(o.explained());
+        } else {
+            summary.faint.add(o.named());
+        }
+        summary.atNoise.add(o.finalDb <= nearNoiseDb);
+        if (o.improveSeconds > 0.0)
+            ratios.push_back(o.improveSeconds / o.takeSeconds);
+        for (const auto& law : o.laws)
+            if (law.hidden)
+                for (auto* share : {&summary.inBand, &summary.inBandOf[law.effect]}) {
+                    share->count += law.inside;
+                    share->of += law.points;
+                }
+    }
+    if (!ratios.empty()) {
+        std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+        summary.medianTimeRatio = ratios[ratios.size() / 2];
+    }
+    return summary;
+}
+
+std::string line(const Outcome& o)
+{
+    auto result = formatted("%s seed %-4llu %-19s %-9s %5.1f kHz noise %5.1f dB strength %.2f ",
+                            o.explained() ? "ok   " : "WRONG", static_cast<unsigned long long>(o.what.seed),
+                            o.control() ? "(control)" : o.what.hidden.c_str(), o.driver.c_str(), o.sampleRate / 1000.0, o.noiseDb,
+                            o.strength);
+    if (!o.failure.empty())
+        return result + "failed: " + o.failure;
+    result += formatted("stands %5.1f dB, first %s, added %s", o.standsDb, o.first.empty() ? "-" : o.first.c_str(), joined(o.added).c_str());
+    if (!o.withdrawn.empty())
+        result += ", withdrawn " + joined(o.withdrawn);
+    result += formatted(", %s, final %.2f dB", o.verdict.c_str(), o.finalDb);
+    for (const auto& law : o.laws)
+        result += formatted(", %s %d/%d in band", law.effect.c_str(), law.inside, law.points);
+    return result + formatted(", %.1f s = %.1f x", o.improveSeconds, o.improveSeconds / o.takeSeconds);
+}
+
+std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
+{
+    std::string result = "\n";
+    result += row("hidden effect first, where it stands 6 dB above the noise", s.named, 0.98);
+    result += row("  ... and the only one added", s.alone, 0.0);
+    result += row("hidden effect first, where it does not", s.faint, 0.0);
+    result += row("controls to which nothing was added", s.untouched, 0.99);
+    result += row("final validation error within 3 dB of the noise", s.atNoise, 0.90);
+    result += row("points of the true laws inside the 95 % bands", s.inBand, 0.85);
+    for (const auto& [effect, share] : s.inBandOf)
+        result += row(("  " + effect).c_str(), share, 0.0);
+    result += formatted("  median time of improve over the take's length: %.2f\n", s.medianTimeRatio);
+    bool any = false;
+    for (const auto& o : outcomes)
+        if (!o.explained() || o.finalDb > nearNoiseDb) {
+            result += any ? "" : "\nNot as they should be:\n";
+            any = true;
+            result += "  " + line(o) + "\n";
+        }
+    return result;
+}
+
+nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outcomes)
+{
+    using Json = nlohmann::ordered_json;
+    const auto share = [](const Share& part) { return Json {{"share", part.value()}, {"count", part.count}, {"of", part.of}}; };
+    Json document {{"format", "excursion-study"}, {"version", 1}};
+    document["named"] = share(s.named);
+    document["namedAlone"] = share(s.alone);
+    document["namedFaint"] = share(s.faint);
+    document["controlsUntouched"] = share(s.untouched);
+    document["atNoise"] = share(s.atNoise);
+    document["inBand"] = share(s.inBand);
+    for (const auto& [effect, part] : s.inBandOf)
+        document["inBandOf"][effect] = share(part);
+    document["medianTimeRatio"] = s.medianTimeRatio;
+    document["takes"] = Json::array();
+    for (const auto& o : outcomes) {
+        Json take {{"seed", o.what.seed},         {"hidden", o.what.hidden},     {"driver", o.driver},
+                   {"sampleRate", o.sampleRate},  {"noiseDb", o.noiseDb},        {"strength", o.strength},
+                   {"seconds", o.takeSeconds},    {"first", o.first},            {"added", o.added},
+                   {"withdrawn", o.withdrawn},    {"verdict", o.verdict},        {"standsDb", numberOrNull(o.standsDb)},
+                   {"finalDb", numberOrNull(o.finalDb)},       {"improveSeconds", o.improveSeconds}};
+        for (const auto& law : o.laws)
+            take["laws"].push_back({{"effect", law.effect}, {"hidden", law.hidden}, {"points", law.points}, {"inside", law.inside}});
+        if (!o.failure.empty())
+            take["failure"] = o.failure;
+        document["takes"].push_back(std::move(take));
+    }
+    return document;
+}
+
+} // namespace excursion::study

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Study/Case.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <map>
+
+namespace excursion::study {
+
+struct Share {
+    int count = 0, of = 0;
+    void add(bool counts) { count += counts; ++of; }
+    /// Nothing to count is no failure.
+    double value() const { return of > 0 ? static_cast<double>(count) / of : 1.0; }
+};
+
+/// The shares that the study is judged by.
+struct Summary {
+    Share named;           ///< takes whose effect stands 6 dB above the noise: it is first in the ranking
+    Share faint;           ///< the other takes: first in the ranking, for information
+    Share alone;           ///< takes of `named` whose final model has that effect and no other
+    Share untouched;       ///< controls: no effect added
+    Share atNoise;         ///< all: final validation error within 3 dB of the noise floor in every channel
+    Share inBand;          ///< points of the hidden laws within their 95 % bands, pooled
+    std::map<std::string, Share> inBandOf;   ///< by effect
+    double medianTimeRatio = 0.0;            ///< time of improve over the take's length
+
+    /// named 98 %, untouched 99 %, atNoise 90 %, inBand 85 %.
+    bool reached() const;
+};
+
+Summary summarize(const std::vector<Outcome>&);
+
+std::string line(const Outcome&);              ///< one line for the terminal
+std::string text(const Summary&, const std::vector<Outcome>&);   ///< the shares, then each take that was not as it should be
+nlohmann::ordered_json toJson(const Summary&, const std::vector<Outcome>&);
+
+} // namespace excursion::study
