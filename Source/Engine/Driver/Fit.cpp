@@ -116,11 +116,14 @@ void adapt(Record& record, const Model& model)
                                                              std::abs(responses[c].value[n]) * std::sqrt(section.inputVariance[played[n]]));
         section.inputVariance.clear();
     }
-    // The slowest oscillating pole decides; relaxations (creep) are slower but answer to the mean only.
-    const auto poles = linearize(model).A.eigenvalues();
+    // The slowest pole of the base decides, real when the motor damps more than critically; relaxations (creep) are slower, but
+    // answer to little more than the mean.
+    Model base = model;
+    base.components.resize(1);
+    const auto poles = linearize(base).A.eigenvalues();
     double slowest = std::numeric_limits<double>::infinity();
     for (const auto& pole : poles)
-        if (std::abs(pole.imag()) > 0.0 && pole.real() < 0.0)
+        if (pole.real() < 0.0)
             slowest = std::min(slowest, -pole.real());
     const std::size_t period = record.sections.front().window;
     const double needed = std::isfinite(slowest) ? 12.7 / slowest * record.sampleRate : 0.0;
