@@ -28,7 +28,6 @@ Sums sum(const Model& model, const Record& record, const std::vector<Eigen::Inde
     sums.power.resize(record.channels.size());
     OutputErrorOptions run;
     run.substeps = options.substeps;
-    run.gradientSubsteps = std::min(options.substeps, stableSubsteps(model, record.sampleRate));
     run.threads = options.threads;
     std::vector<std::size_t> all(record.sections.size());
     for (std::size_t n = 0; n < all.size(); ++n)

@@ -137,9 +137,8 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
     extent.lowFrequency = record.bandLow;
     extent.highFrequency = record.bandHigh;
     double x = 0.0, v = 0.0, i = 0.0;
-    for (const auto index : estimationSections(record))
+    for (const auto& section : record.sections)
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
-            const auto& section = record.sections[index];
             if (record.channels[c] == Quantity::current)
                 i = std::max(i, measuredPeak(record, section, c, 0));
             if (const auto n = integrationsToDisplacement(record.channels[c])) {
@@ -151,8 +150,7 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
         const auto theta = parameterVector(model);
         const int substeps = stableSubsteps(model, record.sampleRate);
         double simulatedX = 0.0, simulatedV = 0.0, simulatedI = 0.0;
-        for (const auto index : estimationSections(record)) {
-            const auto& section = record.sections[index];
+        for (const auto& section : record.sections) {
             Trajectory<double> run;
             const auto drive = record.drive(section);
             if (!integrate(model, {theta.begin(), theta.end()}, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
@@ -181,7 +179,8 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
     FitSummary summary;
-    summary.substeps = options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance);
+    summary.substeps = std::max(stableSubsteps(model, record.sampleRate),
+                                options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));
     const auto active = freeParameters(model);
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size());
@@ -195,7 +194,6 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     }
     OutputErrorOptions run;
     run.substeps = summary.substeps;
-    run.gradientSubsteps = std::min(summary.substeps, stableSubsteps(model, record.sampleRate));
     run.threads = options.threads;
     const auto place = [&](const Eigen::VectorXd& at) {
         for (Eigen::Index k = 0; k < P; ++k)

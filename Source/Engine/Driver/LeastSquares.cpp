@@ -31,8 +31,10 @@ ScaledSpectrum scaledSpectrum(const Eigen::MatrixXd& N)
 
 class CompressedResidual final : public ceres::CostFunction {
 public:
-    CompressedResidual(const NormalEvaluation& evaluate, const Eigen::VectorXd& scale)
-        : evaluate_(evaluate), scale_(scale)
+    /// @param atStart  the normal equations at theta = scale .* start, which need not be computed again
+    CompressedResidual(const NormalEvaluation& evaluate, const Eigen::VectorXd& scale, const Eigen::VectorXd& start,
+                       const NormalEquations& atStart)
+        : evaluate_(evaluate), scale_(scale), start_(start), atStart_(atStart)
     {
         const auto P = static_cast<int>(scale.size());
         set_num_residuals(P + 1);
@@ -45,7 +47,11 @@ public:
         const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], P);
         const bool gradient = jacobians && jacobians[0];
         NormalEquations normal;
-        if (!evaluate_(scaled.cwiseProduct(scale_), gradient, normal) || !std::isfinite(normal.cost))
+        if (scaled == start_)
+            normal = atStart_;
+        else if (!evaluate_(scaled.cwiseProduct(scale_), gradient, normal))
+            return false;
+        if (!std::isfinite(normal.cost))
             return false;
         Eigen::Map<Eigen::VectorXd> r(residuals, P + 1);
         r.setZero();
@@ -77,6 +83,8 @@ public:
 private:
     const NormalEvaluation& evaluate_;
     const Eigen::VectorXd& scale_;
+    const Eigen::VectorXd start_;
+    const NormalEquations& atStart_;
 };
 
 class Watch final : public ceres::IterationCallback {
@@ -138,7 +146,7 @@ LeastSquaresSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& 
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ownership);
-    CompressedResidual cost(evaluate, scale);
+    CompressedResidual cost(evaluate, scale, x, atStart);
     problem.AddResidualBlock(&cost, nullptr, x.data());
     for (Eigen::Index k = 0; k < x.size(); ++k) {
         if (std::isfinite(lower[k]))

@@ -197,9 +197,13 @@ void NormalEquations::add(const NormalEquations& other)
 }
 
 std::vector<SectionFit> outputError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                                    const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
+                                    const std::vector<Eigen::Index>& active, const OutputErrorOptions& wanted,
                                     const Progress& progress)
 {
+    const int stable = stableSubsteps(model, record.sampleRate);
+    OutputErrorOptions options = wanted;
+    options.substeps = std::max(wanted.substeps, stable);
+    options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
     std::vector<SectionFit> fits(sections.size());
     std::atomic<std::size_t> next {0};
     std::atomic<bool> failed {false};

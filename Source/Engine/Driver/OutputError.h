@@ -40,8 +40,8 @@ struct SectionFit {
 struct OutputErrorOptions {
     bool gradient = true;      ///< fill N and g
     bool spectra = false;      ///< fill predicted
-    int substeps = 1;          ///< of the simulation
-    int gradientSubsteps = 1;  ///< of the sensitivities: they may be coarser, as they only steer the search
+    int substeps = 1;          ///< of the simulation, at least; raised to the fewest with which it is stable
+    int gradientSubsteps = 0;  ///< of the sensitivities: they may be coarser, as they only steer the search; 0: the fewest
     unsigned threads = 2;
 };
 

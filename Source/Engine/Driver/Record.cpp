@@ -69,30 +69,59 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
     period = inverseFft(spectrum, period.size());
 }
 
-/// The realization whose peaks are lowest at the loudest level: of the displacement if a channel tells it, else of the input's low
-/// frequencies, which move the cone.
+/// How often a channel must be integrated to give displacement; the pressure of a piston follows the acceleration.
+std::optional<int> integrationsToDisplacement(Quantity quantity)
+{
+    switch (quantity) {
+    case Quantity::displacement: return 0;
+    case Quantity::velocity: return 1;
+    case Quantity::acceleration:
+    case Quantity::pressure: return 2;
+    default: return std::nullopt;
+    }
+}
+
+/// Peak of an averaged period integrated n times within the excited band, in any unit.
+double integratedPeak(const Measurement& take, const Channel& channel, int level, int realization, int integrations)
+{
+    const auto& e = *take.excitation;
+    auto spectrum = fft(averagePeriod(take, channel, level, realization));
+    const auto first = static_cast<std::size_t>(e.lines.front()), last = static_cast<std::size_t>(e.lines.back());
+    for (std::size_t k = 0; k < spectrum.size(); ++k)
+        spectrum[k] = k >= first && k <= last ? spectrum[k] * std::pow(std::complex<double>(0.0, static_cast<double>(k)), -integrations)
+                                              : 0.0;
+    double peak = 0.0;
+    for (const double s : inverseFft(spectrum, static_cast<std::size_t>(e.period)))
+        peak = std::max(peak, std::abs(s));
+    return peak;
+}
+
+/// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current (what the channels
+/// tell of them; the input's low frequencies when they tell nothing of the cone), each relative to the largest of all
+/// realizations, its largest is the lowest.
 int quietestRealization(const Measurement& take)
 {
     const auto& e = *take.excitation;
     const int loudest = static_cast<int>(e.levels.size()) - 1;
-    const auto* displacement = take.find(Quantity::displacement);
-    int quietest = e.realizations - 1;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (int realization = 0; realization < e.realizations; ++realization) {
-        auto spectrum = fft(averagePeriod(take, displacement ? *displacement : take.input(), loudest, realization));
-        spectrum.front() = 0.0;
-        if (!displacement)
-            for (std::size_t k = 1; k < spectrum.size(); ++k)
-                spectrum[k] /= static_cast<double>(k);
-        double peak = 0.0;
-        for (const double s : inverseFft(spectrum, static_cast<std::size_t>(e.period)))
-            peak = std::max(peak, std::abs(s));
-        if (peak < lowest) {
-            lowest = peak;
-            quietest = realization;
+    std::vector<std::pair<const Channel*, int>> motions;
+    for (const auto& channel : take.channels)
+        if (const auto n = integrationsToDisplacement(channel.quantity)) {
+            motions.emplace_back(&channel, *n);       // displacement
+            motions.emplace_back(&channel, *n - 1);   // velocity
+        } else if (channel.quantity == Quantity::current) {
+            motions.emplace_back(&channel, 0);
         }
+    motions.emplace_back(&take.input(), motions.empty() ? 1 : 0);
+    std::vector<double> farthest(static_cast<std::size_t>(e.realizations), 0.0);
+    for (const auto& [channel, integrations] : motions) {
+        std::vector<double> peaks;
+        for (int realization = 0; realization < e.realizations; ++realization)
+            peaks.push_back(integratedPeak(take, *channel, loudest, realization, integrations));
+        const double largest = *std::max_element(peaks.begin(), peaks.end());
+        for (std::size_t r = 0; r < peaks.size() && largest > 0.0; ++r)
+            farthest[r] = std::max(farthest[r], peaks[r] / largest);
     }
-    return quietest;
+    return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
 }
 
 void addPeriodicSections(const Measurement& take, const RecordOptions& options, Record& record)
