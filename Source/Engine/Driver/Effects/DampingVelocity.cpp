@@ -8,9 +8,11 @@
 namespace excursion {
 namespace {
 
-/// Rms(v) = Rms + sum_{k=1..n} c_k [T_k(2 s - 1) - T_k(-1)] + a_1 w + a_3 w^3,  w = v/V,  s = sqrt(w^2 + e^2) - e,  e = 1/50,
+/// Rms(v) = Rms + sum_{k=1..n} c_k [T_k(2 s - 1) - T_k(-1)] + a_1 w + a_3 w^3,  w = v/V,
+/// s = sqrt((w - w_0)^2 + e^2) - sqrt(w_0^2 + e^2),  e = 1/50,
 /// with Chebyshev polynomials T_k. Damping of air flow grows like |v|, which no short polynomial in v imitates: s is |w|, rounded
-/// at rest so that the law stays differentiable. The odd terms let inward and outward differ.
+/// at rest so that the law stays differentiable. The odd terms let inward and outward differ; w_0 is where the flow is least
+/// resisted, near rest.
 class DampingVelocity final : public EffectOf<DampingVelocity> {
 public:
     std::string id() const override { return "damping-velocity"; }
@@ -40,16 +42,23 @@ public:
             p.prior = curve::plausible(k, e.scale);
             result.push_back(p);
         }
+        Parameter centre;
+        centre.name = "centre";
+        centre.unit = "1";
+        centre.lower = -0.4;
+        centre.upper = 0.4;
+        centre.prior = 0.3;
+        result.push_back(centre);
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"Rms(v)", "N s/m", "v", "m/s", "Rms"}; }
     double lawAt(const Extent& e, const double* p, double v) const override
     {
-        std::array<double, curve::maximumDegree + 3> c {};
+        std::array<double, curve::maximumDegree + 4> c {};
         prepareFor(e, p, c.data());
         return at(e, c.data(), v);
     }
-    int coefficientCount(const Extent& e) const override { return e.degree + 3; }
+    int coefficientCount(const Extent& e) const override { return e.degree + 4; }
 
     template <class T>
     void prepareFor(const Extent& e, const T* p, T* c) const
@@ -68,6 +77,7 @@ public:
         c[0] = T(0.0);   // no difference at rest
         c[n + 1] = p[n];
         c[n + 2] = p[n + 1];
+        c[n + 3] = p[n + 2];
     }
 
     template <class T>
@@ -85,9 +95,9 @@ private:
         T w = v * (1.0 / e.velocity);
         if (w > T(1.0) || w < T(-1.0))
             w = w > T(0.0) ? T(1.0) : T(-1.0);
-        const T square = w * w;
-        const T s = sqrt(square + rounding * rounding) - rounding;
         const int n = e.degree;
+        const T square = w * w, centre = c[n + 3], off = w - centre;
+        const T s = sqrt(off * off + rounding * rounding) - sqrt(centre * centre + rounding * rounding);
         T value = c[n];
         for (int k = n - 1; k >= 0; --k)
             value = value * s + c[k];
