@@ -79,6 +79,18 @@ std::string sentenceFor(const Diagnosis& d, const Comparison& comparison)
     return "";
 }
 
+/// How little the catalogue would leave of the excess with all its effects, in the channel that it explains best. Channels that
+/// hold less than a hundredth of the largest excess have no say.
+double leastLeft(const std::vector<double>& before, const std::vector<double>& after)
+{
+    const double largest = *std::max_element(before.begin(), before.end()) - 1.0;
+    double least = 1.0;
+    for (std::size_t c = 0; c < before.size(); ++c)
+        if (before[c] - 1.0 > 0.01 * largest && before[c] > 1.0)
+            least = std::min(least, std::max(0.0, after[c] - 1.0) / (before[c] - 1.0));
+    return least;
+}
+
 /// The verdict once the ranking is made.
 Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& comparison, double smallestShare)
 {
@@ -169,7 +181,17 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
     judge(diagnosis.ranking, before.chi, before.noiseKnown, diagnosis);
     constexpr double smallestShare = 0.15;   // of what is not noise; less is a symptom of something else
+    constexpr double mostLeft = 0.15;        // by all effects together
     diagnosis.verdict = verdictOf(diagnosis.ranking, before, smallestShare);
+    // An effect that explains a part, while all the others together cannot explain the rest, shares a symptom with something unknown.
+    if (diagnosis.verdict == Verdict::missingEffect && before.noiseKnown) {
+        const auto& first = diagnosis.ranking.front();
+        if (excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
+            const auto beyond = score(first.model, record, test, {});
+            if (leastLeft(scores.chiByChannel, beyond.togetherChi) > mostLeft)
+                diagnosis.verdict = Verdict::unknownEffect;
+        }
+    }
     if (diagnosis.verdict != Verdict::missingEffect)
         diagnosis.indistinguishable.clear();
     diagnosis.sentence = sentenceFor(diagnosis, before);

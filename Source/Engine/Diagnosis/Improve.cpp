@@ -12,19 +12,32 @@
 namespace excursion {
 namespace {
 
-/// An effect that removed less than is left in the end has explained a symptom of something else: it is taken back, and the
-/// verdict says that something unknown is there.
+/// By how many times what an effect removed exceeds what is left in the end, in the channel where it did best; channels that held less
+/// than a hundredth of the largest excess have no say.
+double worth(const Comparison& before, const Comparison& after, const Comparison& last)
+{
+    double largest = 0.0, best = 0.0;
+    for (const auto& channel : before.channels)
+        largest = std::max(largest, channel.total.chi - 1.0);
+    for (std::size_t c = 0; c < before.channels.size(); ++c) {
+        const double removed = before.channels[c].total.chi - after.channels[c].total.chi;
+        if (before.channels[c].total.chi - 1.0 > 0.01 * largest)
+            best = std::max(best, removed / std::max(0.1, last.channels[c].total.chi - 1.0));
+    }
+    return best;
+}
+
+/// When something unknown is left in the end, effects that removed little more than that have explained a symptom of it: they are
+/// taken back.
 void withdrawDoubtful(Ladder& ladder)
 {
-    while (ladder.verdict == Verdict::unknownEffect && ladder.rungs.size() > 1) {
-        const auto& last = ladder.rungs.back();
-        const auto& before = ladder.rungs[ladder.rungs.size() - 2];
-        if (!last.comparison.noiseKnown)
-            return;
-        const double removed = before.comparison.chi - last.comparison.chi, left = last.comparison.chi - 1.0;
-        if (removed > left)
-            return;
-        ladder.withdrawn.push_back(last.added);
+    if (ladder.verdict != Verdict::unknownEffect || !ladder.rungs.back().comparison.noiseKnown)
+        return;
+    constexpr double convincing = 3.0;
+    const Comparison last = ladder.rungs.back().comparison;
+    while (ladder.rungs.size() > 1
+           && worth(ladder.rungs[ladder.rungs.size() - 2].comparison, ladder.rungs.back().comparison, last) < convincing) {
+        ladder.withdrawn.push_back(ladder.rungs.back().added);
         ladder.rungs.pop_back();
     }
 }
@@ -57,6 +70,8 @@ Ladder improveSpectra(const Spectra& spectra, const ImproveOptions& options, con
         rung.comparison = compare(rung.model, spectra);
         rung.diagnosis = diagnose(rung.model, spectra, options.diagnose, progress);
         ladder.rungs.push_back(rung);
+        if (options.finished)
+            options.finished(ladder.rungs.back());
         const auto& diagnosis = ladder.rungs.back().diagnosis;
         ladder.verdict = diagnosis.verdict;
         ladder.sentence = diagnosis.sentence;
@@ -156,6 +171,8 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
         rung.diagnosis = diagnose(rung.model, record, options.diagnose, progress.part(at, at + 0.6 * share));
         rung.diagnosis.problems = report.problems;
         ladder.rungs.push_back(std::move(rung));
+        if (options.finished)
+            options.finished(ladder.rungs.back());
         const auto& diagnosis = ladder.rungs.back().diagnosis;
         ladder.verdict = diagnosis.verdict;
         ladder.sentence = diagnosis.sentence;

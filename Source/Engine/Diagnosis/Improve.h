@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/Diagnose.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ImproveOptions {
     DiagnoseOptions diagnose;
     std::vector<std::string> with;   ///< effects that the first model has already
     int maximumRungs = 8;
+    std::function<void(const Rung&)> finished;   ///< called with each rung once its diagnosis is known; may be empty
 };
 
 /// Fits the base (with `with`), then diagnoses and adds until the verdict is no longer missing-effect. A take with a fatal

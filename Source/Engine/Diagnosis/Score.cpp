@@ -106,7 +106,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     }
     // Shapes do not matter at zero strength: only the model's own parameters and the strengths have a sensitivity.
     std::vector<Eigen::Index> own, active;
-    const auto all = parametersOf(augmented);
+    const auto parameters = parametersOf(augmented);
     std::size_t position = 0;
     for (std::size_t k = 0; k < augmented.components.size(); ++k)
         for (const auto& p : augmented.components[k].parameters) {
@@ -118,8 +118,8 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
             }
             ++position;
         }
-    for (; position < all.size(); ++position)
-        if (all[position]->free) {
+    for (; position < parameters.size(); ++position)
+        if (parameters[position]->free) {
             own.push_back(static_cast<Eigen::Index>(active.size()));
             active.push_back(static_cast<Eigen::Index>(position));
         }
@@ -167,7 +167,12 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
             result.scores.push_back(std::move(score));
     }
     std::sort(together.begin(), together.end());
-    result.togetherChi = predictedCost(sums.validation, gaussNewtonStep(sums.estimation, together)) / rows;
+    const auto all = gaussNewtonStep(sums.estimation, together);
+    for (const auto& channel : sums.byChannel) {
+        const double channelRows = std::max(1.0, channel.rows);
+        result.chiByChannel.push_back(channel.cost / channelRows);
+        result.togetherChi.push_back(predictedCost(channel, all) / channelRows);
+    }
     std::stable_sort(result.scores.begin(), result.scores.end(), [](const Score& a, const Score& b) { return a.chi < b.chi; });
     return result;
 }

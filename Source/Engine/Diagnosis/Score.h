@@ -27,7 +27,7 @@ struct ScoreOptions {
 
 struct ScoreResult {
     double chi = 0.0;            ///< of the model as it is, on the validation sections
-    double togetherChi = 0.0;    ///< predicted with all candidates at once
+    std::vector<double> chiByChannel, togetherChi;   ///< by channel of the record: as it is, and predicted with all candidates at once
     std::vector<Score> scores;   ///< one an effect, best start each, lowest chi first
 };
 

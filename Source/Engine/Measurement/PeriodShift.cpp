@@ -33,14 +33,15 @@ double correlationPeak(const Spectrum& cross, const std::vector<int>& lines, int
 }
 
 /// The shift of cross(k) = Y_{p+1} conj(Y_p) on the excited lines.
-PeriodShift shiftOf(const Spectrum& cross, const std::vector<int>& lines, int N)
+/// @param power  |Y_p|^2 on the same lines
+PeriodShift shiftOf(const Spectrum& cross, const std::vector<double>& power, const std::vector<int>& lines, int N)
 {
     const std::size_t F = lines.size();
     PeriodShift shift;
     // A tie with zero goes to zero: narrow bands have flat peaks.
     shift.samples = correlationPeak(cross, lines, N);
     std::vector<double> phase(F), weight(F);
-    double before = 0.0, after = 0.0;
+    double before = 0.0, after = 0.0, swelling = 0.0;
     const auto residualPhases = [&] {
         for (std::size_t i = 0; i < F; ++i)
             phase[i] = std::arg(cross[i] * std::polar(1.0, 2.0 * std::numbers::pi * lines[i] * shift.samples / N));
@@ -69,8 +70,12 @@ PeriodShift shiftOf(const Spectrum& cross, const std::vector<int>& lines, int N)
         const double raw = std::arg(cross[i]);
         before += weight[i] * raw * raw;
         after += weight[i] * phase[i] * phase[i];
+        if (weight[i] > 0.0 && power[i] > 0.0)
+            swelling += weight[i] * std::pow(std::log(std::abs(cross[i]) / power[i]), 2);
     }
-    shift.explained = before > 0.0 ? std::max(0.0, 1.0 - after / before) : 0.0;
+    // Noise turns a line as much as it stretches it. A clock only turns; a coil that warms up does both.
+    const double stretched = std::max(0.0, swelling - after);
+    shift.explained = before > 0.0 ? std::max(0.0, 1.0 - (after + stretched) / (before + stretched)) : 0.0;
     return shift;
 }
 
@@ -88,6 +93,14 @@ Spectrum crossSpectrum(const Spectrum& earlier, const Spectrum& later)
     for (std::size_t i = 0; i < cross.size(); ++i)
         cross[i] = later[i] * std::conj(earlier[i]);
     return cross;
+}
+
+std::vector<double> powerOf(const Spectrum& spectrum)
+{
+    std::vector<double> power;
+    for (const auto& value : spectrum)
+        power.push_back(std::norm(value));
+    return power;
 }
 
 /// A used period, cut a quarter earlier when there is a settling period: a channel that is early, or drifts, would
@@ -132,15 +145,18 @@ std::optional<PeriodShift> periodShift(const Measurement& take, const Channel& c
     if (e.periods < 2)
         return std::nullopt;
     Spectrum sum(lines.size(), 0.0);
+    std::vector<double> power(lines.size(), 0.0);
     for (int m = 0; m < e.realizations; ++m) {
         const auto spectra = earlySpectra(take, channel, level, m, lines);
         for (std::size_t p = 0; p + 1 < spectra.size(); ++p) {
             const auto cross = crossSpectrum(spectra[p], spectra[p + 1]);
-            for (std::size_t i = 0; i < sum.size(); ++i)
+            for (std::size_t i = 0; i < sum.size(); ++i) {
                 sum[i] += cross[i];
+                power[i] += std::norm(spectra[p][i]);
+            }
         }
     }
-    return shiftOf(sum, lines, e.period);
+    return shiftOf(sum, power, lines, e.period);
 }
 
 std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& channel)
@@ -160,7 +176,7 @@ std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& chan
                                                              earlyPeriod(take, channel, level, m, p + 1));
                 differences.push_back(difference);
                 pairs.push_back({level, m, p, 10.0 * std::log10(difference + 1e-300),
-                                 shiftOf(crossSpectrum(earlier, later), lines, e.period)});
+                                 shiftOf(crossSpectrum(earlier, later), powerOf(earlier), lines, e.period)});
             }
         }
         if (pairs.size() < 3)

@@ -16,7 +16,7 @@ namespace excursion {
 struct PeriodShift {
     double samples = 0.0;
     double standardError = 0.0;
-    double explained = 0.0;   ///< share of the lines' mean squared phase that the shift explains, 0..1
+    double explained = 0.0;   ///< share of the lines' mean squared change (of phase, and of log magnitude beyond noise) that the shift explains, 0..1
 };
 
 /// The mean shift over all pairs of periods of one level; empty when a realization has a single period.
