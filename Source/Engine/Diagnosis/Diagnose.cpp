@@ -42,8 +42,8 @@ void judge(std::vector<RankedEffect>& ranking, double chi, bool noiseKnown, Diag
         const double left = excess(entry.confirmedChi, noiseKnown);
         double rival = before;
         for (std::size_t j = 0; j < ranking.size(); ++j)
-            if (j != k && ranking[j].confirmedChi > 0.0)
-                rival = std::min(rival, excess(ranking[j].confirmedChi, noiseKnown));
+            if (j != k)
+                rival = std::min(rival, excess(ranking[j].confirmedChi > 0.0 ? ranking[j].confirmedChi : ranking[j].predictedChi, noiseKnown));
         const double explained = std::clamp(1.0 - left / before, 0.0, 1.0);
         entry.confidence = std::min(1.0, 2.0 * explained) * rival / (rival + left);
     }
@@ -151,6 +151,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     const auto scores = score(model, record, test, progress.part(0.1, 0.3));
     const auto sections = trialSections(record, 2);
     int tried = 0;
+    double bestLeft = std::numeric_limits<double>::infinity();
     for (const auto& candidate : scores.scores) {
         RankedEffect entry;
         entry.effect = candidate.effect->id();
@@ -159,7 +160,9 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         entry.model = candidate.model;
         auto errorAfter = candidate.errorDb;
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
-        const bool promising = candidate.chi < scores.chi * (1.0 - 0.5 * options.significantFall);
+        // It is not wrong by twenty times, though: the work is spared when another has already left so much less.
+        const bool promising = candidate.chi < scores.chi * (1.0 - 0.5 * options.significantFall)
+                            && excess(candidate.chi, before.noiseKnown) < 20.0 * bestLeft;
         if (promising && tried < options.trials) {
             progress.at(0.3 + 0.7 * tried / options.trials, "trying " + entry.effect);
             auto trial = candidate.model;
@@ -169,6 +172,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
                 const auto after = compare(trial, record, {quick.substeps, false});
                 entry.model = trial;
                 entry.confirmedChi = after.chi;
+                bestLeft = std::min(bestLeft, excess(after.chi, before.noiseKnown));
                 for (const auto& channel : after.channels)
                     entry.confirmedErrorDb[channel.quantity] = channel.total.db;
                 entry.significant = after.chi < before.chi * (1.0 - options.significantFall);
