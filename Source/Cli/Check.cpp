@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/OpenTake.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -90,8 +91,7 @@ void print(const CheckReport& report, Terminal& terminal)
                    rows);
     if (!report.problems.empty())
         terminal.say("");
-    for (const auto& p : report.problems)
-        terminal.say((p.fatal ? "fault   " : "remark  ") + p.kind + ": " + p.sentence);
+    sayProblems(report.problems, terminal);
     terminal.say("");
     terminal.say(report.fitForUse() ? report.verdict() : std::string("The take is not fit for use."));
 }

@@ -164,7 +164,13 @@ void Terminal::clearBar()
     lastBar_.clear();
 }
 
-std::string fixed(double value, int decimals) { return formatted(value, std::chars_format::fixed, decimals); }
+std::string fixed(double value, int decimals)
+{
+    auto text = formatted(value, std::chars_format::fixed, decimals);
+    if (text.starts_with('-') && text.find_first_not_of("-0.") == std::string::npos)
+        text.erase(0, 1);   // a rounded zero has no sign
+    return text;
+}
 
 std::string significant(double value, int digits)
 {
@@ -177,6 +183,26 @@ std::string significant(double value, int digits)
     if (text.back() == '.')
         text.pop_back();
     return text;
+}
+
+std::string wrapped(std::string_view text, std::size_t indent, std::size_t columns)
+{
+    std::string result;
+    std::size_t used = 0;
+    for (bool first = true; !text.empty(); first = false) {
+        const auto word = text.substr(0, text.find(' '));
+        text.remove_prefix(std::min(text.size(), word.size() + 1));
+        if (used > indent && used + 1 + width(word) > columns) {
+            result += '\n' + std::string(indent, ' ');
+            used = indent;
+        } else if (!first) {
+            result += ' ';
+            ++used;
+        }
+        result += word;
+        used += width(word);
+    }
+    return result;
 }
 
 } // namespace excursion::cli

@@ -64,4 +64,7 @@ std::string fixed(double value, int decimals);
 /// without zeros at its end; for tables. Locale-free.
 std::string significant(double value, int digits = 4);
 
+/// The text in lines of at most `columns`, broken at blanks; all but the first begin with `indent` blanks.
+std::string wrapped(std::string_view text, std::size_t indent = 0, std::size_t columns = 110);
+
 } // namespace excursion::cli

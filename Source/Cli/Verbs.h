@@ -25,5 +25,13 @@ void addVirtual(CLI::App&, Terminal&);
 void addImport(CLI::App&, Terminal&);
 void addCheck(CLI::App&, Terminal&);
 void addBla(CLI::App&, Terminal&);
+void addFit(CLI::App&, Terminal&);
+void addCompare(CLI::App&, Terminal&);
+void addDiagnose(CLI::App&, Terminal&);
+void addAdd(CLI::App&, Terminal&);
+void addImprove(CLI::App&, Terminal&);
+void addReport(CLI::App&, Terminal&);
+void addEffects(CLI::App&, Terminal&);
+void addSimulate(CLI::App&, Terminal&);
 
 } // namespace excursion::cli

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -83,6 +84,9 @@ bench::DrawOptions drawOptions(const Options& options)
 
 void run(const Options& options, Terminal& terminal)
 {
+    requireFolderPlace(options.out);
+    if (!options.truth.empty())
+        requireFilePlace(options.truth);
     const auto drawn = bench::draw(options.seed, drawOptions(options));
     const auto take = bench::measure(drawn.speaker, drawn.setup, terminal.progress());
     writeMeasurement(take, options.out);
@@ -93,7 +97,7 @@ void run(const Options& options, Terminal& terminal)
     }
 
     const auto& plan = *take.excitation;
-    nlohmann::json document {{"take", options.out}, {"seed", options.seed}, {"driver", drawn.driver}, {"sampleRate", take.sampleRate},
+    nlohmann::ordered_json document {{"format", "excursion-virtual"}, {"version", 1}, {"take", options.out}, {"seed", options.seed}, {"driver", drawn.driver}, {"sampleRate", take.sampleRate},
                              {"seconds", static_cast<double>(take.length()) / take.sampleRate}, {"period", plan.period},
                              {"levels", plan.levels}};
     for (const auto& channel : take.channels)

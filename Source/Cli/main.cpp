@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -20,10 +21,13 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
   excursion fit take --out model.json         a loudspeaker model, the linear one first
   excursion compare take --model model.json   where it is wrong, and by how much
   excursion diagnose take --model model.json  which physical effect is missing
-  excursion improve take --out ladder         add it and refit, until nothing is missing
-  excursion report ladder                     one page to read and to show
-  excursion simulate model.json in.wav        what the loudspeaker will do
+  excursion add take --model model.json stiffness --out better.json
+                                              put it in, and refit
+  excursion improve take --out ladder         all of this, until nothing is missing
+  excursion simulate ladder/model.json in.wav --full-scale 10 --out played
+                                              what the loudspeaker will do
 
+No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with something hidden in it.
 A take is a folder (measurement.json and its WAV), a .zma or a .csv. Each verb has its own --help.)";
 
 constexpr auto footer = R"(
@@ -83,6 +87,10 @@ int main(int argc, char** argv)
     app.add_flag("--json{-}", terminal.jsonFile, "print one JSON document and nothing else; --json FILE.json writes it there");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
     app.require_subcommand(1);
+    app.parse_complete_callback([&terminal] {   // before the verb does its work
+        if (!terminal.jsonFile.empty() && terminal.jsonFile != "-")
+            cli::requireFilePlace(terminal.jsonFile);
+    });
 
     // In the order of the method: --help prints them so.
     cli::addExcite(app, terminal);
@@ -90,6 +98,14 @@ int main(int argc, char** argv)
     cli::addVirtual(app, terminal);
     cli::addCheck(app, terminal);
     cli::addBla(app, terminal);
+    cli::addFit(app, terminal);
+    cli::addCompare(app, terminal);
+    cli::addDiagnose(app, terminal);
+    cli::addAdd(app, terminal);
+    cli::addImprove(app, terminal);
+    cli::addReport(app, terminal);
+    cli::addEffects(app, terminal);
+    cli::addSimulate(app, terminal);
 
     return run(app, terminal, argumentsFrom(argc, argv));
 }

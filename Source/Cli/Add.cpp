@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
+#include "Cli/ModelTables.h"
+#include "Cli/OpenTake.h"
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Diagnosis/ComparisonFile.h"
+#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Diagnosis/Score.h"
+#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/ModelFile.h"
+#include "Engine/Error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+struct Options {
+    std::string take, model, effect, out;
+};
+
+struct Added {
+    Model model;
+    FitSummary fit;
+    Comparison before, after;
+};
+
+Added addTo(const Model& model, const Effect& effect, const Spectra& spectra)
+{
+    Added result;
+    result.before = compare(model, spectra);
+    auto effects = model.effectIds();
+    effects.push_back(effect.id());
+    result.model = fitEffects(spectra, effects, &result.fit);
+    result.after = compare(result.model, spectra);
+    return result;
+}
+
+/// The effect is put in where the score test says that it starts, fitted quickly, then everything is refitted.
+Added addTo(const Model& model, const Effect& effect, const Record& record, const Progress& progress)
+{
+    Added result;
+    FitOptions quick;
+    quick.substeps = substepsFor(model, record);
+    quick.search = {10, 3e-3};
+    result.before = compare(model, record, {quick.substeps, false}, progress.part(0.0, 0.05));
+    ScoreOptions test;
+    test.substeps = quick.substeps;
+    const auto scores = score(model, record, test, progress.part(0.05, 0.2)).scores;
+    const auto start = std::find_if(scores.begin(), scores.end(), [&](const Score& s) { return s.effect == &effect; });
+    if (start == scores.end())
+        throw Error(Error::Kind::data, "This take cannot say anything about the effect \"" + effect.id() + "\".");
+    result.model = start->model;
+    tryFit(result.model, record, trialSections(record, 2), quick, progress.part(0.2, 0.5));
+    result.fit = refine(result.model, record, {}, progress.part(0.5, 0.95));
+    if (!result.fit.usable)
+        throw Error(Error::Kind::numerical, "The fit failed: " + result.fit.reason + ".");
+    result.after = compare(result.model, record, {result.fit.substeps, false}, progress.part(0.95, 1.0));
+    return result;
+}
+
+void print(const Added& added, const Effect& effect, Terminal& terminal)
+{
+    terminal.say("Added " + effect.title() + ". " + effect.physics());
+    terminal.say("");
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t k = 0; k < added.after.channels.size(); ++k) {
+        const auto &before = added.before.channels[k].total, &after = added.after.channels[k].total;
+        rows.push_back({std::string(name(added.after.channels[k].quantity)), fixed(before.db, 1), fixed(after.db, 1),
+                        decibelText(after.noiseFloorDb), misfitText(before.chi, added.before.noiseKnown),
+                        misfitText(after.chi, added.after.noiseKnown)});
+    }
+    terminal.table({"channel", "error dB before", "after", "noise dB", "misfit before", "after"}, rows);
+    terminal.say("");
+    printParameters(added.model, terminal);
+    if (added.after.chi >= added.before.chi) {
+        terminal.say("");
+        terminal.say("The error did not fall: the take does not ask for this effect.");
+    }
+}
+
+void run(const Options& options, Terminal& terminal)
+{
+    const auto& effect = effectNamed(options.effect);
+    requireFilePlace(options.out);
+    const auto model = readModel(options.model);
+    nlohmann::ordered_json document {{"format", "excursion-add"}, {"version", 1}, {"added", effect.id()}};
+    const auto open = openTake(options.take);
+    requireSameKind(model, open);
+    requireEffects({effect.id()}, open.take);
+    if (model.has(effect.id()))
+        throw Error(Error::Kind::usage, "The model already has the effect \"" + effect.id() + "\".");
+    if (!open.report.fitForUse())
+        return refuseTake(open, document, terminal);
+    const auto added = open.spectra() ? addTo(model, effect, *open.spectra())
+                                      : addTo(model, effect, recordFor(model, open), terminal.progress());
+    writeModel(added.model, options.out);
+
+    sayProblems(open.report.problems, terminal);
+    print(added, effect, terminal);
+    terminal.say("");
+    terminal.say("Wrote " + options.out + ".");
+    document["take"] = options.take;
+    document["model"] = options.out;
+    document["errorBefore"] = toJson(errorByChannel(added.before));
+    document.update(modelJson(added.model, added.after, added.fit));
+    terminal.document(document);
+}
+
+} // namespace
+
+void addAdd(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("add", "Put an effect into a model and refit everything")->group(step::diagnose);
+    verb->add_option("TAKE", o->take, "the take that the model was fitted to")->required();
+    verb->add_option("EFFECT", o->effect, "the effect, such as stiffness; excursion effects lists them")->required();
+    verb->add_option("--model", o->model, "the model, a .json")->required();
+    verb->add_option("--out", o->out, "the new model, a .json")->required();
+    verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli

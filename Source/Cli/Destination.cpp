@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
+
+#include "Engine/Error.h"
+
+#include <filesystem>
+
+#ifdef _WIN32
+#include <io.h>
+#else
+#include <unistd.h>
+#endif
+
+namespace excursion::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why)
+{
+    throw Error(Error::Kind::input, "'" + path + "' cannot be written (" + why + "); choose a folder that you may write to.");
+}
+
+bool mayWriteTo(const fs::path& folder)
+{
+#ifdef _WIN32
+    return _waccess(folder.c_str(), 2) == 0;
+#else
+    return ::access(folder.c_str(), W_OK | X_OK) == 0;
+#endif
+}
+
+/// The folder that is there already must be one, and writable; the rest of the path can then be created.
+void requireWritable(const std::string& path, fs::path folder)
+{
+    std::error_code error;
+    while (!folder.empty() && !fs::exists(folder, error) && folder.has_relative_path())
+        folder = folder.parent_path();
+    if (folder.empty())
+        folder = ".";
+    if (!fs::is_directory(folder, error))
+        refuse(path, "'" + folder.string() + "' is not a folder");
+    if (!mayWriteTo(folder))
+        refuse(path, "there is no permission to write to '" + folder.string() + "'");
+}
+
+} // namespace
+
+void requireFilePlace(const std::string& file)
+{
+    std::error_code error;
+    if (file.empty())
+        refuse(file, "the name is empty");
+    if (fs::is_directory(file, error))
+        refuse(file, "it is a folder");
+    requireWritable(file, fs::path(file).parent_path());
+}
+
+void requireFolderPlace(const std::string& folder)
+{
+    if (folder.empty())
+        refuse(folder, "the name is empty");
+    requireWritable(folder, folder);
+}
+
+} // namespace excursion::cli

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+namespace excursion::cli {
+
+/// Asked before long work, so that nobody waits for minutes to learn that the result has no place.
+/// Both throw Error (input) and create nothing.
+void requireFilePlace(const std::string& file);       ///< a file can be written there
+void requireFolderPlace(const std::string& folder);   ///< it is a folder that files can be written to, or can become one
+
+} // namespace excursion::cli

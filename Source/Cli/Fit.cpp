@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
+#include "Cli/ModelTables.h"
+#include "Cli/OpenTake.h"
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/ModelFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+struct Options {
+    std::string take, out;
+    std::vector<std::string> effects;
+};
+
+void run(const Options& options, Terminal& terminal)
+{
+    for (const auto& id : options.effects)
+        effectNamed(id);   // a misspelt name is told before any work
+    requireFilePlace(options.out);
+    nlohmann::ordered_json document {{"format", "excursion-fit"}, {"version", 1}};
+    const auto open = openTake(options.take);
+    requireEffects(options.effects, open.take);
+    if (!open.report.fitForUse())
+        return refuseTake(open, document, terminal);
+
+    Model model;
+    FitSummary summary;
+    Comparison comparison;
+    if (open.spectra()) {
+        model = fitEffects(*open.spectra(), options.effects, &summary);
+        comparison = compare(model, *open.spectra());
+    } else {
+        auto record = makeRecord(open.measurement());
+        const auto progress = terminal.progress();
+        model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.95));
+        comparison = compare(model, record, {summary.substeps, false}, progress.part(0.95, 1.0));
+    }
+    writeModel(model, options.out);
+
+    sayProblems(open.report.problems, terminal);
+    terminal.say("The model: " + effectsText(model) + ".");
+    terminal.say("");
+    printParameters(model, terminal);
+    terminal.say("");
+    printErrors(comparison, terminal);
+    terminal.say("Wrote " + options.out + ".");
+    document["take"] = options.take;
+    document["model"] = options.out;
+    document.update(modelJson(model, comparison, summary));
+    terminal.document(document);
+}
+
+} // namespace
+
+void addFit(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("fit", "Fit a model to a take: the linear base, and the effects that you name")->group(step::fit);
+    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
+    verb->add_option("--effects", o->effects, "effects to put in, separated by commas; excursion effects lists them")->delimiter(',');
+    verb->add_option("--out", o->out, "the model, a .json")->required();
+    verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli

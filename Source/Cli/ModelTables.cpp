@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/ModelTables.h"
+
+#include "Cli/Terminal.h"
+#include "Engine/Diagnosis/ComparisonFile.h"
+#include "Engine/Document/JsonText.h"
+#include "Report/Engineering.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion::cli {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// As many decimals as show the second digit of the error, so that no digit is shown that is not known.
+int decimalsFor(double value, double error)
+{
+    const double size = std::isfinite(error) && error > 0.0 ? 0.1 * error : 1e-4 * std::abs(value);
+    return size > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(size))), 0, 7) : 0;
+}
+
+void addRows(Rows& rows, const std::vector<Parameter>& parameters)
+{
+    for (const auto& p : parameters) {
+        const auto unit = displayUnit(std::abs(p.value), p.unit);
+        const double value = p.value * unit.factor, error = p.standardError * unit.factor;
+        const int decimals = decimalsFor(value, p.free ? error : 0.0);
+        rows.push_back({p.name, fixed(value, decimals), p.free && std::isfinite(error) ? fixed(error, decimals) : "-", unit.unit,
+                        p.free ? "" : "held: this take cannot see it"});
+    }
+}
+
+void printLaws(const Model& model, Terminal& terminal)
+{
+    Rows rows;
+    for (const auto& law : laws(model)) {
+        const auto largest = std::max_element(law.value.begin(), law.value.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+        const auto unit = displayUnit(std::abs(*largest), law.info.unit);
+        const auto argument = displayUnit(law.argument.back(), law.info.argumentUnit);
+        const auto at = [&](std::size_t k) { return significant(law.value[k] * unit.factor); };
+        rows.push_back({law.info.name, at(0), at(law.value.size() / 2), at(law.value.size() - 1), unit.unit,
+                        law.info.argument + " = " + significant(law.argument.back() * argument.factor, 3) + " " + argument.unit});
+    }
+    if (rows.empty())
+        return;
+    terminal.say("");
+    terminal.table({"law", "at -end", "at rest", "at +end", "unit", "end"}, rows);
+}
+
+} // namespace
+
+void printParameters(const Model& model, Terminal& terminal)
+{
+    Rows rows;
+    for (const auto& component : model.components)
+        if (!component.effect->law())   // a law is better read as the curve than as the coefficients of its expansion
+            addRows(rows, component.parameters);
+    addRows(rows, model.path);
+    const bool held = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.back().empty(); });
+    terminal.table({"parameter", "value", "std error", "unit", held ? "remark" : ""}, rows);
+    printLaws(model, terminal);
+}
+
+void printErrors(const Comparison& comparison, Terminal& terminal)
+{
+    Rows rows;
+    for (const auto& channel : comparison.channels)
+        rows.push_back({std::string(name(channel.quantity)), fixed(channel.total.db, 1), decibelText(channel.total.noiseFloorDb),
+                        misfitText(channel.total.chi, comparison.noiseKnown)});
+    terminal.table({"channel", "error dB", "noise dB", "misfit"}, rows);
+    terminal.say(wrapped(std::string("Error and noise are rms relative to the channel, on ")
+                         + (comparison.validated ? "data that no fit saw" : "the data that was fitted, as nothing could be held out")
+                         + (comparison.noiseKnown ? ". Misfit: squared error over squared noise, 1 at best."
+                                                  : ". The take does not tell its noise.")));
+}
+
+std::string decibelText(const std::optional<double>& db) { return db && std::isfinite(*db) ? fixed(*db, 1) : std::string("-"); }
+
+std::string misfitText(double chi, bool noiseKnown)
+{
+    return !noiseKnown ? std::string("-") : chi < 9.95 ? fixed(chi, 1) : chi < 1e6 ? fixed(chi, 0) : significant(chi, 2);
+}
+
+std::string confidenceText(double confidence) { return fixed(std::min(99.0, 100.0 * confidence), 0) + " %"; }
+
+std::string effectsText(const Model& model)
+{
+    std::string text;
+    for (const auto& id : model.effectIds())
+        text += (text.empty() ? "" : ", ") + id;
+    return text.empty() ? "the base alone, which is linear" : "the base and " + text;
+}
+
+nlohmann::ordered_json modelJson(const Model& model, const Comparison& comparison, const FitSummary& fit)
+{
+    nlohmann::ordered_json document {{"effects", model.effectIds()},
+                                     {"error", toJson(errorByChannel(comparison))},
+                                     {"noiseKnown", comparison.noiseKnown},
+                                     {"validated", comparison.validated}};
+    document["parameters"] = nlohmann::ordered_json::array();
+    const auto add = [&document](const std::string& of, const std::vector<Parameter>& parameters) {
+        for (const auto& p : parameters)
+            document["parameters"].push_back({{"of", of}, {"name", p.name}, {"value", p.value}, {"unit", p.unit},
+                                              {"standardError", numberOrNull(p.standardError)}, {"free", p.free}});
+    };
+    for (const auto& component : model.components)
+        add(component.effect->id(), component.parameters);
+    add("path", model.path);
+    document["fit"] = {{"converged", fit.converged}, {"iterations", fit.iterations}, {"reason", fit.reason}, {"substeps", fit.substeps}};
+    return document;
+}
+
+} // namespace excursion::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/Compare.h"
+#include "Engine/Driver/Fit.h"
+#include "Engine/Driver/Model.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace excursion::cli {
+
+class Terminal;
+
+/// The parameters with their standard errors in units of a handy size, then each law at its ends and at rest.
+void printParameters(const Model&, Terminal&);
+
+/// Error, noise floor and misfit of each channel, and what they mean.
+void printErrors(const Comparison&, Terminal&);
+
+/// "-28.1", or "-" when it is not known.
+std::string decibelText(const std::optional<double>&);
+
+/// How many times the noise the error is, squared: "1.2", "350", "1.4e+05"; "-" when the noise is not known.
+std::string misfitText(double chi, bool noiseKnown);
+
+/// "98 %", never 100: nobody is that sure.
+std::string confidenceText(double confidence);
+
+/// "the base and force-factor, stiffness"
+std::string effectsText(const Model&);
+
+/// What fit and add say of a model in their documents: effects, parameters, the errors and how the fit ended.
+nlohmann::ordered_json modelJson(const Model&, const Comparison&, const FitSummary&);
+
+} // namespace excursion::cli

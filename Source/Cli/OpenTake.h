@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+#include "Engine/Driver/Record.h"
+#include "Engine/Measurement/Measurement.h"
+#include "Engine/Measurement/TakeCheck.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace excursion::cli {
+
+class Terminal;
+
+/// A take that a model is fitted to or judged by: read, its excitation completed, and checked.
+struct OpenTake {
+    std::string path;
+    Take take;
+    CheckReport report;   ///< empty, and so fit for use, of a frequency response: it has no waveforms to check
+
+    const Spectra* spectra() const { return std::get_if<Spectra>(&take); }
+    const Measurement& measurement() const { return std::get<Measurement>(take); }
+};
+
+OpenTake openTake(const std::string& path);
+
+/// Throws Error (usage) when an effect cannot be part of a model of this take: it needs a coil that is not there, or is nonlinear
+/// and the take is a frequency response.
+void requireEffects(const std::vector<std::string>& ids, const Take&);
+
+/// Throws Error (data) when one of model and take has a coil and the other has none.
+void requireSameKind(const Model&, const OpenTake&);
+
+/// The record of a take that is not a frequency response, adapted to the model.
+Record recordFor(const Model&, const OpenTake&);
+
+/// One line a problem: "fault   clipping: ..." or "remark  hum: ...".
+void sayProblems(const std::vector<Problem>&, Terminal&);
+
+/// Ends a verb that would have fitted a model to a take that is at fault: says why, writes the document, and makes the answer no.
+void refuseTake(const OpenTake&, nlohmann::ordered_json document, Terminal&);
+
+} // namespace excursion::cli
