@@ -132,7 +132,7 @@ void writePlot(std::string& script, const Plot& plot)
             + " font 'sans-serif,12'\n";
     script += "set border 3 linewidth 0.8 linecolor " + colour(ink) + "\n";
     script += "set grid linetype 1 linewidth 0.7 linecolor " + colour(grid) + "\n";
-    script += plot.key ? "set key tmargin left Left reverse horizontal samplen 1.1 width -2.5 textcolor " + colour(ink) + "\n" : "set key off\n";
+    script += plot.key ? "set key tmargin left Left reverse horizontal samplen 1.1 width -0.5 textcolor " + colour(ink) + "\n" : "set key off\n";
     writeAxis(script, plot.x, 'x');
     writeAxis(script, plot.y, 'y');
     std::string bands, lines;

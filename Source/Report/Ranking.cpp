@@ -2,6 +2,8 @@
 #include "Report/Engineering.h"
 #include "Report/Sections.h"
 
+#include <algorithm>
+
 namespace excursion {
 namespace {
 
@@ -33,7 +35,7 @@ void addRanking(Page& page, const LadderFile& file)
         }
         std::vector<std::vector<Page::Cell>> rows;
         for (const auto& ranked : diagnosis.ranking)
-            rows.push_back({effectTitle(ranked.effect), Page::Cell::bar(ranked.confidence, fixedText(100.0 * ranked.confidence, 0) + "\u202f%"),
+            rows.push_back({effectTitle(ranked.effect), Page::Cell::bar(ranked.confidence, fixedText(std::min(99.0, 100.0 * ranked.confidence), 0) + "\u202f%"),
                             errorsText(ranked.predictedErrorDb), errorsText(ranked.confirmedErrorDb), ranked.reason});
         if (!rows.empty())
             page.table({"Effect", "Confidence", "Predicted error", "Confirmed error", "Reason"}, rows);

@@ -48,7 +48,7 @@ td { border-bottom: 1px solid var(--rule); vertical-align: top }
 .bar { display: inline-block; width: 7rem; height: .62rem; margin-right: .6rem; background: var(--grid); border-radius: 2px; overflow: hidden }
 .bar i { display: block; height: 100%; background: var(--model); print-color-adjust: exact; -webkit-print-color-adjust: exact }
 figure { margin: 1.4rem 0 2rem }
-.grid { display: grid; gap: 1.4rem 1.6rem; grid-template-columns: 1fr }
+.grid { display: grid; gap: 1.4rem 1.6rem; grid-template-columns: 1fr } .columns1 { max-width: 40rem }
 @media (min-width: 46rem), print { .columns2 { grid-template-columns: 1fr 1fr } .columns3 { grid-template-columns: 1fr 1fr 1fr } }
 figcaption { margin-top: .7rem }
 .plot { display: block; width: 100%; height: auto } .plot text, .plot g { font-family: inherit }
