@@ -215,9 +215,6 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
             sum += std::pow(10.0, responseErrorDb(m, target) / 10.0);
         return sum / static_cast<double>(targets.size());
     };
-    Extent extent;
-    extent.lowFrequency = targets.front().frequency.front();
-    extent.highFrequency = targets.front().frequency.back();
     const double now = cost(model);
     for (const auto* effect : catalogue()) {
         if (!effect->linear() || model.has(effect->id()) || (effect->electrical() && !model.electrical()))
@@ -227,19 +224,17 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
         entry.effect = effect->id();
         entry.confirmedChi = now;
         entry.model = model;
-        for (std::size_t start = 0; start < effect->starts(extent).size(); ++start) {
-            auto trial = withEffect(model, *effect, extent, start);
-            fitResponse(trial, targets, {80, 1e-9});
-            if (const double chi = cost(trial); chi < entry.confirmedChi) {
-                entry.confirmedChi = chi;
-                entry.model = trial;
-            }
+        auto trial = model;
+        addByResponse(trial, *effect, targets);
+        if (const double chi = cost(trial); chi < entry.confirmedChi) {
+            entry.confirmedChi = chi;
+            entry.model = std::move(trial);
         }
         for (const auto& target : targets)
             entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(entry.model, target);
         entry.predictedChi = entry.confirmedChi;
-        // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters.
-        entry.significant = entry.confirmedChi < 0.8 * now;
+        // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be sure of them.
+        entry.significant = entry.confirmedChi < 0.8 * now && strengthIsSeen(entry.model.components.back());
         entry.reason = reasonFor(*effect, entry.model, before, entry.confirmedErrorDb);
         diagnosis.ranking.push_back(std::move(entry));
     }
@@ -247,7 +242,7 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     judge(diagnosis.ranking, now, false, diagnosis);
     diagnosis.verdict = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant ? Verdict::missingEffect
                                                                                             : Verdict::unknownEffect;
-    diagnosis.sentence = sentenceFor(diagnosis, before);
+    diagnosis.sentence = sentenceFor(diagnosis, before) + caveatsOf(model, targets);
     static_cast<void>(options);
     return diagnosis;
 }

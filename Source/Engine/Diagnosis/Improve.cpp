@@ -81,6 +81,7 @@ Ladder improveSpectra(const Spectra& spectra, const ImproveOptions& options, con
         next.added = diagnosis.ranking.front().effect;
         next.predictedErrorDb = diagnosis.ranking.front().predictedErrorDb;
         next.model = diagnosis.ranking.front().model;
+        static_cast<LeastSquaresSummary&>(next.fit) = fitResponse(next.model, responsesOf(spectra), {80, 1e-9});
         rung = std::move(next);
     }
     return ladder;
@@ -119,26 +120,12 @@ Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects
 {
     const auto targets = responsesOf(spectra);
     Model model = startModel(targets, spectra.find(Quantity::voltage) != nullptr, spectra.driver);
-    Extent extent;
-    extent.lowFrequency = targets.front().frequency.front();
-    extent.highFrequency = targets.front().frequency.back();
     for (const auto& id : effects) {
         const auto& effect = effectNamed(id);
         if (!effect.linear())
             throw Error(Error::Kind::usage, "A frequency response cannot show the nonlinear effect \"" + id + "\"; measure a take at several levels.");
-        Model best;
-        double lowest = std::numeric_limits<double>::infinity();
-        for (std::size_t start = 0; start < effect.starts(extent).size(); ++start) {
-            auto trial = withEffect(model, effect, extent, start);
-            const auto run = fitResponse(trial, targets, {80, 1e-9});
-            if (run.usable && run.finalCost < lowest) {
-                lowest = run.finalCost;
-                best = trial;
-            }
-        }
-        if (best.components.empty())
+        if (!addByResponse(model, effect, targets).usable)
             throw Error(Error::Kind::numerical, "The effect \"" + id + "\" could not be fitted to the frequency response.");
-        model = std::move(best);
     }
     const auto run = fitResponse(model, targets, {80, 1e-9});
     if (summary)
@@ -186,6 +173,7 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
         rung = std::move(next);
     }
     withdrawDoubtful(ladder);
+    ladder.sentence += caveatsOf(ladder.model());
     progress.at(1.0, "done");
     return ladder;
 }

@@ -7,6 +7,7 @@
 #include "Engine/Measurement/Measurement.h"
 
 #include <complex>
+#include <string>
 #include <vector>
 
 namespace excursion {
@@ -25,19 +26,41 @@ struct ResponseTarget {
 ///     G = sum Y conj(U) / sum |U|^2,   deviation from the part of Y that this leaves (noise, distortion, curvature).
 std::vector<ResponseTarget> responsesOf(const Record&, int level, int pointsPerOctave = 12);
 
-/// Targets of a take that is a frequency response only: the impedance from voltage and current, the mechanical
-/// quantities per volt. All points of a target weigh the same, as in the relative rms error (seed 4.26).
-std::vector<ResponseTarget> responsesOf(const Spectra&);
+/// Targets of a take that is a frequency response only: the impedance from voltage and current, the other quantities per unit of
+/// input, on a logarithmic grid, so that every octave counts alike. The deviation of an impedance is its magnitude, that of any other
+/// response the curve's rms, doubled for a motion, which is measured at one point of the cone. Ends that repeat one value exactly, or where the excitation has died away, are no measurement and are
+/// left out, and so is a motion above the band in which the cone moves as one piece (see PistonBand.h).
+/// Throws Error (data) without an input or an output.
+std::vector<ResponseTarget> responsesOf(const Spectra&, int pointsPerOctave = 48);
 
-/// Relative rms error of a model's response, dB (seed 4.26).
+/// A response with at most so many points an octave: mean of value and frequency in each band, or its middle point where the phase
+/// turns within the band. Sparser responses stay as they are.
+ResponseTarget thinned(const ResponseTarget&, int pointsPerOctave);
+std::vector<ResponseTarget> thinned(const std::vector<ResponseTarget>&, int pointsPerOctave);
+
+/// Relative rms error of a model's response over the whole curve, dB (seed 4.26), weighted as the target says:
+///     10 log10( sum |G - G_measured|^2/sigma^2 / sum |G_measured|^2/sigma^2 ).
+/// For an impedance of a frequency-response take that is the rms of |Z - Z_measured|/|Z_measured|.
 double responseErrorDb(const Model&, const ResponseTarget&);
 
-/// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale.
+/// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale. Leaves standard errors and
+/// the covariance in the model, scaled by the misfit that is left.
 LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
+
+/// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points. The model is left as it was
+/// when the fit is not usable.
+LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTarget>&);
+
+/// Whether a fit is sure that an effect is there: one of its strengths exceeds three standard errors.
+bool strengthIsSeen(const Component&);
 
 /// A linear base model with start values that need no tuning, from a micro speaker to a subwoofer: candidates over the
 /// resonance frequency, its quality and the electrical damping are fitted and the best is kept. Parameters that the channels cannot
-/// see (without a mechanical channel only Bl^2/m is seen) are held at typical values and marked as not free.
+/// see (without a mechanical channel only Bl^2/m, Rms/m and K/m are seen) are held at typical values and marked as not free.
 Model startModel(const std::vector<ResponseTarget>&, bool electrical, const DriverInfo&);
+
+/// What the parameters rest on besides the data, in sentences that begin with a blank: a mass that is held by convention, a motion that
+/// was only used up to some frequency. Empty when the take showed everything.
+std::string caveatsOf(const Model&, const std::vector<ResponseTarget>& = {});
 
 } // namespace excursion

@@ -29,6 +29,24 @@ void columns(const Model& model, const std::vector<T>& parameters, std::vector<s
     }
 }
 
+/// One entry of dA (or of dB: column n) that is not zero. A parameter acts in a few places only.
+struct Entry {
+    Eigen::Index parameter, row, column;
+    double value;
+};
+
+std::vector<Entry> nonzero(const Linearization& linear)
+{
+    std::vector<Entry> entries;
+    const auto n = linear.A.rows();
+    for (std::size_t k = 0; k < linear.dA.size(); ++k)
+        for (Eigen::Index row = 0; row < n; ++row)
+            for (Eigen::Index column = 0; column <= n; ++column)
+                if (const double value = column < n ? linear.dA[k](row, column) : linear.dB[k][row]; value != 0.0)
+                    entries.push_back({static_cast<Eigen::Index>(k), row, column, value});
+    return entries;
+}
+
 } // namespace
 
 Linearization linearize(const Model& model, bool withGradient)
@@ -85,10 +103,14 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
         if (withGradient)
             response.gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
     }
+    const auto entries = nonzero(linear);
+    Eigen::MatrixXcd system(n, n);
+    Eigen::PartialPivLU<Eigen::MatrixXcd> factors(n);
     for (std::size_t f = 0; f < frequency.size(); ++f) {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
-        const Eigen::MatrixXcd system = s * Eigen::MatrixXcd::Identity(n, n) - linear.A.cast<Complex>();
-        const Eigen::PartialPivLU<Eigen::MatrixXcd> factors(system);
+        system.noalias() = -linear.A.cast<Complex>();
+        system.diagonal().array() += s;
+        factors.compute(system);
         const Eigen::VectorXcd z = factors.solve(linear.B.cast<Complex>());
         for (std::size_t q = 0; q < quantities.size(); ++q) {
             // Each quantity is a state times a factor: displacement x, velocity s x, acceleration s^2 x.
@@ -112,11 +134,8 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
             unit[state] = 1.0;
             const Eigen::VectorXcd left = factors.transpose().solve(unit);
             auto row = responses[q].gradient.row(static_cast<Eigen::Index>(f));
-            for (Eigen::Index k = 0; k < count; ++k) {
-                const auto index = static_cast<std::size_t>(k);
-                const Eigen::VectorXcd forced = linear.dA[index].cast<Complex>() * z + linear.dB[index].cast<Complex>();
-                row[k] = factor * left.cwiseProduct(forced).sum();
-            }
+            for (const auto& entry : entries)
+                row[entry.parameter] += factor * left[entry.row] * entry.value * (entry.column < n ? z[entry.column] : Complex(1.0));
             if (quantities[q] == Quantity::pressure) {
                 row[count - 2] += value / area;
                 row[count - 1] += -s * value;

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/FitResponse.h"
+
+#include "Engine/Driver/ImpedanceScan.h"
+#include "Engine/Driver/PistonBand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// Moving mass of a typical driver, kg: it grows like the cone's area to the power 3/2; without the area the resonance tells a woofer
+/// (15 g at 45 Hz) from a tweeter (0.3 g at 800 Hz). Rounded to one digit, as it is no more than a convention.
+double typicalMass(double f0, const std::optional<double>& area)
+{
+    const double mass = std::clamp(area ? 8.6 * std::pow(*area, 1.5) : 0.015 * std::pow(45.0 / f0, 1.4), 5e-5, 0.5);
+    const double digit = std::pow(10.0, std::floor(std::log10(mass)));
+    return std::round(mass / digit) * digit;
+}
+
+/// Another mass for the same electrical behaviour: only Bl^2/m, Rms/m and K/m are seen.
+void rescale(Model& model, double mass)
+{
+    const double ratio = mass / model.baseParameter("m").value;
+    for (const char* name : {"m", "Rms", "K"})
+        model.baseParameter(name).value *= ratio;
+    model.baseParameter("Bl").value *= std::sqrt(ratio);
+}
+
+/// The responses on a grid that is just fine enough to tell a good start from a bad one.
+constexpr int startPointsPerOctave = 24;
+
+
+/// What the targets show and what they do not.
+struct Sight {
+    bool motion = false, pressure = false, mass = false;
+    const ResponseTarget* current = nullptr;
+    double low = std::numeric_limits<double>::infinity(), high = 0.0;   ///< Hz
+};
+
+Sight sightOf(const std::vector<ResponseTarget>& targets, bool electrical, const DriverInfo& driver)
+{
+    Sight sight;
+    for (const auto& target : targets) {
+        sight.low = std::min(sight.low, target.frequency.front());
+        sight.high = std::max(sight.high, target.frequency.back());
+        if (target.quantity == Quantity::current)
+            sight.current = &target;
+        else if (target.quantity == Quantity::pressure)
+            sight.pressure = true;
+        else
+            sight.motion |= isMotion(target.quantity);
+    }
+    sight.mass = !electrical || sight.motion || (sight.pressure && driver.coneArea && driver.microphoneDistance);
+    return sight;
+}
+
+/// The best of the candidates after a few iterations each.
+class Contest {
+public:
+    explicit Contest(const std::vector<ResponseTarget>& targets) : targets_(targets) {}
+
+    void consider(Model candidate)
+    {
+        for (const auto& p : candidate.base().parameters)
+            if (!(p.value > 0.0))
+                return;
+        const auto summary = fitResponse(candidate, targets_, {12, 1e-3});
+        if (summary.usable && summary.finalCost < lowest_) {
+            lowest_ = summary.finalCost;
+            best_ = std::move(candidate);
+        }
+    }
+    bool found() const { return std::isfinite(lowest_); }
+    Model& best() { return best_; }
+
+private:
+    const std::vector<ResponseTarget>& targets_;
+    Model best_;
+    double lowest_ = std::numeric_limits<double>::infinity();
+};
+
+const std::vector<double> anyMass {1e-4, 1e-3, 1e-2, 1e-1};   // kg, micro speaker to subwoofer
+
+/// From the impedance's own peak; the mass is the one thing it does not show.
+void considerPeak(Contest& contest, Model model, const Sight& sight)
+{
+    const auto shape = scanImpedance(*sight.current);
+    constexpr double recognized = 0.7;
+    if (!shape || shape->misfit > recognized)
+        return;
+    const double omega = 2.0 * std::numbers::pi * shape->resonance;
+    for (const double mass : sight.mass ? anyMass : std::vector<double> {1e-2}) {
+        model.baseParameter("Re").value = shape->Re;
+        model.baseParameter("Le").value = std::max(shape->Le, shape->Re / (2.0 * std::numbers::pi * 1e5));
+        model.baseParameter("m").value = mass;
+        model.baseParameter("K").value = mass * omega * omega;
+        model.baseParameter("Rms").value = omega * mass / shape->quality;
+        model.baseParameter("Bl").value = std::sqrt(shape->height * model.baseParameter("Rms").value);
+        contest.consider(model);
+    }
+}
+
+/// From a grid of resonance, quality and coupling.
+void considerGrid(Contest& contest, Model model, const Sight& sight, const ResponseTarget& first)
+{
+    // The magnitude of the response sets the scale, so that only dimensionless numbers are searched.
+    double Re = 6.0;
+    if (sight.current) {
+        std::vector<double> ohms;
+        for (const auto& v : sight.current->value)
+            ohms.push_back(sight.current->impedance ? std::abs(v) : 1.0 / std::abs(v));
+        std::nth_element(ohms.begin(), ohms.begin() + static_cast<std::ptrdiff_t>(ohms.size() / 2), ohms.end());
+        Re = 0.8 * ohms[ohms.size() / 2];
+    }
+    for (double f0 = std::max(sight.low, 2.0) * 1.1; f0 < std::min(sight.high, 3000.0); f0 *= 1.45)
+        for (const double Q : {1.0, 5.0}) {
+            const double omega = 2.0 * std::numbers::pi * f0;
+            if (!model.electrical()) {
+                // x/F is 1/K below resonance.
+                const double order = first.quantity == Quantity::displacement ? 0 : first.quantity == Quantity::velocity ? 1 : 2;
+                model.baseParameter("K").value = std::pow(2.0 * std::numbers::pi * first.frequency.front(), order) / std::abs(first.value.front());
+                model.baseParameter("m").value = model.baseParameter("K").value / (omega * omega);
+                model.baseParameter("Rms").value = omega * model.baseParameter("m").value / Q;
+                contest.consider(model);
+                continue;
+            }
+            for (const double coupling : {0.5, 4.0})   // Bl^2/(Re Rms): the height of the impedance peak
+                for (const double mass : sight.mass ? std::vector<double> {1e-4, 1e-2} : std::vector<double> {1e-2}) {
+                    model.baseParameter("Re").value = Re;
+                    model.baseParameter("Le").value = Re / (2.0 * std::numbers::pi * 3000.0);
+                    model.baseParameter("m").value = mass;
+                    model.baseParameter("K").value = mass * omega * omega;
+                    model.baseParameter("Rms").value = omega * mass / Q;
+                    model.baseParameter("Bl").value = std::sqrt(coupling * Re * model.baseParameter("Rms").value);
+                    contest.consider(model);
+                }
+        }
+}
+
+} // namespace
+
+Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, const DriverInfo& driver)
+{
+    if (dense.empty())
+        throw Error(Error::Kind::data, "The take gives no frequency response to start from; excite it in the band of the loudspeaker's resonance.");
+    const auto targets = thinned(dense, startPointsPerOctave);
+    const auto sight = sightOf(targets, electrical, driver);
+    constexpr double speedOfSound = 343.0;
+    Model model = makeModel(electrical ? "electrodynamic" : "mechanical");
+    model.microphoneDistance = driver.microphoneDistance.value_or(1.0);
+    model.path[0].value = driver.coneArea.value_or(0.01);
+    model.path[1].value = model.microphoneDistance / speedOfSound;
+    model.path[1].free = sight.pressure;
+    model.path[0].free = sight.pressure && sight.motion;
+    if (electrical) {
+        model.baseParameter("m").free = sight.mass;
+        model.baseParameter("Re").free = sight.current != nullptr;
+    }
+    Contest contest(targets);
+    if (electrical && sight.current)
+        considerPeak(contest, model, sight);
+    if (!contest.found())
+        considerGrid(contest, model, sight, targets.front());
+    if (!contest.found())
+        throw Error(Error::Kind::numerical, "No linear driver could be fitted to the frequency response of the take; run the check of the take first.");
+    Model best = contest.best();
+    if (!sight.mass) {
+        const double f0 = std::sqrt(best.baseParameter("K").value / best.baseParameter("m").value) / (2.0 * std::numbers::pi);
+        rescale(best, typicalMass(f0, driver.coneArea));
+    }
+    fitResponse(best, dense, {60, 1e-8});
+    best.name = driver.name;
+    return best;
+}
+
+std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& targets)
+{
+    std::string text;
+    char number[32];
+    const auto print = [&number](const char* format, double value) {
+        std::snprintf(number, sizeof number, format, value);   // the C locale is never changed
+        return std::string(number);
+    };
+    if (model.electrical() && !model.baseParameter("m").free)
+        text += " The moving mass is held at " + print("%.3g", 1e3 * model.baseParameter("m").value)
+                + " g, a guess: without a measured motion only Bl^2/m, Rms/m and K/m are known, so Bl, Rms and K scale with it.";
+    double highest = 0.0;
+    for (const auto& target : targets)
+        highest = std::max(highest, target.frequency.back());
+    for (const auto& target : targets)
+        if (isMotion(target.quantity) && target.frequency.back() < 0.9 * highest)
+            text += " The " + std::string(name(target.quantity)) + " counts up to " + print("%.0f", target.frequency.back())
+                    + " Hz; above, the cone does not move as one piece.";
+    return text;
+}
+
+} // namespace excursion
