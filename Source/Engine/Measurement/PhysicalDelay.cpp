@@ -224,7 +224,7 @@ PhysicalDelay currentDelay(const Frf& admittance)
     return verdict;
 }
 
-PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, Drive drive)
+PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference drive)
 {
     const int derivatives = quantity == Quantity::acceleration ? 2 : quantity == Quantity::velocity ? 1 : 0;
     const auto all = reciprocalLines(motion, derivatives);
@@ -234,7 +234,7 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, Drive drive)
     const double resonance = std::min_element(all.begin(), all.end(), [](const Line& a, const Line& b) {
                                  return std::abs(a.response) / a.omega < std::abs(b.response) / b.omega;
                              })->omega;
-    const double end = drive == Drive::force ? plateauEnd(all, resonance) : all.back().omega;
+    const double end = drive == MotionReference::force ? plateauEnd(all, resonance) : all.back().omega;
 
     auto lines = band(all, 2.0 * resonance, end);
     Basis basis {power(2), power(1), power(0), power(-1), power(-2)};
@@ -245,14 +245,14 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, Drive drive)
             return {};
     }
     std::vector<DelayFit> fits;
-    if (drive == Drive::voltage) {
+    if (drive == MotionReference::voltage) {
         basis.push_back(power(3));
         fits.push_back(fitLines(lines, basis));
         basis.push_back(power(2.6));
     }
     fits.push_back(fitLines(lines, basis));
     auto verdict = judge(fits, lines.back().omega,
-                         drive == Drive::force ? Thresholds {.radians = 0.2, .fall = 3.0}
+                         drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 3.0}
                                                : Thresholds {.radians = 1.0, .fall = 6.0});
     // A mode of the cone turns the phase at its own frequency, a delay everywhere.
     for (const double share : {0.5, 0.7}) {

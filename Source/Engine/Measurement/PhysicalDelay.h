@@ -29,7 +29,7 @@ struct PhysicalDelay {
 PhysicalDelay currentDelay(const Frf& admittance);
 
 /// What the cone's motion is referred to.
-enum class Drive {
+enum class MotionReference {
     force,    ///< current or force: a m s^2 law above resonance
     voltage   ///< the coil's impedance stands between, and blurs the verdict
 };
@@ -42,7 +42,7 @@ enum class Drive {
 /// (voltage drive: 1 rad), exceeds 5 standard errors, lets the misfit fall by 3 dB (6 dB), and the lower half of the band says
 /// the same, as it does not when a mode of the cone turns the phase. Inverted: a < 0.
 /// @param motion  motion/drive with its variance
-PhysicalDelay motionDelay(const Frf& motion, Quantity, Drive);
+PhysicalDelay motionDelay(const Frf& motion, Quantity, MotionReference);
 
 /// Whether the microphone turns the sign: the pressure of a piston is a positive multiple of its acceleration, delayed
 /// by a time of flight, which is not judged. Said only when that law holds within 30 %.

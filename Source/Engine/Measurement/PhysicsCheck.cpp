@@ -148,7 +148,7 @@ void checkPhysics(const Measurement& take, const std::vector<bool>& alive, std::
     const double currentLate = current.clear ? current.seconds * take.sampleRate : 0.0;
 
     const Quantity reference = hasCurrent ? Quantity::current : input;
-    const Drive drive = reference == Quantity::voltage ? Drive::voltage : Drive::force;
+    const MotionReference drive = reference == Quantity::voltage ? MotionReference::voltage : MotionReference::force;
     struct Motion {
         Quantity quantity;
         PhysicalDelay delay;
