@@ -20,7 +20,7 @@ Loudspeaker with(const std::string& effect, double strength, const BenchSetup& s
 
 } // namespace
 
-TEST_CASE("halving the step changes less than -100 dB", "[bench]")
+TEST_CASE("halving the step changes less than -100 dB", "[bench][slow]")
 {
     auto setup = quietSetup();
     for (const auto& id : effectIds()) {
@@ -37,7 +37,22 @@ TEST_CASE("halving the step changes less than -100 dB", "[bench]")
     }
 }
 
-TEST_CASE("an effect shows in the channels it should", "[bench]")
+TEST_CASE("every effect plays, and changes what is heard or measured", "[bench]")
+{
+    auto setup = quietSetup();
+    setup.excitation.period = 2048;
+    setup.excitation.bandLow = 60.0;
+    const auto linear = measure(Loudspeaker {}, setup);
+    for (const auto& id : effectIds()) {
+        INFO(id);
+        const auto take = measure(with(id, 0.4, setup), setup);
+        CHECK(difference(take, linear, Quantity::pressure).band > -70.0);
+        for (const auto& channel : take.channels)
+            CHECK(std::all_of(channel.samples.begin(), channel.samples.end(), [](double s) { return std::isfinite(s); }));
+    }
+}
+
+TEST_CASE("an effect shows in the channels it should", "[bench][slow]")
 {
     using enum Quantity;
     const auto setup = quietSetup();

@@ -45,7 +45,7 @@ TEST_CASE("a linear driver's steady state is the closed form", "[bench]")
     }
 }
 
-TEST_CASE("linear effects are their closed forms", "[bench]")
+TEST_CASE("linear effects are their closed forms", "[bench][slow]")
 {
     auto setup = quietSetup();
     setup.excitation.settlePeriods = 20;   // creep and eddy currents have long memories

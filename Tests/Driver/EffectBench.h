@@ -56,7 +56,8 @@ struct Alone {
     /// @param rate  the memory's rates; may be null
     Balance<double> at(double i, double x, double v, const std::vector<double>& memory, std::vector<double>* rate = nullptr) const
     {
-        std::vector<double> unused(memory.size());
+        thread_local std::vector<double> unused;
+        unused.resize(memory.size());
         Balance<double> sum;
         effect.contribute(extent, coefficients.data(), {i, x, v}, memory.data(), rate ? rate->data() : unused.data(), sum);
         return sum;

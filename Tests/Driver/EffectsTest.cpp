@@ -189,32 +189,31 @@ struct Cycle {
 /// i (drop + d(phi)/dt), from the cone -F v.
 Cycle cycle(const Alone& alone, double frequency, double shift)
 {
-    constexpr int cycles = 60, steps = 400;
-    const double w = 2.0 * std::numbers::pi * frequency;
-    const double I = 0.8 * alone.extent.current, X = std::min(0.9 * alone.extent.displacement, 0.9 * alone.extent.velocity / w);
+    constexpr int steps = 200;
+    constexpr double settling = 1.0, fastest = 6e-6;   // s: the slowest cells of the memory, and a step that the quickest take
     auto memory = alone.rest();
-    std::vector<double> k1(memory.size()), k2 = k1, k3 = k1, k4 = k1;
-    Cycle result;
-    const double h = 1.0 / (frequency * steps);
-    // The fastest cells of the memory are far quicker than the motion.
-    constexpr int inner = 40;
+    const int cycles = memory.empty() ? 1 : 1 + static_cast<int>(std::ceil(settling * frequency));
+    const double w = 2.0 * std::numbers::pi * frequency, h = 1.0 / (frequency * steps);
+    const int inner = static_cast<int>(std::ceil(h / fastest));
+    const double I = 0.8 * alone.extent.current, X = std::min(0.9 * alone.extent.displacement, 0.9 * alone.extent.velocity / w);
+    std::vector<double> k1(memory.size()), k2 = k1, k3 = k1, k4 = k1, stage = k1;
     const auto rates = [&](double t, const std::vector<double>& state, std::vector<double>& rate) {
         return alone.at(I * std::cos(w * t), X * std::cos(w * t + shift), -w * X * std::sin(w * t + shift), state, &rate);
     };
-    const auto moved = [&](const std::vector<double>& rate, double by) {
-        auto state = memory;
-        for (std::size_t k = 0; k < state.size(); ++k)
-            state[k] += by * rate[k];
-        return state;
+    const auto moved = [&](const std::vector<double>& rate, double by) -> const std::vector<double>& {
+        for (std::size_t k = 0; k < memory.size(); ++k)
+            stage[k] = memory[k] + by * rate[k];
+        return stage;
     };
+    Cycle result;
     for (int n = 0; n < cycles * steps; ++n) {
         const double t = n * h;
         if (n >= (cycles - 1) * steps) {
             const auto sum = rates(t, memory, k1);
             const double i = I * std::cos(w * t), v = -w * X * std::sin(w * t + shift), di = -w * I * std::sin(w * t);
-            const double power = i * (sum.drop + sum.inductance * di + sum.fluxSlope * v) - sum.force * v;
-            result.absorbed += h * power;
-            result.exchanged += h * (std::abs(i * (sum.drop + sum.inductance * di + sum.fluxSlope * v)) + std::abs(sum.force * v));
+            const double electrical = i * (sum.drop + sum.inductance * di + sum.fluxSlope * v), mechanical = -sum.force * v;
+            result.absorbed += h * (electrical + mechanical);
+            result.exchanged += h * (std::abs(electrical) + std::abs(mechanical));
         }
         if (memory.empty())
             continue;
@@ -261,7 +260,7 @@ TEST_CASE("Whatever is no law of position takes energy in over a cycle and never
             alone.prepare();
         }
         for (const double frequency : {15.0, 200.0})
-            for (const double shift : {0.0, 0.9, -1.6}) {
+            for (const double shift : {0.0, -1.6}) {
                 INFO(effect->id() << ", " << frequency << " Hz, shift " << shift);
                 const auto energy = cycle(alone, frequency, shift);
                 CHECK(energy.absorbed > 1e-3 * energy.exchanged);

@@ -68,7 +68,7 @@ TEST_CASE("without noise the BLA of the seed's driver is its frequency response"
     }
 }
 
-TEST_CASE("noise and nonlinear variances agree with the truth over 100 runs")
+TEST_CASE("noise and nonlinear variances agree with the truth over 100 runs", "[slow]")
 {
     std::mt19937_64 random(2);
     constexpr double noiseRms = 0.02;

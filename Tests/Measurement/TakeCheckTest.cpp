@@ -75,7 +75,7 @@ TEST_CASE("a sound take is fit for use")
     CHECK_FALSE(report.channels[1].bands.empty());
 }
 
-TEST_CASE("a late channel is named with its delay")
+TEST_CASE("a late channel is named with its delay", "[slow]")
 {
     for (const auto quantity : {Quantity::current, Quantity::displacement})
         for (const double samples : {3.4, -3.4, 1.0, 30.0}) {
@@ -104,7 +104,7 @@ TEST_CASE("a late voltage is blamed when current and displacement agree")
     CHECK_FALSE(find(report, "channel-delay", Quantity::current));
 }
 
-TEST_CASE("a reversed channel is named")
+TEST_CASE("a reversed channel is named", "[slow]")
 {
     for (const auto quantity : {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure}) {
         auto take = soundTake();
@@ -308,7 +308,7 @@ TEST_CASE("a take without channels that drive it, or without samples, is refused
     CHECK_THROWS_AS(check(take), Error);
 }
 
-TEST_CASE("no sound take is accused, from micro speaker to subwoofer")
+TEST_CASE("no sound take is accused, from micro speaker to subwoofer", "[slow]")
 {
     std::mt19937_64 random(2024);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);

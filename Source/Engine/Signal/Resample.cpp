@@ -29,8 +29,8 @@ std::vector<double> extended(std::span<const double> x, std::size_t pad)
 
 std::vector<double> upsample(std::span<const double> x, int factor)
 {
-    if (factor < 1 || factor > 64)
-        throw Error(Error::Kind::usage, "A record can be upsampled by a factor of 1 to 64, not " + std::to_string(factor) + ".");
+    if (factor < 1 || factor > 256)
+        throw Error(Error::Kind::usage, "A record can be upsampled by a factor of 1 to 256, not " + std::to_string(factor) + ".");
     if (factor == 1 || x.empty())
         return {x.begin(), x.end()};
 

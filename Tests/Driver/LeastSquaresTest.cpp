@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/LeastSquares.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace excursion;
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// NIST Statistical Reference Datasets, nonlinear regression, Misra1a: y = b1 (1 - exp(-b2 x)).
+namespace misra {
+constexpr double x[] = {77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0};
+constexpr double y[] = {10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78};
+constexpr double b1 = 2.3894212918e+02, b2 = 5.5015643181e-04, deviation1 = 2.7070075241e+00, deviation2 = 7.2668688436e-06;
+constexpr double sumOfSquares = 1.2455138894e-01;
+
+bool evaluate(const Eigen::VectorXd& b, bool gradient, NormalEquations& sum)
+{
+    Eigen::VectorXd r(14);
+    Eigen::MatrixXd J(14, 2);
+    for (Eigen::Index n = 0; n < 14; ++n) {
+        const double decay = std::exp(-b[1] * x[n]);
+        r[n] = b[0] * (1.0 - decay) - y[n];
+        J(n, 0) = 1.0 - decay;
+        J(n, 1) = b[0] * x[n] * decay;
+    }
+    sum.cost = r.squaredNorm();
+    sum.rows = 14.0;
+    if (gradient) {
+        sum.N = J.transpose() * J;
+        sum.g = J.transpose() * r;
+    }
+    return true;
+}
+} // namespace misra
+
+Eigen::VectorXd two(double a, double b) { return Eigen::Vector2d(a, b); }
+
+LeastSquaresOptions exact()
+{
+    LeastSquaresOptions options;
+    options.maximumIterations = 200;
+    options.costTolerance = 1e-15;
+    return options;
+}
+
+} // namespace
+
+TEST_CASE("The search finds NIST's certified values from both of their starts", "[least-squares]")
+{
+    for (const auto& start : {two(500.0, 1e-4), two(250.0, 5e-4)}) {
+        auto b = start;
+        const auto summary = minimize(misra::evaluate, b, two(-infinite, -infinite), two(infinite, infinite), exact());
+        INFO(summary.reason);
+        CHECK(summary.usable);
+        CHECK(b[0] == Approx(misra::b1).epsilon(1e-7));
+        CHECK(b[1] == Approx(misra::b2).epsilon(1e-7));
+        CHECK(summary.finalCost == Approx(misra::sumOfSquares).epsilon(1e-8));
+        CHECK(summary.initialCost > summary.finalCost);
+        NormalEquations there;
+        misra::evaluate(b, true, there);
+        const auto covariance = covarianceOf(there.N, summary.finalCost / 12.0);
+        CHECK(std::sqrt(covariance(0, 0)) == Approx(misra::deviation1).epsilon(1e-6));
+        CHECK(std::sqrt(covariance(1, 1)) == Approx(misra::deviation2).epsilon(1e-6));
+        CHECK(covariance(0, 1) == Approx(covariance(1, 0)));
+    }
+}
+
+TEST_CASE("The search stays within bounds and does its best beside the one that holds it back", "[least-squares]")
+{
+    // (x - 3)^2 + 10 (y^2 + y - 6)^2 with x at most 2: the best is at (2, 2).
+    const auto evaluate = [](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        const Eigen::Vector2d r(at[0] - 3.0, std::sqrt(10.0) * (at[1] * at[1] + at[1] - 6.0));
+        const Eigen::Matrix2d J = Eigen::Vector2d(1.0, std::sqrt(10.0) * (2.0 * at[1] + 1.0)).asDiagonal();
+        sum.cost = r.squaredNorm();
+        sum.rows = 2.0;
+        if (gradient) {
+            sum.N = J.transpose() * J;
+            sum.g = J.transpose() * r;
+        }
+        return true;
+    };
+    auto at = two(0.5, 0.7);
+    const auto summary = minimize(evaluate, at, two(0.0, 0.0), two(2.0, 5.0), exact());
+    INFO(summary.reason);
+    CHECK(summary.usable);
+    CHECK(at[0] == Approx(2.0).epsilon(1e-9));
+    CHECK(at[1] == Approx(2.0).epsilon(1e-3));
+    CHECK(summary.finalCost == Approx(1.0).epsilon(1e-3));
+    // A start outside is moved to the nearest bound.
+    at = two(9.0, 0.7);
+    minimize(evaluate, at, two(0.0, 0.0), two(2.0, 5.0), exact());
+    CHECK(at[0] == Approx(2.0).epsilon(1e-9));
+}
+
+TEST_CASE("Where the model cannot be evaluated the search shortens its step", "[least-squares]")
+{
+    auto b = two(250.0, 5e-4);
+    int refused = 0;
+    const auto evaluate = [&refused](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        if (at[0] < 239.5 && at[0] > 239.0) {   // a hole on the way
+            ++refused;
+            return false;
+        }
+        return misra::evaluate(at, gradient, sum);
+    };
+    const auto summary = minimize(evaluate, b, two(-infinite, -infinite), two(infinite, infinite), exact());
+    INFO("refused " << refused << " times");
+    CHECK(summary.usable);
+    CHECK(summary.finalCost <= summary.initialCost);
+    const auto nowhere = [](const Eigen::VectorXd&, bool, NormalEquations&) { return false; };
+    auto start = two(1.0, 1.0);
+    const auto failed = minimize(nowhere, start, two(0.0, 0.0), two(2.0, 2.0), exact());
+    CHECK(!failed.usable);
+    CHECK(!failed.reason.empty());
+    CHECK(start == two(1.0, 1.0));
+}
+
+TEST_CASE("A step of Gauss and Newton solves a linear problem at once", "[least-squares]")
+{
+    // A straight line through points, by its textbook formula; the third column is left out, the fourth is void.
+    const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(20, -3.0, 5.0);
+    Eigen::VectorXd y(20);
+    for (Eigen::Index n = 0; n < 20; ++n)
+        y[n] = 1.7 - 0.4 * x[n] + 0.1 * std::sin(7.0 * static_cast<double>(n));
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(20, 4);
+    J.col(0).setOnes();
+    J.col(1) = x;
+    J.col(2) = x.array().square();
+    NormalEquations normal;
+    normal.N = J.transpose() * J;
+    normal.g = -J.transpose() * y;
+    const auto step = gaussNewtonStep(normal, {0, 1, 3});
+    const double meanX = x.mean(), meanY = y.mean();
+    const double slope = (x.array() - meanX).matrix().dot((y.array() - meanY).matrix()) / (x.array() - meanX).matrix().squaredNorm();
+    CHECK(step[1] == Approx(slope).epsilon(1e-10));
+    CHECK(step[0] == Approx(meanY - slope * meanX).epsilon(1e-10));
+    CHECK(step[2] == 0.0);
+    CHECK(step[3] == 0.0);
+    CHECK(gaussNewtonStep(normal, {}).isZero());
+}
+
+TEST_CASE("A direction that the data does not see has no standard error", "[least-squares]")
+{
+    // Only the sum of the first two is seen, and the third on its own.
+    Eigen::MatrixXd J(3, 3);
+    J << 1.0, 1.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0, 5.0;
+    const auto covariance = covarianceOf(J.transpose() * J, 4.0);
+    CHECK(std::isnan(covariance(0, 0)));
+    CHECK(std::isnan(covariance(1, 1)));
+    CHECK(covariance(2, 2) == Approx(4.0 / 25.0));
+}
+
+TEST_CASE("Search options that make no sense carry a reason", "[least-squares]")
+{
+    std::string reason;
+    LeastSquaresOptions options;
+    CHECK(options.isValid(&reason));
+    options.maximumIterations = 0;
+    CHECK(!options.isValid(&reason));
+    CHECK(!reason.empty());
+    options = {};
+    options.costTolerance = 1.0;
+    CHECK(!options.isValid(&reason));
+}
