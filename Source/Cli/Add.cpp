@@ -121,8 +121,8 @@ void addAdd(CLI::App& app, Terminal& terminal)
     auto* verb = app.add_subcommand("add", "Put an effect into a model and refit everything")->group(step::diagnose);
     verb->add_option("TAKE", o->take, "the take that the model was fitted to")->required();
     verb->add_option("EFFECT", o->effect, "the effect, such as stiffness; excursion effects lists them")->required();
-    verb->add_option("--model", o->model, "the model, a .json")->required();
-    verb->add_option("--out", o->out, "the new model, a .json")->required();
+    verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
+    verb->add_option("--out", o->out, "the new model, a .json")->required()->type_name("FILE");
     verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

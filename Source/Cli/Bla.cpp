@@ -247,12 +247,12 @@ void addBla(CLI::App& app, Terminal& terminal)
 {
     auto* verb = app.add_subcommand("bla", "Frequency response, with its noise and its odd and even distortion")->group(step::look);
     auto options = std::make_shared<Options>();
-    verb->add_option("take", options->take, "the take: a folder, or a .csv of time signals")->required();
+    verb->add_option("TAKE", options->take, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
     verb->add_option("--output", options->output, "the channel to explain; by default the first beside the input");
     verb->add_option("--segment", options->segment, "samples of a segment, for a take without periods")->capture_default_str();
-    verb->add_option("--out", options->out, "also write a .csv, .frd, .zma (of --output current) or .json");
+    verb->add_option("--out", options->out, "also write a .csv, .frd, .zma (of --output current) or .json")->type_name("FILE");
     verb->callback([options, &terminal] { run(*options, terminal); });
 }
 

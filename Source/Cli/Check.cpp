@@ -103,7 +103,7 @@ void addCheck(CLI::App& app, Terminal& terminal)
     auto* verb = app.add_subcommand("check", "Say whether a take is fit for use, and if not, which channel is at fault")
                      ->group(step::look);
     auto take = std::make_shared<std::string>();
-    verb->add_option("take", *take, "the take: a folder, or a .csv of time signals")->required();
+    verb->add_option("TAKE", *take, "the take: a folder, or a .csv of time signals")->required();
     verb->footer("Exit code 0: fit for use; 1: not.");
     verb->callback([take, &terminal] {
         auto measurement = readMeasurement(*take);

@@ -80,7 +80,7 @@ void addExcite(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<Options>();
     auto* verb = app.add_subcommand("excite", "Write the multisine to play, and its plan")->group(step::measure);
-    verb->add_option("--out", o->out, "folder for excitation.wav and plan.json")->required();
+    verb->add_option("--out", o->out, "folder for excitation.wav and plan.json")->required()->type_name("DIR");
     auto& m = o->plan.multisine;
     verb->add_option("--levels", o->plan.levels, "V rms, quiet to loud")->delimiter(',')->capture_default_str();
     verb->add_option("--realizations", o->plan.realizations, "draws of the phases at each level")->capture_default_str();

@@ -108,7 +108,7 @@ void addImport(CLI::App& app, Terminal& terminal)
     auto o = std::make_shared<Options>();
     auto* verb = app.add_subcommand("import", "Turn a CSV, MAT, ZMA or FRD file into a take, or a take into a CSV")->group(step::measure);
     verb->add_option("FILE", o->file, ".csv, .mat, .zma, .frd, or a take")->required();
-    verb->add_option("--out", o->out, "folder of the new take, or a .csv")->required();
+    verb->add_option("--out", o->out, "folder of the new take, or a .csv")->required()->type_name("PLACE");
     verb->add_option("--map", o->map, "COLUMN=QUANTITY or COLUMN=QUANTITY:UNIT, for example V1=force:V; may be repeated")
         ->expected(1)->take_all();
     verb->add_option("--rate", o->rate, "sample rate in Hz, when the file has none")->check(CLI::PositiveNumber);

@@ -26,7 +26,8 @@ struct Options {
     std::vector<std::string> with;
 };
 
-/// The page is the last and the least: without it the ladder is still whole.
+/// The page is the last and the least: without it the ladder is still whole. It is drawn from the ladder as it was written, so that
+/// `excursion report` draws the same.
 void writeFolder(const LadderFile& file, const std::filesystem::path& folder)
 {
     writeLadder(file, folder / "ladder.json");
@@ -35,7 +36,7 @@ void writeFolder(const LadderFile& file, const std::filesystem::path& folder)
     else
         writeModel(file.ladder.model(), folder / "model.json");
     try {
-        writeReport(file, folder / "report.html");
+        writeReport(readLadder(folder / "ladder.json"), folder / "report.html");
     } catch (const Error& e) {
         throw Error(e.kind(), std::string(e.what()) + " The ladder and the model are kept in '" + folder.string()
                                   + "': excursion report draws the page later.");
@@ -71,8 +72,8 @@ void addImprove(CLI::App& app, Terminal& terminal)
     auto o = std::make_shared<Options>();
     auto* verb = app.add_subcommand("improve", "Diagnose, add and refit until nothing is missing; keep the ladder")->group(step::diagnose);
     verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
-    verb->add_option("--with", o->with, "effects that the first model has already, separated by commas")->delimiter(',');
-    verb->add_option("--out", o->out, "folder for ladder.json, model.json and report.html")->required();
+    verb->add_option("--with", o->with, "effects that the first model has already, separated by commas")->delimiter(',')->type_name("EFFECT");
+    verb->add_option("--out", o->out, "folder for ladder.json, model.json and report.html")->required()->type_name("DIR");
     verb->footer("Exit code 1: the take is not fit for use.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

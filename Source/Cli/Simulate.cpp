@@ -107,6 +107,9 @@ std::string beyond(const Model& model, const Measurement& take)
 
 void run(const Options& options, Terminal& terminal)
 {
+    std::string reason;
+    if (!options.simulation.isValid(&reason))
+        throw Error(Error::Kind::usage, "The simulation cannot run: " + reason + ".");
     requireFolderPlace(options.out);
     const auto model = readModel(options.model);
     const auto played = isWav(options.input) ? fromWav(options, model) : fromTake(options, model);
@@ -155,7 +158,7 @@ void addSimulate(CLI::App& app, Terminal& terminal)
         ->check(CLI::PositiveNumber);
     verb->add_option("--tolerance", o->simulation.tolerance, "largest relative change of any channel when the step is halved")
         ->capture_default_str();
-    verb->add_option("--out", o->out, "folder of the take")->required();
+    verb->add_option("--out", o->out, "folder of the take")->required()->type_name("DIR");
     verb->footer("Exit code 1: the take was written, but the tolerance was not reached.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

@@ -129,8 +129,8 @@ void addVirtual(CLI::App& app, Terminal& terminal)
     verb->add_option("--rate", options->rate, "sample rate in Hz");
     verb->add_option("--seconds", options->seconds, "length of the take, about")->check(CLI::Range(1.0, 120.0));
     verb->add_option("--channels", options->channels, "what is recorded, beside voltage")->delimiter(',');
-    verb->add_option("--out", options->out, "folder of the take")->required();
-    verb->add_option("--truth", options->truth, "JSON file that tells what was hidden");
+    verb->add_option("--out", options->out, "folder of the take")->required()->type_name("DIR");
+    verb->add_option("--truth", options->truth, "JSON file that tells what was hidden")->type_name("FILE");
     verb->callback([options, hidden, noise, &terminal] {
         options->hasHidden = hidden->count() > 0;
         options->hasNoise = noise->count() > 0;

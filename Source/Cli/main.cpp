@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/Help.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -7,6 +8,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 
 namespace {
@@ -30,29 +32,43 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
 No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with something hidden in it.
 A take is a folder (measurement.json and its WAV), a .zma or a .csv. Each verb has its own --help.)";
 
-constexpr auto footer = R"(
-Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file that cannot be used, 4 data that cannot answer the
-question, 5 a computation that failed, 6 stopped by Ctrl-C.)";
+constexpr auto footer = R"(Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file that cannot be used,
+4 data that cannot answer the question, 5 a computation that failed, 6 stopped by Ctrl-C.)";
 
 constexpr int internalError = 70;   // as sysexits.h has it; 1 is an answer
 
-/// The arguments, last one first as CLI11 wants them. "--json out.json" is made "--json=out.json": an option whose value
-/// may be left out would take the take that follows it.
+/// The arguments, last one first as CLI11 wants them. "--json out.json" is made "--json=out.json", and "--json" alone "--json=-":
+/// an option whose value may be left out would take the take that follows it.
 std::vector<std::string> argumentsFrom(int argc, char** argv)
 {
     std::vector<std::string> arguments;
     for (int k = 1; k < argc; ++k) {
         std::string argument = argv[k];
-        if (argument == "--json" && k + 1 < argc && std::string_view(argv[k + 1]).ends_with(".json"))
-            argument += std::string("=") + argv[++k];
+        if (argument == "--json")
+            argument += std::string("=") + (k + 1 < argc && std::string_view(argv[k + 1]).ends_with(".json") ? argv[++k] : "-");
         arguments.insert(arguments.begin(), argument);
     }
     return arguments;
 }
 
+/// CLI11 would complain of a missing subcommand when one is misspelt.
+void requireKnownVerb(const CLI::App& app, const std::vector<std::string>& arguments)
+{
+    if (arguments.empty() || arguments.back().starts_with('-'))
+        return;
+    std::string known;
+    for (const auto* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+        if (verb->get_name() == arguments.back())
+            return;
+        known += (known.empty() ? "" : ", ") + verb->get_name();
+    }
+    throw Error(Error::Kind::usage, "There is no verb \"" + arguments.back() + "\"; the known ones are " + known + ".");
+}
+
 int run(CLI::App& app, cli::Terminal& terminal, std::vector<std::string> arguments)
 {
     try {
+        requireKnownVerb(app, arguments);
         app.parse(std::move(arguments));
         return terminal.answer;
     } catch (const CLI::ParseError& e) {
@@ -81,10 +97,11 @@ int main(int argc, char** argv)
 {
     cli::Terminal terminal;
     CLI::App app(tour, "excursion");
-    app.footer(footer);
+    app.formatter(std::make_shared<cli::Help>());   // the verbs inherit it
     app.fallthrough();   // so that --json may stand after the verb
     app.set_version_flag("--version", EXCURSION_VERSION);
-    app.add_flag("--json{-}", terminal.jsonFile, "print one JSON document and nothing else; --json FILE.json writes it there");
+    app.add_option("--json", terminal.jsonFile, "print one JSON document and nothing else, or write it to FILE.json")
+        ->type_name("[FILE.json]");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
     app.require_subcommand(1);
     app.parse_complete_callback([&terminal] {   // before the verb does its work
@@ -106,6 +123,8 @@ int main(int argc, char** argv)
     cli::addReport(app, terminal);
     cli::addEffects(app, terminal);
     cli::addSimulate(app, terminal);
+
+    app.footer(footer);   // last, as the verbs would inherit it
 
     return run(app, terminal, argumentsFrom(argc, argv));
 }
