@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whatever is wrong with what the program is given, it ends with one sentence and the right exit code, and writes nothing.
+#include "Cli/Chain.h"
+
+#include "Engine/Measurement/WavFile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <unistd.h>
+
+using namespace excursion::test;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// One sentence on stderr, nothing on stdout, nothing written.
+void refusedWith(int code, const std::vector<std::string>& arguments, const Scratch& scratch, const std::string& named)
+{
+    std::string line;
+    for (const auto& argument : arguments)
+        line += argument + " ";
+    INFO(line);
+    const auto before = contents(scratch.folder());
+    const auto told = runProgram(scratch.folder(), arguments);
+    INFO("stderr: " << told.err);
+    CHECK(told.code == code);
+    CHECK(told.out.empty());
+    CHECK_THAT(told.err, Catch::StartsWith("excursion: ") && Catch::EndsWith("\n") && Catch::Contains(named));
+    CHECK(std::count(told.err.begin(), told.err.end(), '\n') == 1);
+    CHECK(contents(scratch.folder()) == before);
+}
+
+/// Every verb that reads a take refuses this one.
+void takeRefused(int code, const std::string& take, const Scratch& scratch, const std::string& named)
+{
+    const auto model = Chain::get().model();
+    const auto out = (scratch / "out.json").string(), folder = (scratch / "new folder").string();
+    refusedWith(code, {"check", take}, scratch, named);
+    refusedWith(code, {"bla", take}, scratch, named);
+    refusedWith(code, {"import", take, "--out", folder}, scratch, named);
+    refusedWith(code, {"fit", take, "--out", out, "--json", (scratch / "said.json").string()}, scratch, named);
+    refusedWith(code, {"compare", take, "--model", model}, scratch, named);
+    refusedWith(code, {"diagnose", take, "--model", model, "--json"}, scratch, named);
+    refusedWith(code, {"add", take, "--model", model, "stiffness", "--out", out}, scratch, named);
+    refusedWith(code, {"improve", take, "--out", folder}, scratch, named);
+    refusedWith(code, {"simulate", model, take, "--out", folder}, scratch, named);
+}
+
+std::string copyOfTake(const Scratch& scratch)
+{
+    const auto take = (scratch / "broken").string();
+    fs::copy(Chain::get().take(), take, fs::copy_options::recursive);
+    return take;
+}
+
+void editJson(const std::string& file, const std::function<void(nlohmann::json&)>& edit)
+{
+    auto document = nlohmann::json::parse(bytesOf(file));
+    edit(document);
+    std::ofstream(file) << document.dump();
+}
+
+} // namespace
+
+TEST_CASE("A WAV that is truncated, empty, not finite or boasts is refused", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto take = copyOfTake(scratch), wav = take + "/take.wav";
+    const auto whole = bytesOf(wav);
+    SECTION("truncated")
+    {
+        fs::resize_file(wav, whole.size() - 1001);
+        takeRefused(3, take, scratch, "truncated");
+    }
+    SECTION("cut within its header")
+    {
+        fs::resize_file(wav, 20);
+        takeRefused(3, take, scratch, "take.wav");
+    }
+    SECTION("empty")
+    {
+        fs::resize_file(wav, 0);
+        takeRefused(3, take, scratch, "is empty");
+    }
+    SECTION("a header that claims 1 GB")
+    {
+        auto bytes = whole;
+        const auto data = bytes.find("data");
+        REQUIRE(data != std::string::npos);
+        const std::uint32_t claim = 1u << 30;
+        for (std::size_t k = 0; k < 4; ++k)
+            bytes[data + 4 + k] = static_cast<char>(claim >> (8 * k) & 0xFFu);
+        scratch.file("broken/take.wav", bytes);
+        takeRefused(3, take, scratch, "claims");
+    }
+    SECTION("a sample that is not a number")
+    {
+        auto samples = excursion::readWav(wav);
+        samples.channels[1][777] = std::numeric_limits<double>::quiet_NaN();
+        excursion::writeWav(wav, samples.sampleRate, samples.channels, excursion::SampleFormat::float32);
+        takeRefused(3, take, scratch, "sample 777 of the current channel");
+    }
+    SECTION("not there")
+    {
+        fs::remove(wav);
+        takeRefused(3, take, scratch, "does not exist");
+    }
+    SECTION("a folder")
+    {
+        fs::remove(wav);
+        fs::create_directory(wav);
+        takeRefused(3, take, scratch, "is not a file");
+    }
+}
+
+TEST_CASE("A measurement.json that does not describe the take is refused", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto take = copyOfTake(scratch), json = take + "/measurement.json";
+    SECTION("a channel is missing")
+    {
+        editJson(json, [](auto& j) { j["channels"].erase(1); });
+        takeRefused(3, take, scratch, "3 channels");
+    }
+    SECTION("a wrong unit")
+    {
+        editJson(json, [](auto& j) { j["channels"][0]["unit"] = "kg"; });
+        takeRefused(3, take, scratch, "kg");
+    }
+    SECTION("another version")
+    {
+        editJson(json, [](auto& j) { j["version"] = 99; });
+        takeRefused(3, take, scratch, "version");
+    }
+    SECTION("another format")
+    {
+        editJson(json, [](auto& j) { j["format"] = "something-else"; });
+        takeRefused(3, take, scratch, "format");
+    }
+    SECTION("empty")
+    {
+        scratch.file("broken/measurement.json", "");
+        takeRefused(3, take, scratch, "is empty");
+    }
+    SECTION("half of it")
+    {
+        scratch.file("broken/measurement.json", bytesOf(json).substr(0, 200));
+        takeRefused(3, take, scratch, "measurement.json");
+    }
+    SECTION("not there")
+    {
+        fs::remove(json);
+        takeRefused(3, take, scratch, "measurement.json");
+    }
+}
+
+TEST_CASE("A take that is not there, or has nothing to explain, is refused", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    takeRefused(3, (scratch / "nowhere \u00e9").string(), scratch, "nowhere \u00e9");
+
+    const auto plan = (scratch / "plan").string(), out = (scratch / "model.json").string();
+    REQUIRE(runProgram(scratch.folder(), {"excite", "--out", plan, "--period", "2048", "--levels", "1"}).code == 0);
+    refusedWith(4, {"fit", plan, "--out", out}, scratch, "no output");
+    refusedWith(4, {"improve", plan, "--out", (scratch / "ladder").string()}, scratch, "no output");
+    refusedWith(4, {"compare", plan, "--model", Chain::get().model()}, scratch, "no output");
+}
+
+TEST_CASE("Models and ladders that cannot be used are refused", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto take = Chain::get().take(), model = (scratch / "model.json").string(), folder = (scratch / "played").string();
+    const auto refused = [&](const std::string& named) {
+        refusedWith(3, {"compare", take, "--model", model}, scratch, named);
+        refusedWith(3, {"diagnose", take, "--model", model}, scratch, named);
+        refusedWith(3, {"add", take, "--model", model, "stiffness", "--out", (scratch / "out.json").string()}, scratch, named);
+        refusedWith(3, {"simulate", model, take, "--out", folder}, scratch, named);
+        refusedWith(3, {"report", scratch.folder().string()}, scratch, "ladder.json");
+    };
+    refused("does not exist");
+    fs::copy_file(Chain::get().model(), model);
+    SECTION("another version")
+    {
+        editJson(model, [](auto& j) { j["version"] = 2; });
+        editJson(model, [&](auto& j) { scratch.file("ladder.json", j.dump()); });
+        refused("'version'");
+    }
+    SECTION("an impossible mass")
+    {
+        editJson(model, [](auto& j) { j["base"]["parameters"][3]["value"] = -1.0; });
+        refused("value");
+    }
+    SECTION("empty")
+    {
+        scratch.file("model.json", "");
+        scratch.file("ladder.json", "");
+        refused("is empty");
+    }
+    SECTION("a folder")
+    {
+        fs::remove(model);
+        fs::create_directory(model);
+        fs::create_directory(scratch / "ladder.json");
+        refused("is not a file");
+    }
+    SECTION("a ladder, where a model is wanted")
+    {
+        scratch.file("model.json", R"({"format": "excursion-ladder", "version": 1})");
+        scratch.file("ladder.json", bytesOf(Chain::get().model()));
+        refused("format");
+    }
+}
+
+TEST_CASE("A WAV that simulate cannot play is refused", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto model = Chain::get().model(), wav = (scratch / "in.wav").string(), folder = (scratch / "played").string();
+    const auto refused = [&](int code, const std::string& named) {
+        refusedWith(code, {"simulate", model, wav, "--full-scale", "4", "--out", folder}, scratch, named);
+    };
+    refused(3, "does not exist");
+    scratch.file("in.wav", "RIFF");
+    refused(3, "in.wav");
+    std::vector<std::vector<double>> two(2, std::vector<double>(500, 0.1));
+    excursion::writeWav(wav, 48000, two, excursion::SampleFormat::float32);
+    refused(3, "2 channels");
+    std::vector<std::vector<double>> one(1, std::vector<double>(500, 0.1));
+    one[0][99] = std::numeric_limits<double>::infinity();
+    excursion::writeWav(wav, 48000, one, excursion::SampleFormat::float32);
+    refused(3, "sample 99");
+    refusedWith(2, {"simulate", model, wav, "--full-scale", "-4", "--out", folder}, scratch, "--full-scale");
+    refusedWith(2, {"simulate", model, wav, "--full-scale", "4", "--tolerance", "7", "--out", folder}, scratch, "tolerance");
+}
+
+TEST_CASE("A place that cannot be written to is told before the work", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto take = Chain::get().take(), model = Chain::get().model();
+    const auto file = scratch.file("file", "a file where a folder is wanted").string();
+    fs::create_directory(scratch / "folder");
+    const auto folder = (scratch / "folder").string();
+    refusedWith(3, {"fit", take, "--out", folder}, scratch, "it is a folder");
+    refusedWith(3, {"fit", take, "--out", file + "/model.json"}, scratch, "is not a folder");
+    refusedWith(3, {"add", take, "--model", model, "stiffness", "--out", folder}, scratch, "it is a folder");
+    refusedWith(3, {"improve", take, "--out", file}, scratch, "is not a folder");
+    refusedWith(3, {"simulate", model, take, "--out", file}, scratch, "is not a folder");
+    refusedWith(3, {"fit", take, "--out", (scratch / "m.json").string(), "--json", file + "/said.json"}, scratch, "is not a folder");
+    if (::geteuid() == 0) {
+        WARN("skipped: root may write to every folder and read every file");
+        return;
+    }
+    fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
+    refusedWith(3, {"fit", take, "--out", folder + "/model.json"}, scratch, "permission");
+    refusedWith(3, {"improve", take, "--out", folder + "/new"}, scratch, "permission");
+    fs::permissions(folder, fs::perms::owner_all);
+    fs::permissions(file, fs::perms::none);
+    refusedWith(3, {"compare", take, "--model", file}, scratch, "permission");
+}
+
+TEST_CASE("Effects that do not exist or do not suit are refused before the work", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    const auto take = Chain::get().take(), model = Chain::get().model();
+    const auto out = (scratch / "out.json").string(), folder = (scratch / "ladder").string();
+    refusedWith(2, {"fit", take, "--effects", "stiffness,stifness", "--out", out}, scratch, "stifness");
+    refusedWith(2, {"improve", take, "--with", "gravity", "--out", folder}, scratch, "gravity");
+    refusedWith(2, {"add", take, "--model", model, "gravity", "--out", out}, scratch, "gravity");
+    refusedWith(2, {"effects", "gravity"}, scratch, "gravity");
+
+    // A cone on a spring, driven by a force: no coil.
+    std::string csv = "time_s,force_n,displacement_m\n";
+    double x = 0.0, v = 0.0;
+    std::uint32_t noise = 1;
+    constexpr double step = 1.0 / 2000.0;
+    for (int n = 0; n < 4000; ++n) {
+        noise = noise * 1664525u + 1013904223u;
+        const double force = static_cast<double>(noise >> 8) / (1 << 23) - 1.0;
+        csv += std::to_string(n * step) + "," + std::to_string(force) + "," + std::to_string(x) + "\n";
+        v += step * (force - 2.0 * v - 2000.0 * x) / 0.01;
+        x += step * v;
+    }
+    const auto pushed = scratch.file("pushed.csv", csv).string();
+    refusedWith(2, {"fit", pushed, "--effects", "force-factor", "--out", out}, scratch, "force-factor");
+    refusedWith(2, {"improve", pushed, "--with", "force-factor", "--out", folder}, scratch, "force-factor");
+    refusedWith(4, {"compare", pushed, "--model", model}, scratch, "coil");
+
+    const auto impedance = scratch.file("z.zma", "20 7.1 10\n40 30 5\n80 9 -20\n160 7 -5\n320 7 5\n640 8 20\n1280 10 35\n").string();
+    refusedWith(2, {"fit", impedance, "--effects", "stiffness", "--out", out}, scratch, "stiffness");
+}
+
+TEST_CASE("A wrong command line is told in one sentence", "[cli][bad-input]")
+{
+    const Scratch scratch;
+    refusedWith(2, {}, scratch, "--help");
+    refusedWith(2, {"improove"}, scratch, "improove");
+    refusedWith(2, {"fit", Chain::get().take()}, scratch, "--out");
+    refusedWith(2, {"compare", Chain::get().take(), "--modle", "x"}, scratch, "--model");
+}
