@@ -233,13 +233,15 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
     const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
     const double price = unit * std::log(std::max(2.0, sums.estimation.rows));
+    // Where the noise is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
+    const double least = record.noiseKnown ? 0.0 : 0.02 * now;
     Model result = model;
     for (const auto k : candidates) {
         auto use = old;
         use.insert(use.end(), added[k].begin(), added[k].end());
         std::sort(use.begin(), use.end());
         const double then = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, use));
-        if (now - then > price * static_cast<double>(added[k].size())) {
+        if (now - then > std::max(least, price * static_cast<double>(added[k].size()))) {
             result = withHigher(result, k);
             raised.push_back(model.components[k].effect->id());
         }

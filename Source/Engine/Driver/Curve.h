@@ -12,7 +12,8 @@ namespace excursion {
 /// A smooth curve that is zero at rest,
 ///     c(q) = sum_{k=1..n} c_k [T_k(q/Q) - T_k(0)],   |q| <= Q,
 /// with Chebyshev polynomials T_k, which keep the fit well conditioned at any degree that is of use. Beyond the visited
-/// range Q the curve stays at its end value: a polynomial must not be believed where nothing was measured.
+/// range Q the curve stays at its end value, as a polynomial must not be believed where nothing was measured, unless the physics
+/// says how it goes on (see beyond).
 /// Coefficients are those of the monomials in q/Q, from degree 0 upwards (n + 1 of them).
 namespace curve {
 
@@ -59,6 +60,21 @@ ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
         value = value * s + b[j];
     }
     return {value, outside ? T(0.0) : slope * (1.0 / range)};
+}
+
+/// How a curve goes on beyond the visited range, from its end value. Its first two terms, which are the best determined, extend it:
+///     max(0, c_1 (T_1(s) - T_1(+-1)) + c_2 (T_2(s) - T_2(1))),   1 < |s| <= 2,   s = q/Q,
+/// and from twice the range on it stays. A law that hardens goes on hardening; it never gives way where nothing was measured.
+template <class T>
+T beyond(const T& c1, const T& c2, const T& q, double range)
+{
+    T s = q * (1.0 / range);
+    if (s > T(2.0) || s < T(-2.0))
+        s = s > T(0.0) ? T(2.0) : T(-2.0);
+    if (!(s > T(1.0) || s < T(-1.0)))
+        return T(0.0);
+    const T rise = c1 * (s - (s > T(0.0) ? 1.0 : -1.0)) + 2.0 * c2 * (s * s - 1.0);
+    return rise > T(0.0) ? rise : T(0.0);
 }
 
 inline double valueAt(int n, const double* c, double q, double range)

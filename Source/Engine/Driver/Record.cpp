@@ -164,7 +164,7 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
 void addAperiodicSections(const Measurement& take, const RecordOptions& options, Record& record)
 {
     const std::size_t length = take.length();
-    const auto lead = static_cast<std::size_t>(std::max(options.leadInSeconds * take.sampleRate, 256.0));
+    const auto lead = static_cast<std::size_t>(std::max(options.leadInSeconds * take.sampleRate, 1024.0));
     auto window = static_cast<std::size_t>(std::max(options.windowSeconds * take.sampleRate, 2048.0));
     if (length < lead + 256)
         throw Error(Error::Kind::data, "The take is only " + std::to_string(length)

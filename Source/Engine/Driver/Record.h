@@ -56,7 +56,7 @@ struct RecordOptions {
     /// asked about where it was never measured.
     bool holdOut = true;
     double windowSeconds = 0.5;      ///< of aperiodic sections, at least 2048 samples
-    double leadInSeconds = 0.25;     ///< before an aperiodic window
+    double leadInSeconds = 0.25;     ///< before an aperiodic window, at least 1024 samples
     /// Lines are never weighted as if they were known better than this, relative to the channel's rms: the accuracy of
     /// sensors and of the integration ends there. -105 dB.
     double relativeFloor = 5.6e-6;

@@ -12,7 +12,7 @@ namespace {
 /// s = sqrt((w - w_0)^2 + e^2) - sqrt(w_0^2 + e^2),  e = 1/50,
 /// with Chebyshev polynomials T_k. Damping of air flow grows like |v|, which no short polynomial in v imitates: s is |w|, rounded
 /// at rest so that the law stays differentiable. The odd terms let inward and outward differ; w_0 is where the flow is least
-/// resisted, near rest.
+/// resisted, near rest. Beyond the visited range, up to twice it, a law that rises goes on in proportion to |v|.
 class DampingVelocity final : public EffectOf<DampingVelocity> {
 public:
     std::string id() const override { return "damping-velocity"; }
@@ -93,15 +93,21 @@ private:
         using std::sqrt;
         constexpr double rounding = 0.02;
         T w = v * (1.0 / e.velocity);
-        if (w > T(1.0) || w < T(-1.0))
+        T reach = T(1.0);
+        if (w > T(1.0) || w < T(-1.0)) {
+            reach = w > T(0.0) ? w : -w;
+            if (reach > T(2.0))
+                reach = T(2.0);
             w = w > T(0.0) ? T(1.0) : T(-1.0);
+        }
         const int n = e.degree;
         const T square = w * w, centre = c[n + 3], off = w - centre;
         const T s = sqrt(off * off + rounding * rounding) - sqrt(centre * centre + rounding * rounding);
         T value = c[n];
         for (int k = n - 1; k >= 0; --k)
             value = value * s + c[k];
-        return value + w * (c[n + 1] + square * c[n + 2]);
+        value += w * (c[n + 1] + square * c[n + 2]);
+        return value > T(0.0) ? value * reach : value;
     }
 };
 

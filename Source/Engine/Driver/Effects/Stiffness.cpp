@@ -5,7 +5,8 @@
 namespace excursion {
 namespace {
 
-/// K(x) = K + c(x): restoring force -c(x) x besides the base's -K x.
+/// K(x) = K + c(x): restoring force -c(x) x besides the base's -K x. A suspension that hardens goes on hardening beyond the
+/// visited range.
 class Stiffness final : public EffectOf<Stiffness> {
 public:
     std::string id() const override { return "stiffness"; }
@@ -29,20 +30,24 @@ public:
     std::optional<LawInfo> law() const override { return LawInfo {"K(x)", "N/m", "x", "m", "K"}; }
     double lawAt(const Extent& e, const double* p, double x) const override
     {
-        return curve::valueAt(e.degree, p, x, e.displacement);
+        return curve::valueAt(e.degree, p, x, e.displacement) + curve::beyond(p[0], e.degree > 1 ? p[1] : 0.0, x, e.displacement);
     }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1; }
+    int coefficientCount(const Extent& e) const override { return e.degree + 3; }
 
     template <class T>
     void prepareFor(const Extent& e, const T* p, T* c) const
     {
         curve::prepare(e.degree, p, c);
+        c[e.degree + 1] = p[0];
+        c[e.degree + 2] = e.degree > 1 ? p[1] : T(0.0);
     }
 
     template <class T>
     void addTo(const Extent& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
-        sum.force -= curve::at(e.degree, c, at.x, e.displacement).value * at.x;
+        const T difference = curve::at(e.degree, c, at.x, e.displacement).value
+                             + curve::beyond(c[e.degree + 1], c[e.degree + 2], at.x, e.displacement);
+        sum.force -= difference * at.x;
     }
 };
 
