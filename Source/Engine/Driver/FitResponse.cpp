@@ -155,12 +155,20 @@ LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std:
     return summary;
 }
 
-bool strengthIsSeen(const Component& component)
+bool isSeen(const Component& component)
 {
-    constexpr double sure = 3.0;   // standard errors
-    return std::any_of(component.parameters.begin(), component.parameters.end(), [](const Parameter& p) {
-        return p.strength && std::abs(p.value) > sure * p.standardError;   // never so when the standard error is not known
-    });
+    constexpr double sure = 3.0;        // standard errors
+    constexpr double atBound = 0.002;   // of the range
+    bool strong = false;
+    for (const auto& p : component.parameters) {
+        if (p.strength) {
+            strong |= std::abs(p.value) > sure * p.standardError;   // never so when the standard error is not known
+        } else if (const double range = p.upper - p.lower; std::isfinite(range)) {
+            if (std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
+                return false;
+        }
+    }
+    return strong;
 }
 
 } // namespace excursion

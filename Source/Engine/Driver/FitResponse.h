@@ -27,8 +27,9 @@ struct ResponseTarget {
 std::vector<ResponseTarget> responsesOf(const Record&, int level, int pointsPerOctave = 12);
 
 /// Targets of a take that is a frequency response only: the impedance from voltage and current, the other quantities per unit of
-/// input, on a logarithmic grid, so that every octave counts alike. The deviation of an impedance is its magnitude, that of any other
-/// response the curve's rms, doubled for a motion, which is measured at one point of the cone. Ends that repeat one value exactly, or where the excitation has died away, are no measurement and are
+/// input, on a logarithmic grid. The deviation of an impedance is its magnitude, that of any other response the curve's rms, four times
+/// that for a motion, which is measured at one point of the cone; divided by the root of the octaves that a point stands for, so
+/// that every octave counts alike. Ends that repeat one value exactly, or where the excitation has died away, are no measurement and are
 /// left out, and so is a motion above the band in which the cone moves as one piece (see PistonBand.h).
 /// Throws Error (data) without an input or an output.
 std::vector<ResponseTarget> responsesOf(const Spectra&, int pointsPerOctave = 48);
@@ -40,7 +41,7 @@ std::vector<ResponseTarget> thinned(const std::vector<ResponseTarget>&, int poin
 
 /// Relative rms error of a model's response over the whole curve, dB (seed 4.26), weighted as the target says:
 ///     10 log10( sum |G - G_measured|^2/sigma^2 / sum |G_measured|^2/sigma^2 ).
-/// For an impedance of a frequency-response take that is the rms of |Z - Z_measured|/|Z_measured|.
+/// For an impedance of a frequency-response take that is the rms of |Z - Z_measured|/|Z_measured| over log f.
 double responseErrorDb(const Model&, const ResponseTarget&);
 
 /// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale. Leaves standard errors and
@@ -51,8 +52,9 @@ LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, cons
 /// when the fit is not usable.
 LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTarget>&);
 
-/// Whether a fit is sure that an effect is there: one of its strengths exceeds three standard errors.
-bool strengthIsSeen(const Component&);
+/// Whether a fit is sure that an effect is there: one of its strengths exceeds three standard errors, and no parameter of its shape was
+/// driven to a bound, where it would stand for something else.
+bool isSeen(const Component&);
 
 /// A linear base model with start values that need no tuning, from a micro speaker to a subwoofer: candidates over the
 /// resonance frequency, its quality and the electrical damping are fitted and the best is kept. Parameters that the channels cannot

@@ -19,18 +19,32 @@ struct Cell {
     int count = 0;
 };
 
+/// Octaves that a point stands for: half the way to either neighbour.
+double octavesAt(const std::vector<double>& frequency, std::size_t k)
+{
+    const std::size_t before = k > 0 ? k - 1 : k, after = std::min(k + 1, frequency.size() - 1);
+    return std::log2(frequency[after] / frequency[before]) / static_cast<double>(std::max<std::size_t>(1, after - before));
+}
+
 /// An impedance counts by its relative error, at the bottom between resonance and inductance as much as on the peak; a motion fades
-/// into noise away from resonance and counts by its error against the whole curve's rms.
+/// into noise away from resonance and counts by its error against the whole curve's rms. Every octave counts alike, however
+/// many points it has.
 void weigh(ResponseTarget& target)
 {
-    double power = 0.0;
-    for (const auto& value : target.value)
-        power += std::norm(value);
-    const double rms = std::sqrt(power / static_cast<double>(std::max<std::size_t>(1, target.value.size())));
-    constexpr double trust = 0.5;   // of a motion, against an impedance: the cone is touched by light at one point only
-    target.deviation.assign(target.value.size(), rms / (isMotion(target.quantity) ? trust : 1.0));
-    for (std::size_t k = 0; target.impedance && k < target.value.size(); ++k)
-        target.deviation[k] = std::max(std::abs(target.value[k]), 1e-6 * rms);
+    constexpr double trust = 0.25;   // of a motion, against an impedance: the cone is touched by light at one point only
+    const std::size_t points = target.value.size();
+    double power = 0.0, octaves = 0.0;
+    for (std::size_t k = 0; k < points; ++k) {
+        power += octavesAt(target.frequency, k) * std::norm(target.value[k]);
+        octaves += octavesAt(target.frequency, k);
+    }
+    const double rms = std::sqrt(power / octaves), perPoint = octaves / static_cast<double>(points);
+    target.deviation.resize(points);
+    for (std::size_t k = 0; k < points; ++k) {
+        const double scale = target.impedance ? std::max(std::abs(target.value[k]), 1e-6 * rms)
+                             : isMotion(target.quantity) ? rms / trust : rms;
+        target.deviation[k] = scale * std::sqrt(perPoint / octavesAt(target.frequency, k));
+    }
 }
 
 /// Points that were measured: programs fill the ends of a curve, where the instrument gave nothing, with copies of the

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measured frequency responses: what the ladder adds to the base model, and that it does not claim more than they show.
+#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Linearize.h"
+#include "Engine/Measurement/TakeFile.h"
+#include "Measurement/Scratch.h"
+
+#include <cmath>
+
+using namespace excursion;
+using namespace excursion::test;
+
+namespace {
+
+double percent(const Rung& rung, Quantity quantity)
+{
+    for (const auto& channel : rung.comparison.channels)
+        if (channel.quantity == quantity)
+            return 100.0 * std::pow(10.0, channel.total.db / 20.0);
+    FAIL("the comparison lacks the " << name(quantity));
+    return 0.0;
+}
+
+double percent(const Rung& rung) { return percent(rung, Quantity::current); }
+
+/// Nothing is infinite, a free parameter knows its error, and what is held is marked.
+void checkParameters(const Model& model)
+{
+    for (const auto* p : parametersOf(model)) {
+        INFO(p->name);
+        CHECK(std::isfinite(p->value));
+        CHECK(p->value >= p->lower);
+        CHECK(p->value <= p->upper);
+        if (p->free)
+            CHECK(std::isfinite(p->standardError));
+    }
+}
+
+/// rms of |Z - Z_measured|/|Z_measured| at every measured frequency below `highest`, counted again without the engine's grid.
+double plainError(const Model& model, const Spectra& take, double highest)
+{
+    const auto &u = take.find(Quantity::voltage)->values, &i = take.find(Quantity::current)->values;
+    const auto admittance = respond(model, {Quantity::current}, take.frequency).front().value;
+    double sum = 0.0, octaves = 0.0;
+    for (std::size_t k = 1; k < take.frequency.size() && take.frequency[k] < highest; ++k) {
+        const auto measured = u[k] / i[k];
+        const double width = std::log2(take.frequency[k] / take.frequency[k - 1]);
+        sum += width * std::norm(1.0 / admittance[k] - measured) / std::norm(measured);
+        octaves += width;
+    }
+    return 100.0 * std::sqrt(sum / octaves);
+}
+
+} // namespace
+
+TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else")
+{
+    const auto folder = dataFolder("novak");
+    if (folder.empty())
+        return;
+    const auto take = readTake(folder / "novak.csv");
+    const auto ladder = improve(take);
+    REQUIRE(ladder.rungs.size() >= 2);
+    CHECK(ladder.rungs[1].added == "eddy-currents");
+    CHECK(percent(ladder.rungs[0]) == Approx(20.0).margin(2.0));
+    CHECK(percent(ladder.rungs[1]) <= 5.1);
+    CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 21000.0) <= 5.1);
+    CHECK(percent(ladder.rungs[1], Quantity::velocity) < 0.75 * percent(ladder.rungs[0], Quantity::velocity));
+    // What others found with this driver: Re 4.92 ohm, Bl 10.8 N/A, m 11 g, resonance 161 Hz, exponent 0.74.
+    const auto& model = ladder.rungs[1].model;
+    checkParameters(model);
+    CHECK(model.baseParameter("Re").value == Approx(4.92).epsilon(0.05));
+    CHECK(model.baseParameter("Bl").value == Approx(10.8).epsilon(0.05));
+    CHECK(model.baseParameter("m").value == Approx(0.011).epsilon(0.05));
+    CHECK(model.find("eddy-currents")->parameters[1].value == Approx(0.74).margin(0.05));
+    CHECK(model.baseParameter("m").free);
+    CHECK_THAT(ladder.sentence, Catch::Contains("The velocity counts up to"));
+}
+
+TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its motor")
+{
+    const auto folder = dataFolder("seas-l16rnx");
+    if (folder.empty())
+        return;
+    std::vector<double> resonance;
+    for (const char* file : {"L16RNX_0g_242_27mV.zma", "L16RNX_8_017g_242_27mV.zma", "L16RNX_16_048g_242_27mV.zma"}) {
+        INFO(file);
+        const auto take = readTake(folder / file);
+        const auto ladder = improve(take);
+        REQUIRE(ladder.rungs.size() >= 2);
+        CHECK(ladder.rungs[1].added == "eddy-currents");
+        CHECK(percent(ladder.rungs[0]) == Approx(21.0).margin(3.0));
+        CHECK(percent(ladder.rungs[1]) <= 3.9);
+        CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 20001.0) <= 3.95);
+        const auto& model = ladder.rungs[1].model;
+        checkParameters(model);
+        CHECK(model.baseParameter("Re").value == Approx(5.6).epsilon(0.05));
+        CHECK(model.find("eddy-currents")->parameters[1].value == Approx(0.68).margin(0.03));
+        resonance.push_back(std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / 6.2831853);
+        // One impedance does not show the mass, and the ladder says so.
+        CHECK_FALSE(model.baseParameter("m").free);
+        CHECK_THAT(ladder.sentence, Catch::Contains("The moving mass is held at"));
+    }
+    CHECK(resonance[0] == Approx(45.5).margin(1.0));
+    CHECK(resonance[1] == Approx(35.8).margin(1.0));
+    CHECK(resonance[2] == Approx(30.7).margin(1.0));
+}
+
+TEST_CASE("A designer's impedance files end in a sane verdict")
+{
+    const auto folder = dataFolder("impedance");
+    if (folder.empty())
+        return;
+    struct Expected {
+        const char* file;
+        bool onePeak;
+        double left;   // percent, with eddy currents
+    };
+    for (const auto& [file, onePeak, left] : {Expected {"Morel_CAW938_caw938.zma", true, 4.1}, Expected {"Morel_CAW938_sb26adc.zma", true, 1.5},
+                                              Expected {"Sealed_SIG120_DX25TG59_Woofer.zma", true, 2.7},
+                                              Expected {"SB15NRX2C30-4_SB26STCN-4_Woofer.zma", false, 100.0}}) {
+        INFO(file);
+        const auto ladder = improve(readTake(folder / file));
+        REQUIRE_FALSE(ladder.rungs.empty());
+        CHECK(ladder.verdict == Verdict::unknownEffect);   // the noise is not known, so it never says complete
+        CHECK_THAT(ladder.sentence, Catch::Contains("The moving mass is held at"));
+        for (const auto& rung : ladder.rungs)
+            checkParameters(rung.model);
+        if (onePeak) {
+            REQUIRE(ladder.rungs.size() >= 2);
+            CHECK(ladder.rungs[1].added == "eddy-currents");
+            CHECK(percent(ladder.rungs[1]) <= left);
+        }
+    }
+}
