@@ -72,7 +72,7 @@ void print(const Added& added, const Effect& effect, Terminal& terminal)
     std::vector<std::vector<std::string>> rows;
     for (std::size_t k = 0; k < added.after.channels.size(); ++k) {
         const auto &before = added.before.channels[k].total, &after = added.after.channels[k].total;
-        rows.push_back({std::string(name(added.after.channels[k].quantity)), fixed(before.db, 1), fixed(after.db, 1),
+        rows.push_back({titleOf(added.after.channels[k]), fixed(before.db, 1), fixed(after.db, 1),
                         decibelText(after.noiseFloorDb), misfitText(before.chi, added.before.noiseKnown),
                         misfitText(after.chi, added.after.noiseKnown)});
     }

@@ -82,7 +82,7 @@ void printSpectrum(const Comparison& comparison, Terminal& terminal)
 {
     std::vector<std::string> header {"octave Hz"};
     for (const auto& channel : comparison.channels)
-        header.push_back(std::string(name(channel.quantity)) + " dB");
+        header.push_back(titleOf(channel) + " dB");
     Rows rows;
     for (const double centre : {2.0, 4.0, 8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16000.0, 32000.0}) {
         std::vector<std::string> row {significant(centre)};

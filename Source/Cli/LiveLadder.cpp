@@ -26,7 +26,7 @@ void LiveLadder::begin(const Comparison& comparison)
 {
     std::vector<std::string> floor, rule;
     for (const auto& channel : comparison.channels) {
-        titles_.push_back(std::string(name(channel.quantity)) + " dB");
+        titles_.push_back(titleOf(channel) + " dB");
         floor.push_back(decibelText(channel.total.noiseFloorDb));
     }
     titles_.emplace_back("misfit");
@@ -80,7 +80,7 @@ void LiveLadder::end(const Ladder& ladder)
     if (rungs_ > 0)
         terminal_.say("");
     for (const auto& id : ladder.withdrawn)
-        terminal_.say("withdrawn  " + id + ": what it left was as large as what it explained.");
+        terminal_.say("withdrawn  " + id + ": it explained little more than what is left unexplained in the end.");
     sayProblems(ladder.problems, terminal_);
     if (!ladder.problems.empty())
         terminal_.say("");

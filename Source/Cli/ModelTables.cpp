@@ -67,13 +67,18 @@ void printErrors(const Comparison& comparison, Terminal& terminal)
 {
     Rows rows;
     for (const auto& channel : comparison.channels)
-        rows.push_back({std::string(name(channel.quantity)), fixed(channel.total.db, 1), decibelText(channel.total.noiseFloorDb),
+        rows.push_back({titleOf(channel), fixed(channel.total.db, 1), decibelText(channel.total.noiseFloorDb),
                         misfitText(channel.total.chi, comparison.noiseKnown)});
     terminal.table({"channel", "error dB", "noise dB", "misfit"}, rows);
     terminal.say(wrapped(std::string("Error and noise are rms relative to the channel, on ")
                          + (comparison.validated ? "data that no fit saw" : "the data that was fitted, as nothing could be held out")
                          + (comparison.noiseKnown ? ". Misfit: squared error over squared noise, 1 at best."
                                                   : ". The take does not tell its noise.")));
+}
+
+std::string titleOf(const ChannelComparison& channel)
+{
+    return channel.unit == "ohm" ? std::string("impedance") : std::string(name(channel.quantity));
 }
 
 std::string decibelText(const std::optional<double>& db) { return db && std::isfinite(*db) ? fixed(*db, 1) : std::string("-"); }

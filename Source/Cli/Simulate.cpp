@@ -102,7 +102,7 @@ std::string beyond(const Model& model, const Measurement& take)
     if (range == 0.0 || peak <= 1.05 * range)
         return "";
     return "The cone moves " + significant(1e3 * peak, 3) + " mm, but the model was measured to " + significant(1e3 * range, 3)
-         + " mm: beyond that its laws are held at their last value.";
+         + " mm: beyond that its laws are a guess.";
 }
 
 void run(const Options& options, Terminal& terminal)

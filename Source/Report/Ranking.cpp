@@ -34,11 +34,19 @@ void addRanking(Page& page, const LadderFile& file)
             page.paragraph("This take cannot tell the first of the ranking from: " + names + ". " + diagnosis.measureNext);
         }
         std::vector<std::vector<Page::Cell>> rows;
-        for (const auto& ranked : diagnosis.ranking)
+        std::string untried;
+        for (const auto& ranked : diagnosis.ranking) {
+            if (ranked.confirmedErrorDb.empty()) {   // what promises nothing has no reason to be read
+                untried += (untried.empty() ? "" : ", ") + effectTitle(ranked.effect);
+                continue;
+            }
             rows.push_back({effectTitle(ranked.effect), Page::Cell::bar(ranked.confidence, fixedText(std::min(99.0, 100.0 * ranked.confidence), 0) + "\u202f%"),
                             errorsText(ranked.predictedErrorDb), errorsText(ranked.confirmedErrorDb), ranked.reason});
+        }
         if (!rows.empty())
             page.table({"Effect", "Confidence", "Predicted error", "Confirmed error", "Reason"}, rows);
+        if (!untried.empty())
+            page.paragraph("Not tried, as they promised less: " + untried + ".");
     }
     page.note("The predicted error comes from a score test, the confirmed one from a refit judged on data that it did not see.");
 }

@@ -40,7 +40,7 @@ const ChannelComparison* channelOf(const Comparison& comparison, Quantity quanti
 /// Rms of groups of up to four: single lines, where they are sparse, would draw a comb of excited and silent ones in which nothing is seen.
 ErrorSpectrum smoothed(const ErrorSpectrum& s)
 {
-    const auto group = std::clamp<std::size_t>(s.frequency.size() / 40, 1, 4);   // of a few points, as an impedance may have, all are shown
+    const auto group = std::clamp<std::size_t>(s.frequency.size() / 20, 1, 4);   // of a few points, as an impedance may have, all are shown
     ErrorSpectrum result;
     const auto grouped = [&](const std::vector<double>& values, std::size_t begin, std::size_t end) {
         double power = 0.0;
