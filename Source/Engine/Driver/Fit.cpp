@@ -7,8 +7,6 @@
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Signal/Fft.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -47,6 +45,41 @@ std::optional<int> integrationsToDisplacement(Quantity quantity)
     case Quantity::acceleration: return 2;
     default: return std::nullopt;
     }
+}
+
+/// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of relaxations that
+/// has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others.
+std::vector<Eigen::Index> telling(const Model& model, const Record& record, const std::vector<std::size_t>& sections, int substeps,
+                                  unsigned threads)
+{
+    const auto active = freeParameters(model);
+    const auto all = parametersOf(model);
+    const auto isShape = [&](Eigen::Index k) {
+        const auto& p = *all[static_cast<std::size_t>(k)];
+        return !p.strength && std::isfinite(p.prior);
+    };
+    if (std::none_of(active.begin(), active.end(), isShape))
+        return active;
+    OutputErrorOptions run;
+    run.substeps = substeps;
+    run.threads = threads;
+    NormalEquations sum;
+    for (const auto& section : outputError(model, record, sections, active, run))
+        for (const auto& channel : section.channels)
+            if (section.finite)
+                sum.add(channel);
+    if (sum.N.size() == 0)
+        return active;
+    std::vector<Eigen::Index> kept;
+    constexpr double fewTimes = 4.0;   // what the record must say, in units of what was known
+    const double variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
+    for (std::size_t j = 0; j < active.size(); ++j) {
+        const auto k = static_cast<Eigen::Index>(j);
+        const double prior = all[static_cast<std::size_t>(active[j])]->prior;
+        if (!isShape(active[j]) || sum.N(k, k) * prior * prior > fewTimes * variance)
+            kept.push_back(active[j]);
+    }
+    return kept;
 }
 
 } // namespace
@@ -116,18 +149,7 @@ void adapt(Record& record, const Model& model)
                                                              std::abs(responses[c].value[n]) * std::sqrt(section.inputVariance[played[n]]));
         section.inputVariance.clear();
     }
-    // The slowest pole of the base decides, real when the motor damps more than critically; relaxations (creep) are slower, but
-    // answer to little more than the mean.
-    Model base = model;
-    base.components.resize(1);
-    const auto poles = linearize(base).A.eigenvalues();
-    double slowest = std::numeric_limits<double>::infinity();
-    for (const auto& pole : poles)
-        if (pole.real() < 0.0)
-            slowest = std::min(slowest, -pole.real());
-    const std::size_t period = record.sections.front().window;
-    const double needed = std::isfinite(slowest) ? 12.7 / slowest * record.sampleRate : 0.0;
-    record.leadIn = static_cast<std::size_t>(std::clamp(needed, 0.25 * static_cast<double>(period), 4.0 * static_cast<double>(period)));
+    record.leadIn = settlingTime(model, record);
 }
 
 Extent visitedExtent(const Model& model, const Record& record, int degree)
@@ -181,7 +203,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     FitSummary summary;
     summary.substeps = std::max(stableSubsteps(model, record.sampleRate),
                                 options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));
-    const auto active = freeParameters(model);
+    const auto active = telling(model, record, sections, summary.substeps, options.threads);
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size());
     Eigen::VectorXd theta(P), lower(P), upper(P);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/OutputError.h"
 
+#include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Signal/Fft.h"
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -36,11 +40,11 @@ std::complex<double> pathResponse(const Model& model, double frequency)
 class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section, const std::vector<Eigen::Index>& active,
-               const OutputErrorOptions& options)
+               const OutputErrorOptions& options, std::size_t leadIn)
         : model_(model), record_(record), section_(section), active_(active), options_(options)
     {
         std::tie(first_, last_) = record.lineRange(section);
-        const auto drive = record.drive(section);
+        const auto drive = record.drive(section, leadIn);
         drive_.emplace(drive, record.sampleRate, options.substeps);
         if (options.gradient && options.gradientSubsteps != options.substeps)
             gradientDrive_.emplace(drive, record.sampleRate, options.gradientSubsteps);
@@ -196,10 +200,31 @@ void NormalEquations::add(const NormalEquations& other)
     rows += other.rows;
 }
 
+std::size_t settlingTime(const Model& model, const Record& record)
+{
+    if (record.sections.empty() || !record.sections.front().periodic)
+        return 0;
+    constexpr double by110dB = 12.7, by60dB = 6.9;   // nepers
+    Model base = model;
+    base.components.resize(1);
+    double needed = 0.0;   // s
+    for (const auto& pole : linearize(base).A.eigenvalues())
+        if (pole.real() < 0.0)
+            needed = std::max(needed, by110dB / -pole.real());
+    const double slowest = 0.3 * 2.0 * std::numbers::pi * record.bandLow;
+    if (model.components.size() > 1)
+        for (const auto& pole : linearize(model).A.eigenvalues())
+            if (-pole.real() > slowest)
+                needed = std::max(needed, by60dB / -pole.real());
+    const auto period = static_cast<double>(record.sections.front().window);
+    return static_cast<std::size_t>(std::clamp(needed * record.sampleRate, 0.25 * period, 4.0 * period));
+}
+
 std::vector<SectionFit> outputError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                                     const std::vector<Eigen::Index>& active, const OutputErrorOptions& wanted,
                                     const Progress& progress)
 {
+    const auto leadIn = settlingTime(model, record);
     const int stable = stableSubsteps(model, record.sampleRate);
     OutputErrorOptions options = wanted;
     options.substeps = std::max(wanted.substeps, stable);
@@ -214,7 +239,7 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
             try {
                 if (progress.stop.stop_requested())
                     break;
-                fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options).run();
+                fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn).run();
                 if (!fits[n].finite)
                     failed = true;
             } catch (...) {

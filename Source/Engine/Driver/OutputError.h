@@ -45,6 +45,10 @@ struct OutputErrorOptions {
     unsigned threads = 2;
 };
 
+/// How many samples the model must run before its periodic response is settled: until the slowest pole of the base has decayed by
+/// 110 dB, and relaxations (creep) by 60 dB as far as they answer to the band, f > 0.3 of its low edge; at most four periods.
+std::size_t settlingTime(const Model&, const Record&);
+
 /// Simulates the model on the sections and compares (output error). Sensitivities come from the same physics run
 /// on jets. Sections run in parallel; the result does not depend on the number of threads.
 /// @param sections  indices into record.sections

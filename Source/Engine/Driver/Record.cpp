@@ -208,14 +208,15 @@ std::pair<std::size_t, std::size_t> Record::lineRange(const Section& section) co
     return {first, std::max(first, last)};
 }
 
-std::vector<double> Record::drive(const Section& section) const
+std::vector<double> Record::drive(const Section& section, std::size_t atLeast) const
 {
     if (!section.periodic)
         return section.input;
     const auto& period = section.input;
     const std::size_t N = period.size();
-    std::vector<double> samples(leadIn + N);
-    const std::size_t offset = N - leadIn % N;
+    const std::size_t lead = std::max(leadIn, atLeast);
+    std::vector<double> samples(lead + N);
+    const std::size_t offset = N - lead % N;
     for (std::size_t n = 0; n < samples.size(); ++n)
         samples[n] = period[(n + offset) % N];
     return samples;

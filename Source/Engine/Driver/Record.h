@@ -43,8 +43,8 @@ struct Record {
     /// First and last line of a section's window that is compared.
     std::pair<std::size_t, std::size_t> lineRange(const Section&) const;
     /// The input from rest to the window's end: of a periodic section the period, preceded by `leadIn` samples of its
-    /// periodic past.
-    std::vector<double> drive(const Section&) const;
+    /// periodic past, or more when the model needs `atLeast`.
+    std::vector<double> drive(const Section&, std::size_t atLeast = 0) const;
     double frequency(const Section& section, std::size_t line) const
     {
         return sampleRate * static_cast<double>(line) / static_cast<double>(section.window);

@@ -11,8 +11,9 @@ namespace {
 /// A viscoelastic suspension is a spring with relaxing ones beside it (generalized Maxwell body):
 ///     F = K x + sum_k K_k (x - y_k),   dy_k/dt = 2 pi f_k (x - y_k),
 /// so that the stiffness rises from K at rest to K + S in fast motion, S = sum K_k. The relaxation
-/// frequencies f_k lie evenly on a logarithmic axis, over `width` decades around 10^centre Hz. A wide band is the
-/// logarithmic creep of Knudsen and Jensen (J. Audio Eng. Soc. 41, 1993), a narrow one the three-parameter solid.
+/// frequencies f_k lie evenly on a logarithmic axis, over `width` decades around 10^centre Hz, and K_k grows like f_k^tilt. A wide
+/// even band is the logarithmic creep of Knudsen and Jensen (J. Audio Eng. Soc. 41, 1993), a wide tilted one a fractional
+/// (spring-pot) suspension, a narrow one the three-parameter solid.
 class Creep final : public EffectOf<Creep> {
 public:
     std::string id() const override { return "creep"; }
@@ -34,7 +35,7 @@ public:
 
     std::vector<Parameter> parameters(const Extent& e) const override
     {
-        Parameter strength, centre, width;
+        Parameter strength, centre, width, tilt;
         strength.name = "S";
         strength.unit = "N/m";
         strength.lower = 0.0;
@@ -47,44 +48,51 @@ public:
         width.name = "width";
         width.unit = "decades";
         width.value = 2.0;
-        width.lower = 0.05;
-        width.upper = 5.0;
-        return {strength, centre, width};
+        width.prior = 3.0;   // the sign says nothing: a search that passes through the single relaxation at 0 must not hit a wall
+        tilt.name = "tilt";
+        tilt.unit = "1";
+        tilt.prior = 0.5;
+        return {strength, centre, width, tilt};
     }
     std::vector<std::vector<double>> starts(const Extent& e) const override
     {
         const double low = std::log10(e.lowFrequency);
-        return {{0.0, low, 3.0}, {0.0, low + 0.3, 0.5}, {0.0, low - 0.5, 0.5}};
+        return {{0.0, low, 3.0, 0.0}, {0.0, low + 0.3, 0.5, 0.0}, {0.0, low - 0.5, 0.5, 0.0}};
     }
 
     int memorySize(const Extent&) const override { return cells; }
-    int coefficientCount(const Extent&) const override { return cells + 1; }
+    int coefficientCount(const Extent&) const override { return 2 * cells; }
 
-    /// Coefficients: the stiffness of each cell, then the relaxation rates.
+    /// Coefficients: the stiffness and the relaxation rate of each cell.
     template <class T>
     void prepareFor(const Extent&, const T* p, T* c) const
     {
         using std::exp;
-        c[0] = p[0] * (1.0 / cells);
+        T sum = T(0.0);
+        for (int k = 0; k < cells; ++k) {
+            const T logarithm = std::numbers::ln10 * p[2] * ((k + 0.5) / cells - 0.5);   // of f_k over the centre
+            c[2 * k] = exp(p[3] * logarithm);
+            c[2 * k + 1] = 2.0 * std::numbers::pi * exp(std::numbers::ln10 * p[1] + logarithm);
+            sum += c[2 * k];
+        }
         for (int k = 0; k < cells; ++k)
-            c[1 + k] = 2.0 * std::numbers::pi
-                       * exp(std::numbers::ln10 * (p[1] + p[2] * ((k + 0.5) / cells - 0.5)));
+            c[2 * k] *= p[0] / sum;
     }
 
     template <class T>
     void addTo(const Extent&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
     {
-        T stretched = T(0.0);
+        T force = T(0.0);
         for (int k = 0; k < cells; ++k) {
             const T difference = at.x - memory[k];
-            stretched += difference;
-            rate[k] = c[1 + k] * difference;
+            force += c[2 * k] * difference;
+            rate[k] = c[2 * k + 1] * difference;
         }
-        sum.force -= c[0] * stretched;
+        sum.force -= force;
     }
 
 private:
-    static constexpr int cells = 6;
+    static constexpr int cells = 8;   // over five decades: a ripple below a thousandth of S
 };
 
 } // namespace

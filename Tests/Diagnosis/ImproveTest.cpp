@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole way from a take to a verdict, on takes of a simulator that shares no code with the model.
+#include "Bench/Draw.h"
+#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Error.h"
+
+#include <catch2/catch.hpp>
+
+using namespace excursion;
+
+namespace {
+
+bench::Draw drawSeedDriver(std::vector<bench::HiddenEffect> hidden, std::vector<Quantity> outputs)
+{
+    bench::DrawOptions options;
+    options.driver = "seed";
+    options.hidden = std::move(hidden);
+    options.noiseDb = -70.0;
+    options.sampleRate = 44100.0;
+    options.seconds = 2.0;
+    options.channels = std::move(outputs);
+    options.channels->insert(options.channels->begin(), Quantity::voltage);
+    return bench::draw(7, options);
+}
+
+Measurement take(std::vector<bench::HiddenEffect> hidden,
+                 std::vector<Quantity> outputs = {Quantity::current, Quantity::displacement})
+{
+    const auto drawn = drawSeedDriver(std::move(hidden), std::move(outputs));
+    return bench::measure(drawn.speaker, drawn.setup);
+}
+
+std::vector<std::string> added(const Ladder& ladder)
+{
+    std::vector<std::string> result;
+    for (const auto& rung : ladder.rungs)
+        if (!rung.added.empty())
+            result.push_back(rung.added);
+    return result;
+}
+
+/// Every channel within 3 dB of its noise, on the realization that was held out.
+void requireAtTheNoise(const Comparison& comparison)
+{
+    REQUIRE(comparison.validated);
+    for (const auto& channel : comparison.channels) {
+        INFO(name(channel.quantity));
+        REQUIRE(channel.total.noiseFloorDb);
+        CHECK(channel.total.db < *channel.total.noiseFloorDb + 3.0);
+    }
+}
+
+} // namespace
+
+TEST_CASE("Nothing is added to a driver without effects, and its parameters are found", "[improve]")
+{
+    const auto ladder = improve(take({}));
+    CHECK(ladder.verdict == Verdict::complete);
+    REQUIRE(ladder.rungs.size() == 1);
+    requireAtTheNoise(ladder.rungs.front().comparison);
+    const auto& model = ladder.model();
+    for (const auto& [parameter, value] : std::map<std::string, double> {
+             {"Re", 3.3}, {"Le", 266e-6}, {"Bl", 4.95}, {"m", 14.35e-3}, {"Rms", 0.786}, {"K", 1852.0}}) {
+        const auto& p = model.baseParameter(parameter);
+        INFO(parameter << " = " << p.value << " +- " << p.standardError);
+        CHECK(p.standardError < 1e-3 * value);
+        CHECK(std::abs(p.value - value) < 5.0 * p.standardError);
+    }
+}
+
+TEST_CASE("One hidden effect is named, added, and the error falls to the noise", "[improve]")
+{
+    const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness", "inductance-position", "eddy-currents", "creep",
+                             "damping-velocity");
+    INFO(id);
+    const auto ladder = improve(take({{id, 0.25}}));
+    CHECK(added(ladder) == std::vector {id});
+    CHECK(ladder.verdict == Verdict::complete);
+    CHECK(ladder.withdrawn.empty());
+    const auto& first = ladder.rungs.front().diagnosis;
+    CHECK(first.verdict == Verdict::missingEffect);
+    CHECK(first.ranking.front().effect == id);
+    CHECK(first.ranking.front().confidence > 0.5);
+    CHECK_FALSE(first.ranking.front().reason.empty());
+    CHECK(ladder.rungs.front().comparison.chi > 10.0 * ladder.rungs.back().comparison.chi);
+    requireAtTheNoise(ladder.rungs.back().comparison);
+}
+
+TEST_CASE("Two hidden effects are added one after the other", "[improve][slow]")
+{
+    const auto ladder = improve(take({{"stiffness", 0.3}, {"force-factor", 0.3}}));
+    auto found = added(ladder);
+    std::sort(found.begin(), found.end());
+    CHECK(found == std::vector<std::string> {"force-factor", "stiffness"});
+    CHECK(ladder.verdict == Verdict::complete);
+    requireAtTheNoise(ladder.rungs.back().comparison);
+}
+
+TEST_CASE("The current alone tells a stiffening suspension", "[improve]")
+{
+    const auto ladder = improve(take({{"stiffness", 0.3}}, {Quantity::current}));
+    CHECK(added(ladder) == std::vector<std::string> {"stiffness"});
+    CHECK(ladder.verdict == Verdict::complete);
+}
+
+TEST_CASE("What the catalogue does not hold is not given another name", "[improve]")
+{
+    const auto id = GENERATE(as<std::string> {}, "inductance-current", "cone-breakup", "vented-box");
+    REQUIRE(std::none_of(catalogue().begin(), catalogue().end(), [&](const Effect* e) { return e->id() == id; }));
+    INFO(id);
+    const auto ladder = improve(take({{id, 0.3}}, {Quantity::current, Quantity::displacement, Quantity::pressure}));
+    CHECK(ladder.verdict == Verdict::unknownEffect);
+    CHECK(added(ladder).empty());
+    CHECK_THAT(ladder.sentence, Catch::Contains("no effect of the catalogue explains"));
+}
+
+TEST_CASE("A faulty take is not improved", "[improve]")
+{
+    auto drawn = drawSeedDriver({{"stiffness", 0.3}}, {Quantity::current, Quantity::displacement});
+    const auto fault = GENERATE(bench::Fault {bench::Fault::Kind::polarity, Quantity::current, 0.0},
+                                bench::Fault {bench::Fault::Kind::clipping, Quantity::current, 0.6},
+                                bench::Fault {bench::Fault::Kind::dead, Quantity::displacement, 0.0});
+    drawn.setup.faults = {fault};
+    const auto ladder = improve(bench::measure(drawn.speaker, drawn.setup));
+    CHECK(ladder.verdict == Verdict::badMeasurement);
+    CHECK(ladder.rungs.empty());
+    REQUIRE_FALSE(ladder.problems.empty());
+    CHECK(ladder.problems.front().channel == fault.channel);
+}
+
+TEST_CASE("Effects that are given are in the first model and are not added again", "[improve]")
+{
+    ImproveOptions options;
+    options.with = {"stiffness"};
+    const auto ladder = improve(take({{"stiffness", 0.3}}), options);
+    CHECK(ladder.rungs.front().model.has("stiffness"));
+    CHECK(added(ladder).empty());
+    CHECK(ladder.verdict == Verdict::complete);
+}
+
+TEST_CASE("What cannot be asked for is refused before any work, and work stops when it is told to", "[improve]")
+{
+    const auto record = take({});
+    const auto kindOf = [&](const ImproveOptions& options, const Progress& progress = {}) {
+        try {
+            improve(record, options, progress);
+        } catch (const Error& e) {
+            return e.kind();
+        }
+        return Error::Kind::input;
+    };
+    ImproveOptions unknown;
+    unknown.with = {"ghosts"};
+    CHECK(kindOf(unknown) == Error::Kind::usage);
+    ImproveOptions none;
+    none.diagnose.trials = 0;
+    CHECK(kindOf(none) == Error::Kind::usage);
+
+    std::stop_source stop;
+    Progress progress;
+    progress.stop = stop.get_token();
+    progress.report = [&stop](double, std::string_view) { stop.request_stop(); };
+    CHECK(kindOf({}, progress) == Error::Kind::cancelled);
+}
