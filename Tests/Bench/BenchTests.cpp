@@ -133,7 +133,7 @@ TEST_CASE("senseless setups are refused in a sentence", "[bench]")
 
 namespace {
 
-Draw someDraw(std::uint64_t seed)
+Draw someDraw(std::uint64_t seed)   // of twelve, every class and every effect is one
 {
     DrawOptions options;
     options.driver = driverClasses()[seed % driverClasses().size()];
@@ -146,24 +146,21 @@ Draw someDraw(std::uint64_t seed)
 
 } // namespace
 
-TEST_CASE("draws are plausible and repeatable", "[bench]")
+TEST_CASE("a draw is repeatable", "[bench]")
 {
-    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-        const auto drawn = someDraw(seed);
-        INFO("seed " << seed << " " << drawn.driver << " " << drawn.hidden.front().id);
-        CHECK(truthOf(drawn) == truthOf(someDraw(seed)));
-        CHECK(drawn.speaker.effects() == std::vector<std::string> {drawn.hidden.front().id});
-        CHECK(drawn.setup.excitation.period >= 8192);
-        const double f0 = std::sqrt(drawn.speaker.K / drawn.speaker.m) / 6.283185307179586;
-        CHECK(drawn.setup.sampleRate / drawn.setup.excitation.period <= f0 / 10.0);
-    }
+    CHECK(truthOf(someDraw(3)) == truthOf(someDraw(3)));
+    CHECK(truthOf(someDraw(3)) != truthOf(someDraw(4)));
 }
 
-TEST_CASE("draws reach the excursion they are made for", "[bench][slow]")
+TEST_CASE("draws are plausible and reach the excursion they are made for", "[bench][slow]")
 {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         auto drawn = someDraw(seed);
         INFO("seed " << seed << " " << drawn.driver << " " << drawn.hidden.front().id);
+        CHECK(drawn.speaker.effects() == std::vector<std::string> {drawn.hidden.front().id});
+        CHECK(drawn.setup.excitation.period >= 8192);
+        const double f0 = std::sqrt(drawn.speaker.K / drawn.speaker.m) / 6.283185307179586;
+        CHECK(drawn.setup.sampleRate / drawn.setup.excitation.period <= f0 / 10.0);
         drawn.setup.excitation.levels = {drawn.setup.excitation.levels.back()};
         const auto take = measure(drawn.speaker, drawn.setup);
         const auto& x = take.find(Quantity::displacement)->samples;

@@ -64,14 +64,14 @@ double largest(const std::vector<double>& a, const std::vector<double>& b)
 TEST_CASE("A linear driver's steady state is its closed-form response", "[simulate]")
 {
     constexpr double sampleRate = 48000.0, area = 0.02, distance = 0.5, tau = 1.2e-3;
-    constexpr std::size_t N = 4096, periods = 6;
+    constexpr std::size_t N = 2048, periods = 8;
     auto model = makeModel("electrodynamic");
     model.path[0].value = area;
     model.path[1].value = tau;
     model.microphoneDistance = distance;
     const double Re = 6.0, Le = 3e-4, Bl = 5.0, m = 1e-2, r = 1.0, k = 2e3;
 
-    const std::vector<std::size_t> lines {1, 3, 5, 8, 17, 40, 101, 333, 700};
+    const std::vector<std::size_t> lines {1, 2, 3, 5, 9, 20, 51, 166, 340};
     std::vector<double> u(N * periods, 0.0);
     std::mt19937_64 random(5);
     for (const auto line : lines) {
@@ -80,11 +80,11 @@ TEST_CASE("A linear driver's steady state is its closed-form response", "[simula
             u[n] += std::cos(2.0 * std::numbers::pi * static_cast<double>(line * (n % N)) / N + phase);
     }
     SimulationOptions options;
-    options.tolerance = 1e-9;
+    options.tolerance = 1e-8;
     SimulationSummary summary;
     const auto take = simulate(model, u, sampleRate, options, &summary);
     CHECK(summary.converged);
-    CHECK(summary.accuracy <= 1e-9);
+    CHECK(summary.accuracy <= 1e-8);
     CHECK(take.sampleRate == sampleRate);
     CHECK(take.find(Quantity::voltage)->samples == u);
 
@@ -197,7 +197,7 @@ TEST_CASE("A model that runs away is told, not simulated", "[simulate]")
 {
     auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someExtent(1.0));
     model.components.back().parameters[1].value = -3.0 * model.baseParameter("K").value;   // a spring that pushes outward
-    const auto u = burst(12000.0, 0.2, 20.0);
+    const auto u = burst(12000.0, 0.05, 40.0);
     CHECK_THROWS_AS(simulate(model, u, 12000.0, {}), Error);
 }
 
