@@ -188,9 +188,10 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
         if (i == 0.0)
             i = simulatedI;
     }
-    extent.displacement = std::max(1.02 * x, 1e-12);
-    extent.velocity = std::max(1.02 * v, 1e-12);
-    extent.current = std::max(1.02 * i, 1e-12);
+    extent.displacement = std::max(1.02 * x, 1e-9);
+    extent.velocity = std::max(1.02 * v, 1e-9);
+    if (i > 0.0)   // else the driver has no coil, and the default stands
+        extent.current = std::max(1.02 * i, 1e-9);
     return extent;
 }
 
