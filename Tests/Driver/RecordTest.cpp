@@ -165,10 +165,10 @@ TEST_CASE("A record without periods is cut into windows whose last third is held
     measured.excitation.reset();
     RecordOptions options;
     options.windowSeconds = 0.3;
-    options.leadInSeconds = 0.1;
+    options.leadInSeconds = 0.2;
     const auto record = makeRecord(measured, options);
     const auto lead = record.leadIn, window = record.sections.front().window;
-    CHECK(lead == 800);
+    CHECK(lead == 1600);
     CHECK(window == 2400);
     CHECK(record.sections.size() == (measured.length() - lead) / window);
     CHECK(!record.noiseKnown);
