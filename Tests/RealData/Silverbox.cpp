@@ -2,6 +2,7 @@
 // The Silverbox, an electronic Duffing oscillator (Wigren and Schoukens 2013): the ladder sees the multisines only and is then
 // asked about the arrow, noise that grows to 1.3 times what the multisines reached.
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Driver/ModelFile.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Measurement/ImportMat.h"
 #include "Measurement/Scratch.h"
@@ -82,6 +83,9 @@ TEST_CASE("The ladder climbs the Silverbox and extrapolates to the arrow", "[slo
     CHECK(millivolts[0] == Approx(14.4).margin(0.5));   // a linear model
     CHECK(millivolts[1] <= 0.45);
     CHECK(millivolts.back() <= 0.35);
+    // A model without a coil can be kept and read again.
+    const auto kept = modelFromJson(nlohmann::json::parse(toJson(ladder.model()).dump()), "kept");
+    CHECK(parameterVector(kept) == parameterVector(ladder.model()));
     // K(x) of a Duffing circuit is a parabola: K (1 + 3.9 x^2), and hardly bent otherwise.
     const auto curves = laws(ladder.model());
     REQUIRE(curves.size() == 2);
