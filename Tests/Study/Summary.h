@@ -27,7 +27,9 @@ struct Summary {
     std::map<std::string, Share> inBandOf;   ///< by effect
     double medianTimeRatio = 0.0;            ///< time of improve over the take's length
 
-    /// named 98 %, untouched 99 %, atNoise 90 %, inBand 85 %.
+    /// named 98 %, untouched 99 %, atNoise 90 %.
+    bool diagnosed() const;
+    /// The same, and inBand 85 %.
     bool reached() const;
 };
 
