@@ -42,6 +42,25 @@ void add(const ResponseTarget& target, const Response& response, const std::vect
     }
 }
 
+/// What is plausible beforehand, against residuals of this variance.
+void addPriors(const Model& model, const std::vector<Eigen::Index>& active, const Eigen::VectorXd& chain, double variance, bool gradient,
+               NormalEquations& sum)
+{
+    const auto all = parametersOf(model);
+    for (std::size_t j = 0; j < active.size(); ++j) {
+        const auto& p = *all[static_cast<std::size_t>(active[j])];
+        if (!std::isfinite(p.prior))
+            continue;
+        const auto k = static_cast<Eigen::Index>(j);
+        const double weight = variance / (p.prior * p.prior);
+        sum.cost += weight * p.value * p.value;
+        if (gradient) {
+            sum.N(k, k) += weight * chain[k] * chain[k];
+            sum.g[k] += weight * chain[k] * p.value;
+        }
+    }
+}
+
 /// Standard errors and covariance from what is left, as if neighbouring points erred independently.
 void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const std::vector<Eigen::Index>& active)
 {
@@ -50,7 +69,9 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
     NormalEquations sum;
     for (const auto& target : targets)
         add(target, respond(model, {target.quantity}, target.frequency, true).front(), active, Eigen::VectorXd::Ones(P), true, sum);
-    const auto covariance = covarianceOf(sum.N, sum.cost / std::max(1.0, sum.rows - static_cast<double>(P)));
+    const double variance = sum.cost / std::max(1.0, sum.rows - static_cast<double>(P));
+    addPriors(model, active, Eigen::VectorXd::Ones(P), variance, true, sum);
+    const auto covariance = covarianceOf(sum.N, variance);
     model.covariance = Eigen::MatrixXd::Zero(count, count);
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
@@ -114,6 +135,7 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
             lower[k] -= origin[k];
             upper[k] -= origin[k];
         }
+    double variance = 0.0;   // of the residuals at the start
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
         place(shifted(at));
         Eigen::VectorXd chain = Eigen::VectorXd::Ones(P);
@@ -122,6 +144,9 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
                 chain[k] = all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value;
         for (const auto& target : targets)
             add(target, respond(model, {target.quantity}, target.frequency, gradient).front(), active, chain, gradient, sum);
+        if (variance == 0.0)
+            variance = sum.cost / std::max(1.0, sum.rows);
+        addPriors(model, active, chain, variance, gradient, sum);
         return std::isfinite(sum.cost);
     };
     const Eigen::VectorXd start = y;
@@ -149,7 +174,9 @@ LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std:
             best = std::move(trial);
         }
     }
-    const auto summary = fitResponse(best, targets, {60, 1e-7});
+    // Twice: priors and the reach of the search are relative to where a fit starts.
+    fitResponse(best, targets, {40, 1e-6});
+    const auto summary = fitResponse(best, targets, {80, 1e-8});
     if (summary.usable)
         model = std::move(best);
     return summary;
@@ -157,7 +184,7 @@ LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std:
 
 bool isSeen(const Component& component)
 {
-    constexpr double sure = 3.0;        // standard errors
+    constexpr double sure = 4.0;        // standard errors, which take neighbouring points for independent
     constexpr double atBound = 0.002;   // of the range
     bool strong = false;
     for (const auto& p : component.parameters) {

@@ -44,15 +44,15 @@ std::vector<ResponseTarget> thinned(const std::vector<ResponseTarget>&, int poin
 /// For an impedance of a frequency-response take that is the rms of |Z - Z_measured|/|Z_measured| over log f.
 double responseErrorDb(const Model&, const ResponseTarget&);
 
-/// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale. Leaves standard errors and
-/// the covariance in the model, scaled by the misfit that is left.
+/// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale. Priors count against the
+/// misfit at the start. Leaves standard errors and the covariance in the model, scaled by the misfit that is left.
 LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
 
 /// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points. The model is left as it was
 /// when the fit is not usable.
 LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTarget>&);
 
-/// Whether a fit is sure that an effect is there: one of its strengths exceeds three standard errors, and no parameter of its shape was
+/// Whether a fit is sure that an effect is there: one of its strengths exceeds four standard errors, and no parameter of its shape was
 /// driven to a bound, where it would stand for something else.
 bool isSeen(const Component&);
 
