@@ -8,7 +8,7 @@
 namespace excursion::bench {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json curveJson(const std::optional<Curve>& curve)
 {
@@ -69,7 +69,7 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
 
 } // namespace
 
-nlohmann::json truthOf(const Draw& draw)
+nlohmann::ordered_json truthOf(const Draw& draw)
 {
     const auto& speaker = draw.speaker;
     const auto& visited = draw.visited;

@@ -12,6 +12,6 @@ namespace excursion::bench {
 ///     "effects": [ {"id", "strength", its parameters} ], "visited": {...}, "noiseDb",
 ///     "laws": { "force-factor": {"against": "displacement", "at": [...], "value": [...]}, ... } }
 /// Laws are sampled at 81 points over the visited range.
-nlohmann::json truthOf(const Draw&);
+nlohmann::ordered_json truthOf(const Draw&);
 
 } // namespace excursion::bench

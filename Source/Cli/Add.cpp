@@ -7,7 +7,6 @@
 
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/Improve.h"
-#include "Engine/Diagnosis/Score.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/ModelFile.h"
@@ -15,7 +14,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <memory>
 
 namespace excursion::cli {
@@ -46,18 +44,9 @@ Added addTo(const Model& model, const Effect& effect, const Spectra& spectra)
 Added addTo(const Model& model, const Effect& effect, const Record& record, const Progress& progress)
 {
     Added result;
-    FitOptions quick;
-    quick.substeps = substepsFor(model, record);
-    quick.search = {10, 3e-3};
-    result.before = compare(model, record, {quick.substeps, false}, progress.part(0.0, 0.05));
-    ScoreOptions test;
-    test.substeps = quick.substeps;
-    const auto scores = score(model, record, test, progress.part(0.05, 0.2)).scores;
-    const auto start = std::find_if(scores.begin(), scores.end(), [&](const Score& s) { return s.effect == &effect; });
-    if (start == scores.end())
-        throw Error(Error::Kind::data, "This take cannot say anything about the effect \"" + effect.id() + "\".");
-    result.model = start->model;
-    tryFit(result.model, record, trialSections(record, 2), quick, progress.part(0.2, 0.5));
+    result.before = compare(model, record, {0, false}, progress.part(0.0, 0.05));
+    result.model = model;
+    tryEffect(result.model, record, effect, {}, progress.part(0.05, 0.5));
     result.fit = refine(result.model, record, {}, progress.part(0.5, 0.95));
     if (!result.fit.usable)
         throw Error(Error::Kind::numerical, "The fit failed: " + result.fit.reason + ".");

@@ -37,13 +37,13 @@ void put(Json& json, const char* key, const std::optional<double>& value)
         json[key] = *value;
 }
 
-nlohmann::json documentOf(const CheckReport& report, const std::string& file, double sampleRate)
+nlohmann::ordered_json documentOf(const CheckReport& report, const std::string& file, double sampleRate)
 {
-    nlohmann::json document {{"format", "excursion-check"}, {"version", 1}, {"take", file},
+    nlohmann::ordered_json document {{"format", "excursion-check"}, {"version", 1}, {"take", file},
                              {"fitForUse", report.fitForUse()}, {"verdict", report.verdict()}};
-    auto& channels = document["channels"] = nlohmann::json::array();
+    auto& channels = document["channels"] = nlohmann::ordered_json::array();
     for (const auto& c : report.channels) {
-        nlohmann::json channel {{"quantity", name(c.quantity)}, {"unit", c.unit}, {"rms", c.rms}, {"peak", c.peak},
+        nlohmann::ordered_json channel {{"quantity", name(c.quantity)}, {"unit", c.unit}, {"rms", c.rms}, {"peak", c.peak},
                                 {"offset", c.offset}, {"clippedSamples", c.clipped}};
         put(channel, "snrDb", c.snrDb);
         put(channel, "repeatabilityDb", c.repeatabilityDb);
@@ -60,10 +60,10 @@ nlohmann::json documentOf(const CheckReport& report, const std::string& file, do
                                 {"inverted", c.delay->inverted}};
         channels.push_back(channel);
     }
-    auto& problems = document["problems"] = nlohmann::json::array();
+    auto& problems = document["problems"] = nlohmann::ordered_json::array();
     for (const auto& p : report.problems) {
-        nlohmann::json problem {{"kind", p.kind}, {"value", p.value}, {"unit", p.unit}, {"fatal", p.fatal}, {"sentence", p.sentence}};
-        problem["channel"] = p.channel ? nlohmann::json(name(*p.channel)) : nlohmann::json();
+        nlohmann::ordered_json problem {{"kind", p.kind}, {"value", p.value}, {"unit", p.unit}, {"fatal", p.fatal}, {"sentence", p.sentence}};
+        problem["channel"] = p.channel ? nlohmann::ordered_json(name(*p.channel)) : nlohmann::ordered_json();
         problems.push_back(problem);
     }
     return document;

@@ -7,6 +7,7 @@
 
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/ModelFile.h"
 
 #include <nlohmann/json.hpp>
@@ -35,19 +36,22 @@ void run(const Options& options, Terminal& terminal)
     Model model;
     FitSummary summary;
     Comparison comparison;
+    std::string caveats;
     if (open.spectra()) {
         model = fitEffects(*open.spectra(), options.effects, &summary);
         comparison = compare(model, *open.spectra());
+        caveats = caveatsOf(model, responsesOf(*open.spectra()));
     } else {
         auto record = makeRecord(open.measurement());
         const auto progress = terminal.progress();
         model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.95));
         comparison = compare(model, record, {summary.substeps, false}, progress.part(0.95, 1.0));
+        caveats = caveatsOf(model);
     }
     writeModel(model, options.out);
 
     sayProblems(open.report.problems, terminal);
-    terminal.say("The model: " + effectsText(model) + ".");
+    terminal.say(wrapped("The model: " + effectsText(model) + "." + caveats));
     terminal.say("");
     printParameters(model, terminal);
     terminal.say("");

@@ -49,7 +49,7 @@ ImportOptions importOptions(const Options& options)
 void describe(const Measurement& take, Terminal& terminal, const std::string& out)
 {
     std::vector<std::vector<std::string>> rows;
-    auto channels = nlohmann::json::array();
+    auto channels = nlohmann::ordered_json::array();
     for (const auto& channel : take.channels) {
         double peak = 0.0;
         for (const double x : channel.samples)

@@ -76,11 +76,6 @@ void printErrors(const Comparison& comparison, Terminal& terminal)
                                                   : ". The take does not tell its noise.")));
 }
 
-std::string titleOf(const ChannelComparison& channel)
-{
-    return channel.unit == "ohm" ? std::string("impedance") : std::string(name(channel.quantity));
-}
-
 std::string decibelText(const std::optional<double>& db) { return db && std::isfinite(*db) ? fixed(*db, 1) : std::string("-"); }
 
 std::string misfitText(double chi, bool noiseKnown)

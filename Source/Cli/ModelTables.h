@@ -19,9 +19,6 @@ void printParameters(const Model&, Terminal&);
 /// Error, noise floor and misfit of each channel, and what they mean.
 void printErrors(const Comparison&, Terminal&);
 
-/// "current"; "impedance" where that is what was compared.
-std::string titleOf(const ChannelComparison&);
-
 /// "-28.1", or "-" when it is not known.
 std::string decibelText(const std::optional<double>&);
 

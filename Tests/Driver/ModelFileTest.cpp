@@ -70,6 +70,12 @@ TEST_CASE("A model saved, read and saved again is the same, byte for byte", "[mo
     CHECK(std::isnan(read.covariance(0, 0)));
     CHECK(read.covariance(1, 2) == -0.1);
     CHECK(read.find(catalogue().front()->id())->extent.displacement == 0.0051 / 3.0);
+    const auto readParameters = parametersOf(read), parameters = parametersOf(model);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {   // the limits of what is plausible are the model's, too
+        CHECK(readParameters[k]->prior == parameters[k]->prior);
+        CHECK(readParameters[k]->lower == parameters[k]->lower);
+        CHECK(readParameters[k]->upper == parameters[k]->upper);
+    }
     std::filesystem::remove_all(folder);
 }
 

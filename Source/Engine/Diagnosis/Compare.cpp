@@ -165,6 +165,11 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
     return result;
 }
 
+std::string titleOf(const ChannelComparison& channel)
+{
+    return channel.unit == "ohm" ? std::string("impedance") : std::string(name(channel.quantity));
+}
+
 Comparison compare(const Model& model, const Spectra& spectra)
 {
     Comparison result;

@@ -52,6 +52,9 @@ struct ChannelComparison {
     std::vector<ErrorSpectrum> spectrumByLevel;
 };
 
+/// "current"; "impedance" where the channel is the impedance of a take that is a frequency response.
+std::string titleOf(const ChannelComparison&);
+
 struct Comparison {
     std::vector<double> levels;             ///< V rms; one entry 0 when the take has no levels
     std::vector<ChannelComparison> channels;

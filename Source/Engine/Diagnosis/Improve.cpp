@@ -42,23 +42,12 @@ void withdrawDoubtful(Ladder& ladder)
     }
 }
 
-Model addNamed(Model model, Record& record, const std::string& id, const FitOptions& options, const Progress& progress)
+/// Refuses unknown names and repeated ones before any work.
+void requireOnce(const std::vector<std::string>& effects)
 {
-    const auto& effect = effectNamed(id);
-    if (effect.electrical() && !model.electrical())
-        throw Error(Error::Kind::usage, "The take drives the cone by a force and shows no coil, so \"" + id + "\" cannot be part of its model.");
-    ScoreOptions test;
-    test.substeps = substepsFor(model, record, options.simulationTolerance);
-    test.threads = options.threads;
-    for (auto& candidate : score(model, record, test, progress).scores)
-        if (candidate.effect == &effect) {
-            FitOptions quick = options;
-            quick.substeps = test.substeps;
-            quick.search = {10, 3e-3};
-            tryFit(candidate.model, record, trialSections(record, 2), quick, progress);
-            return candidate.model;
-        }
-    throw Error(Error::Kind::usage, "The model already has the effect \"" + id + "\".");
+    for (const auto& id : effects)
+        if (effectNamed(id); std::count(effects.begin(), effects.end(), id) > 1)
+            throw Error(Error::Kind::usage, "The effect \"" + id + "\" is named twice.");
 }
 
 Ladder improveSpectra(const Spectra& spectra, const ImproveOptions& options, const Progress& progress)
@@ -92,8 +81,10 @@ Ladder improveSpectra(const Spectra& spectra, const ImproveOptions& options, con
 Model fitEffects(Record& record, const std::vector<std::string>& effects, const FitOptions& options, FitSummary* summary,
                  const Progress& progress)
 {
+    requireOnce(effects);
     for (const auto& id : effects)
-        effectNamed(id);   // refuse unknown names before any work
+        if (effectNamed(id).electrical() && !record.electrical)
+            throw Error(Error::Kind::usage, "The take drives the cone by a force and shows no coil, so \"" + id + "\" cannot be part of its model.");
     progress.at(0.0, "finding start values");
     Model model = startModel(record);
     adapt(record, model);
@@ -104,7 +95,7 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
                     effects.empty() ? options : quick, progress.part(0.0, step));
     double done = step;
     for (const auto& id : effects) {
-        model = addNamed(std::move(model), record, id, options, progress.part(done, done + step));
+        tryEffect(model, record, effectNamed(id), options, progress.part(done, done + step));
         done += step;
     }
     if (!effects.empty())
@@ -118,6 +109,7 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
 
 Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects, FitSummary* summary)
 {
+    requireOnce(effects);
     const auto targets = responsesOf(spectra);
     Model model = startModel(targets, spectra.find(Quantity::voltage) != nullptr, spectra.driver);
     for (const auto& id : effects) {

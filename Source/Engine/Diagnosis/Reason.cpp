@@ -45,17 +45,28 @@ std::string parity(const ChannelComparison& channel)
     return text;
 }
 
-std::string law(const Model& model, const Effect& effect)
+/// A mechanical analogue may tell its displacement in volts, its velocity in V/s.
+bool isAnalogue(const Comparison& comparison)
+{
+    return std::any_of(comparison.channels.begin(), comparison.channels.end(), [](const auto& channel) {
+        return channel.unit == "V" && channel.quantity != Quantity::voltage;
+    });
+}
+
+std::string law(const Model& model, const Effect& effect, bool analogue)
 {
     for (const auto& curve : laws(model)) {
         if (curve.effectId != effect.id())
             continue;
         const double rest = curve.value[curve.value.size() / 2];
         const double low = 100.0 * (curve.value.front() / rest - 1.0), high = 100.0 * (curve.value.back() / rest - 1.0);
-        const bool metres = curve.info.argumentUnit == "m";
+        const bool metres = curve.info.argumentUnit == "m" && !analogue;
+        auto unit = metres ? "mm" : curve.info.argumentUnit;
+        if (analogue && unit.front() == 'm')
+            unit.front() = 'V';
         const double end = curve.argument.back() * (metres ? 1e3 : 1.0);
         return curve.info.name + " comes out " + number(low, "%+.0f") + " % at " + number(-end, "%.3g") + " and "
-               + number(high, "%+.0f") + " % at " + number(end, "%+.3g") + (metres ? " mm" : " " + curve.info.argumentUnit);
+               + number(high, "%+.0f") + " % at " + number(end, "%+.3g") + " " + unit;
     }
     if (const auto* component = model.find(effect.id())) {
         std::string text;
@@ -74,13 +85,13 @@ std::string reasonFor(const Effect& effect, const Model& with, const Comparison&
     const auto& channel = worst(before);
     std::string text;
     if (const auto after = errorDbAfter.find(channel.quantity); after != errorDbAfter.end()) {
-        text = "With it the " + std::string(name(channel.quantity)) + " error goes from " + number(channel.total.db) + " to "
+        text = "With it the " + titleOf(channel) + " error goes from " + number(channel.total.db) + " to "
                + number(after->second) + " dB";
         if (channel.total.noiseFloorDb)
             text += " (noise " + number(*channel.total.noiseFloorDb) + " dB)";
         text += "; ";
     }
-    if (const auto shape = law(with, effect); !shape.empty())
+    if (const auto shape = law(with, effect, isAnalogue(before)); !shape.empty())
         text += shape + "; ";
     text += "look for " + effect.symptoms();
     if (const auto kinds = parity(channel); !kinds.empty())
@@ -91,7 +102,7 @@ std::string reasonFor(const Effect& effect, const Model& with, const Comparison&
 std::string signatureOf(const Comparison& comparison)
 {
     const auto& channel = worst(comparison);
-    std::string text = std::string(name(channel.quantity)) + " error at " + number(channel.total.db) + " dB";
+    std::string text = titleOf(channel) + " error at " + number(channel.total.db) + " dB";
     if (channel.total.noiseFloorDb)
         text += " over noise at " + number(*channel.total.noiseFloorDb) + " dB";
     if (!channel.spectrumByLevel.empty() && !channel.spectrumByLevel.back().frequency.empty()) {

@@ -180,25 +180,12 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
 std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, int by)
 {
     std::vector<std::string> raised;
-    const auto withHigher = [&](const Model& from, std::size_t k) {
-        Model to = from;
-        auto& component = to.components[k];
-        const auto before = component.parameters;
-        component.extent.degree += by;
-        component.parameters = component.effect->parameters(component.extent);
-        for (auto& p : component.parameters)
-            for (const auto& old : before)
-                if (old.name == p.name)
-                    p.value = old.value;
-        to.covariance.resize(0, 0);
-        return to;
-    };
     // All laws with room are raised at once; then each is judged on its own columns.
     Model higher = model;
     std::vector<std::size_t> candidates;
     for (std::size_t k = 1; k < model.components.size(); ++k)
         if (model.components[k].effect->law() && model.components[k].extent.degree + by <= curve::maximumDegree) {
-            higher = withHigher(higher, k);
+            higher = withDegree(std::move(higher), k, model.components[k].extent.degree + by);
             candidates.push_back(k);
         }
     if (candidates.empty())
@@ -228,11 +215,11 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
         }
     for (const auto& p : higher.path)
         visit(p, false, 0);
-    // The prior keeps new coefficients from bending to noise, so the estimation sections may judge; each coefficient must pay
-    // ln(rows), as in the Bayesian information criterion, in units of what the residuals are now.
+    // Twice what noise alone gives, about the 95 % point of chi-square: a higher price would leave a bias of several standard errors out
+    // of the confidence bands, a lower one would let the law wander where the record seldom is.
     const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
     const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
-    const double price = unit * std::log(std::max(2.0, sums.estimation.rows));
+    const double price = 2.4 * unit;
     // Where the noise is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
     const double least = record.noiseKnown ? 0.0 : 0.02 * now;
     Model result = model;
@@ -242,7 +229,7 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
         std::sort(use.begin(), use.end());
         const double then = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, use));
         if (now - then > std::max(least, price * static_cast<double>(added[k].size()))) {
-            result = withHigher(result, k);
+            result = withDegree(std::move(result), k, model.components[k].extent.degree + by);
             raised.push_back(model.components[k].effect->id());
         }
     }

@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/OutputError.h"
 
+#include <algorithm>
 #include <map>
 
 namespace excursion {
@@ -68,6 +69,22 @@ FitSummary tryFit(Model& model, const Record& record, const std::vector<std::siz
     }
     model = std::move(best);
     return fit(model, record, sections, chosen, progress);
+}
+
+void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options, const Progress& progress)
+{
+    ScoreOptions test;
+    test.substeps = substepsFor(model, record, options.simulationTolerance);
+    test.threads = options.threads;
+    const auto scores = score(model, record, test, progress.part(0.0, 0.4)).scores;
+    const auto start = std::find_if(scores.begin(), scores.end(), [&](const Score& s) { return s.effect == &effect; });
+    if (start == scores.end())
+        throw Error(Error::Kind::data, "This take cannot say anything about the effect \"" + effect.id() + "\" besides those that the model has.");
+    FitOptions quick = options;
+    quick.substeps = test.substeps;
+    quick.search = {10, 3e-3};
+    model = start->model;
+    tryFit(model, record, trialSections(record, 2), quick, progress.part(0.4, 1.0));
 }
 
 FitSummary refine(Model& model, const Record& record, const FitOptions& options, const Progress& progress)

@@ -16,6 +16,10 @@ std::vector<std::size_t> trialSections(const Record&, int realizations);
 FitSummary tryFit(Model& model, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
                   const Progress& = {});
 
+/// Puts an effect into the model where the score test says that it starts, and fits that quickly. Throws Error (data) when the
+/// model has the effect already or can't have it.
+void tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});
+
 /// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays.
 FitSummary refine(Model&, const Record&, const FitOptions&, const Progress& = {});
 

@@ -106,6 +106,20 @@ Model withoutEffect(Model model, std::string_view effectId)
     return model;
 }
 
+Model withDegree(Model model, std::size_t component, int degree)
+{
+    auto& c = model.components.at(component);
+    const auto before = std::move(c.parameters);
+    c.extent.degree = degree;
+    c.parameters = c.effect->parameters(c.extent);
+    for (auto& p : c.parameters)
+        for (const auto& old : before)
+            if (old.name == p.name)
+                p.value = old.value;
+    model.covariance.resize(0, 0);
+    return model;
+}
+
 std::vector<Parameter*> parametersOf(Model& model) { return collect<Parameter*>(model); }
 std::vector<const Parameter*> parametersOf(const Model& model) { return collect<const Parameter*>(model); }
 

@@ -48,6 +48,8 @@ Model makeModel(std::string_view baseId);
 /// The model with that effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
 Model withoutEffect(Model, std::string_view effectId);
+/// The model with the law of that component expanded to another degree; coefficients that are new are zero.
+Model withDegree(Model, std::size_t component, int degree);
 
 /// All parameters one after the other: components in order, then the path.
 std::vector<Parameter*> parametersOf(Model&);

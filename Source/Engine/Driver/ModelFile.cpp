@@ -31,7 +31,8 @@ Json parametersJson(const std::vector<Parameter>& parameters)
 Json extentJson(const Extent& e)
 {
     return {{"displacement", e.displacement},   {"velocity", e.velocity},           {"current", e.current},
-            {"lowFrequency", e.lowFrequency}, {"highFrequency", e.highFrequency}, {"degree", e.degree}};
+            {"lowFrequency", e.lowFrequency}, {"highFrequency", e.highFrequency}, {"degree", e.degree},
+            {"scale", e.scale}};
 }
 
 Json covarianceJson(const Eigen::MatrixXd& covariance)
@@ -76,6 +77,7 @@ Extent extentFrom(const JsonField& field)
     if (e.highFrequency <= e.lowFrequency)
         field.at("highFrequency").refuse("more than lowFrequency");
     e.degree = field.at("degree").count(1, curve::maximumDegree);
+    e.scale = field.at("scale").numberWithin(1e-12, 1e12);
     return e;
 }
 

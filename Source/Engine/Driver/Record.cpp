@@ -81,8 +81,8 @@ std::optional<int> integrationsToDisplacement(Quantity quantity)
     }
 }
 
-/// Peak of an averaged period integrated n times within the excited band, in any unit.
-double integratedPeak(const Measurement& take, const Channel& channel, int level, int realization, int integrations)
+/// Peaks upwards and downwards of an averaged period integrated n times within the excited band, in any unit.
+std::pair<double, double> integratedPeaks(const Measurement& take, const Channel& channel, int level, int realization, int integrations)
 {
     const auto& e = *take.excitation;
     auto spectrum = fft(averagePeriod(take, channel, level, realization));
@@ -90,15 +90,14 @@ double integratedPeak(const Measurement& take, const Channel& channel, int level
     for (std::size_t k = 0; k < spectrum.size(); ++k)
         spectrum[k] = k >= first && k <= last ? spectrum[k] * std::pow(std::complex<double>(0.0, static_cast<double>(k)), -integrations)
                                               : 0.0;
-    double peak = 0.0;
-    for (const double s : inverseFft(spectrum, static_cast<std::size_t>(e.period)))
-        peak = std::max(peak, std::abs(s));
-    return peak;
+    const auto samples = inverseFft(spectrum, static_cast<std::size_t>(e.period));
+    const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+    return {*high, -*low};
 }
 
-/// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current (what the channels
-/// tell of them; the input's low frequencies when they tell nothing of the cone), each relative to the largest of all
-/// realizations, its largest is the lowest.
+/// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current to either side (what
+/// the channels tell of them; the input's low frequencies when they tell nothing of the cone), each relative to where the others
+/// go, its largest is the lowest.
 int quietestRealization(const Measurement& take)
 {
     const auto& e = *take.excitation;
@@ -114,12 +113,19 @@ int quietestRealization(const Measurement& take)
     motions.emplace_back(&take.input(), motions.empty() ? 1 : 0);
     std::vector<double> farthest(static_cast<std::size_t>(e.realizations), 0.0);
     for (const auto& [channel, integrations] : motions) {
-        std::vector<double> peaks;
-        for (int realization = 0; realization < e.realizations; ++realization)
-            peaks.push_back(integratedPeak(take, *channel, loudest, realization, integrations));
-        const double largest = *std::max_element(peaks.begin(), peaks.end());
-        for (std::size_t r = 0; r < peaks.size() && largest > 0.0; ++r)
-            farthest[r] = std::max(farthest[r], peaks[r] / largest);
+        std::vector<double> up, down;
+        for (int realization = 0; realization < e.realizations; ++realization) {
+            const auto [high, low] = integratedPeaks(take, *channel, loudest, realization, integrations);
+            up.push_back(high);
+            down.push_back(low);
+        }
+        for (auto* peaks : {&up, &down})
+            for (std::size_t r = 0; r < peaks->size(); ++r) {
+                auto others = *peaks;
+                others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
+                if (const double reach = *std::max_element(others.begin(), others.end()); reach > 0.0)
+                    farthest[r] = std::max(farthest[r], (*peaks)[r] / reach);
+            }
     }
     return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
 }
