@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
+#include "Engine/Driver/StartState.h"
 #include "Engine/Signal/Fft.h"
 
 #include <Eigen/Eigenvalues>
@@ -40,8 +41,8 @@ std::complex<double> pathResponse(const Model& model, double frequency)
 class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section, const std::vector<Eigen::Index>& active,
-               const OutputErrorOptions& options, std::size_t leadIn)
-        : model_(model), record_(record), section_(section), active_(active), options_(options)
+               const OutputErrorOptions& options, std::size_t leadIn, const StartState& from)
+        : model_(model), record_(record), section_(section), active_(active), options_(options), from_(from)
     {
         std::tie(first_, last_) = record.lineRange(section);
         const auto drive = record.drive(section, leadIn);
@@ -60,7 +61,7 @@ public:
         const auto columns = static_cast<Eigen::Index>(active_.size());
 
         Trajectory<double> trajectory;
-        fit.finite = integrate(model_, {theta.begin(), theta.end()}, *drive_, start_, trajectory);
+        fit.finite = integrate(model_, {theta.begin(), theta.end()}, *drive_, start_, trajectory, {from_.value.begin(), from_.value.end()});
         if (!fit.finite)
             return fit;
         fit.channels.resize(channels);
@@ -147,8 +148,12 @@ private:
                 const auto index = static_cast<std::size_t>(active_[dynamic[block + b]]);
                 parameters[index] = Jet(parameters[index].a, static_cast<int>(b));
             }
+            std::vector<Jet> from(from_.value.begin(), from_.value.end());
+            for (std::size_t state = 0; state < from.size(); ++state)
+                for (std::size_t b = 0; b < count; ++b)
+                    from[state].v[static_cast<Eigen::Index>(b)] = from_.gradient(static_cast<Eigen::Index>(state), active_[dynamic[block + b]]);
             Trajectory<Jet> run;
-            if (!integrate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, run))
+            if (!integrate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, run, from))
                 return false;
             for (std::size_t c = 0; c < record_.channels.size(); ++c) {
                 const auto& jets = observed(run, record_.channels[c]);
@@ -181,6 +186,7 @@ private:
     const Section& section_;
     const std::vector<Eigen::Index>& active_;
     const OutputErrorOptions& options_;
+    const StartState& from_;
     std::optional<Drive> drive_, gradientDrive_;
     std::size_t first_ = 0, last_ = 0, start_ = 0;
 };
@@ -229,6 +235,7 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     OutputErrorOptions options = wanted;
     options.substeps = std::max(wanted.substeps, stable);
     options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
+    const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
     std::vector<SectionFit> fits(sections.size());
     std::atomic<std::size_t> next {0};
     std::atomic<bool> failed {false};
@@ -239,7 +246,7 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
             try {
                 if (progress.stop.stop_requested())
                     break;
-                fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn).run();
+                fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
                 if (!fits[n].finite)
                     failed = true;
             } catch (...) {

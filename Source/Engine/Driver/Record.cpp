@@ -214,17 +214,22 @@ std::pair<std::size_t, std::size_t> Record::lineRange(const Section& section) co
     return {first, std::max(first, last)};
 }
 
+std::size_t Record::driveBegin(const Section& section, std::size_t atLeast) const
+{
+    const std::size_t N = section.input.size();
+    return section.periodic ? (N - std::max(leadIn, atLeast) % N) % N : 0;
+}
+
 std::vector<double> Record::drive(const Section& section, std::size_t atLeast) const
 {
     if (!section.periodic)
         return section.input;
     const auto& period = section.input;
     const std::size_t N = period.size();
-    const std::size_t lead = std::max(leadIn, atLeast);
-    std::vector<double> samples(lead + N);
-    const std::size_t offset = N - lead % N;
+    const std::size_t begin = driveBegin(section, atLeast);
+    std::vector<double> samples(std::max(leadIn, atLeast) + N);
     for (std::size_t n = 0; n < samples.size(); ++n)
-        samples[n] = period[(n + offset) % N];
+        samples[n] = period[(n + begin) % N];
     return samples;
 }
 

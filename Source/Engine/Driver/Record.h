@@ -45,6 +45,8 @@ struct Record {
     /// The input from rest to the window's end: of a periodic section the period, preceded by `leadIn` samples of its
     /// periodic past, or more when the model needs `atLeast`.
     std::vector<double> drive(const Section&, std::size_t atLeast = 0) const;
+    /// The sample of the period with which that drive begins.
+    std::size_t driveBegin(const Section&, std::size_t atLeast = 0) const;
     double frequency(const Section& section, std::size_t line) const
     {
         return sampleRate * static_cast<double>(line) / static_cast<double>(section.window);

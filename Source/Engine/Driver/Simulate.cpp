@@ -22,12 +22,12 @@ Drive::Drive(std::span<const double> samples, double sampleRate, int substeps)
 
 template <class T>
 bool integrate(const Model& model, const std::vector<T>& parameters, const Drive& drive, std::size_t first,
-               Trajectory<T>& out)
+               Trajectory<T>& out, const std::vector<T>& start)
 {
     // Far beyond any loudspeaker: a runaway is recognized early instead of filling the record with infinities.
     constexpr double implausible = 1e3;   // A, m, m/s
     Dynamics<T> dynamics(model, parameters);
-    std::vector<T> z(static_cast<std::size_t>(dynamics.order()), T(0.0));
+    auto z = start.empty() ? std::vector<T>(static_cast<std::size_t>(dynamics.order()), T(0.0)) : start;
     for (auto* channel : {&out.current, &out.displacement, &out.velocity, &out.acceleration}) {
         channel->clear();
         channel->reserve(drive.length() - first);
@@ -52,8 +52,8 @@ bool integrate(const Model& model, const std::vector<T>& parameters, const Drive
     return true;
 }
 
-template bool integrate(const Model&, const std::vector<double>&, const Drive&, std::size_t, Trajectory<double>&);
-template bool integrate(const Model&, const std::vector<Jet>&, const Drive&, std::size_t, Trajectory<Jet>&);
+template bool integrate(const Model&, const std::vector<double>&, const Drive&, std::size_t, Trajectory<double>&, const std::vector<double>&);
+template bool integrate(const Model&, const std::vector<Jet>&, const Drive&, std::size_t, Trajectory<Jet>&, const std::vector<Jet>&);
 
 int stableSubsteps(const Model& model, double sampleRate)
 {

@@ -36,12 +36,14 @@ private:
     std::vector<double> fine_;   // two values a step
 };
 
-/// Integrates the model from rest.
+/// Integrates the model from rest, or from another state.
 /// @param parameters  one a parameter of the model (double or Jet), in the order of parametersOf()
 /// @param first       the trajectory is kept from this sample on
+/// @param start       state z of Dynamics at the drive's first sample; empty: rest
 /// @returns false when the state leaves the finite numbers or any plausible range; the trajectory is then void
 template <class T>
-bool integrate(const Model&, const std::vector<T>& parameters, const Drive&, std::size_t first, Trajectory<T>& out);
+bool integrate(const Model&, const std::vector<T>& parameters, const Drive&, std::size_t first, Trajectory<T>& out,
+               const std::vector<T>& start = {});
 
 /// The fewest steps a sample for which the explicit method is stable and resolves the linear part's fastest pole.
 int stableSubsteps(const Model&, double sampleRate);
