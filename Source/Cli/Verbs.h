@@ -33,5 +33,6 @@ void addImprove(CLI::App&, Terminal&);
 void addReport(CLI::App&, Terminal&);
 void addEffects(CLI::App&, Terminal&);
 void addSimulate(CLI::App&, Terminal&);
+void addPredistort(CLI::App&, Terminal&);
 
 } // namespace excursion::cli

@@ -123,6 +123,7 @@ int main(int argc, char** argv)
     cli::addReport(app, terminal);
     cli::addEffects(app, terminal);
     cli::addSimulate(app, terminal);
+    cli::addPredistort(app, terminal);
 
     app.footer(footer);   // last, as the verbs would inherit it
 

@@ -139,7 +139,7 @@ TEST_CASE("effects lists the catalogue, and help is a tour", "[cli]")
     CHECK(help.code == 0);
     std::size_t at = 0;
     for (const auto* verb : {"\n  excite ", "\n  import ", "\n  virtual ", "\n  check ", "\n  bla ", "\n  fit ", "\n  compare ", "\n  diagnose ",
-                             "\n  add ", "\n  improve ", "\n  report ", "\n  effects ", "\n  simulate "}) {
+                             "\n  add ", "\n  improve ", "\n  report ", "\n  effects ", "\n  simulate ", "\n  predistort "}) {
         INFO(verb);
         at = help.out.find(verb, at);
         REQUIRE(at != std::string::npos);

@@ -103,6 +103,8 @@ public:
                             double* memoryRate, Balance<double>&) const = 0;
     virtual void contribute(const Extent&, const Jet* coefficients, const Motion<Jet>&, const Jet* memory,
                             Jet* memoryRate, Balance<Jet>&) const = 0;
+    virtual void contribute(const Extent&, const Tangent* coefficients, const Motion<Tangent>&, const Tangent* memory,
+                            Tangent* memoryRate, Balance<Tangent>&) const = 0;
 };
 
 /// Lets a subclass write its physics once:
@@ -121,6 +123,11 @@ public:
     }
     void contribute(const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet* memory, Jet* rate,
                     Balance<Jet>& balance) const final
+    {
+        self().addTo(e, c, motion, memory, rate, balance);
+    }
+    void contribute(const Extent& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory, Tangent* rate,
+                    Balance<Tangent>& balance) const final
     {
         self().addTo(e, c, motion, memory, rate, balance);
     }

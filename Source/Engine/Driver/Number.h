@@ -11,6 +11,10 @@ namespace excursion {
 inline constexpr int jetWidth = 8;
 using Jet = ceres::Jet<double, jetWidth>;
 
+/// A number that carries its derivatives with respect to time (slot 0) and to the coil's current (slot 1). Run on it, the physics
+/// tells how force and flux go on along a given motion, which is what an inversion needs.
+using Tangent = ceres::Jet<double, 2>;
+
 inline double valueOf(double number) { return number; }
 inline double valueOf(const Jet& number) { return number.a; }
 

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Driver/ModelFile.h"
+#include "Engine/Error.h"
+#include "Engine/Linearization/Predistorter.h"
+#include "Engine/Measurement/DraftFile.h"
+#include "Engine/Measurement/WavFile.h"
+#include "Report/Engineering.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+
+namespace excursion::cli {
+namespace {
+
+struct Options {
+    std::string model, input, out;
+    double fullScale = 0.0;   ///< V or N
+    std::optional<double> displacementLimit, voltageLimit;   ///< m, V or N
+    double amount = 1.0;
+    int oversampling = 2;
+};
+
+double peakOf(const std::vector<double>& samples)
+{
+    double peak = 0.0;
+    for (const double s : samples)
+        peak = std::max(peak, std::abs(s));
+    return peak;
+}
+
+Wav readPlayable(const std::string& file)
+{
+    auto wav = readWav(file);
+    for (const auto& channel : wav.channels)
+        for (std::size_t n = 0; n < channel.size(); ++n)
+            if (!std::isfinite(channel[n]))
+                throw Error(Error::Kind::input, "'" + file + "': sample " + std::to_string(n) + " is not a finite number; export the WAV again.");
+    return wav;
+}
+
+LinearizationControls controlsFrom(const Options& options, const Model& model)
+{
+    LinearizationControls controls;
+    controls.amount = options.amount;
+    controls.displacementLimit = options.displacementLimit.value_or(measuredDisplacement(model));
+    controls.voltageLimit = options.voltageLimit.value_or(std::numeric_limits<double>::infinity());
+    return controls;
+}
+
+/// One channel through a predistorter of its own, by which its delay is taken out again.
+void bend(std::vector<double>& samples, Predistorter& predistorter, double fullScale, const Progress& progress, double from, double share)
+{
+    constexpr std::size_t block = 4096;
+    const auto latency = static_cast<std::size_t>(predistorter.latency());
+    const std::size_t length = samples.size();
+    samples.resize(length + latency, 0.0);
+    for (auto& sample : samples)
+        sample *= fullScale;
+    for (std::size_t n = 0; n < samples.size(); n += block) {
+        if (n / block % 16 == 0)
+            progress.at(from + share * static_cast<double>(n) / static_cast<double>(samples.size()), "predistorting");
+        predistorter.process(samples.data() + n, samples.data() + n, std::min(block, samples.size() - n));
+    }
+    samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(latency));
+    for (auto& sample : samples)
+        sample /= fullScale;
+}
+
+nlohmann::ordered_json limitJson(double limit) { return std::isfinite(limit) ? nlohmann::ordered_json(limit) : nlohmann::ordered_json(nullptr); }
+
+/// Beyond how much of a limit it counts as limiting: less is rounding.
+constexpr double noticed = 1e-6;
+
+void run(const Options& options, Terminal& terminal)
+{
+    for (const auto& [name, value] : {std::pair {"--full-scale", options.fullScale}, {"--limit-x", options.displacementLimit.value_or(1.0)},
+                                      {"--limit-u", options.voltageLimit.value_or(1.0)}})
+        if (!(value > 0.0 && std::isfinite(value)))
+            throw Error(Error::Kind::usage, std::string(name) + " must be a positive number.");
+    requireFilePlace(options.out);
+    const auto model = readModel(options.model);
+    const auto wav = readPlayable(options.input);
+    std::error_code none;
+    if (std::filesystem::equivalent(options.input, options.out, none))
+        throw Error(Error::Kind::usage, "The WAV that is played would be overwritten: give another name for what comes out.");
+    const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling};
+    const auto controls = controlsFrom(options, model);
+    std::string reason;
+    if (!controls.isValid(&reason))
+        throw Error(Error::Kind::usage, "The predistortion cannot run: " + reason + ".");
+
+    auto bent = wav;
+    const auto progress = terminal.progress();
+    const std::string unit = model.electrical() ? "V" : "N";
+    nlohmann::ordered_json channels = nlohmann::ordered_json::array();
+    std::vector<std::vector<std::string>> rows;
+    bool limited = false;
+    double loudest = 0.0;
+    int faults = 0;
+    for (std::size_t c = 0; c < bent.channels.size(); ++c) {
+        Predistorter predistorter(model, realTime, controls);
+        const double before = options.fullScale * peakOf(wav.channels[c]), share = 1.0 / static_cast<double>(bent.channels.size());
+        bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
+        const auto meters = predistorter.take();
+        const double after = options.fullScale * peakOf(bent.channels[c]);
+        loudest = std::max(loudest, after);
+        faults += meters.faults;
+        limited = limited || meters.displacementExcess > noticed || meters.voltageExcess > noticed;
+        channels.push_back({{"peakIn", before}, {"peakOut", after}, {"displacement", meters.displacement},
+                            {"displacementExcess", meters.displacementExcess}, {"voltageExcess", meters.voltageExcess}, {"faults", meters.faults}});
+        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit, significant(1e3 * meters.displacement) + " mm",
+                        fixed(100.0 * meters.displacementExcess, 0) + " %", fixed(100.0 * meters.voltageExcess, 0) + " %"});
+    }
+    DraftFile draft(options.out);
+    writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
+    draft.publish();
+
+    terminal.document({{"format", "excursion-predistort"}, {"version", 1}, {"model", options.model}, {"input", options.input}, {"output", options.out},
+                       {"sampleRate", wav.sampleRate}, {"samples", wav.channels.front().size()}, {"fullScale", options.fullScale},
+                       {"amount", options.amount}, {"oversampling", options.oversampling}, {"displacementLimit", limitJson(controls.displacementLimit)},
+                       {"voltageLimit", limitJson(controls.voltageLimit)}, {"channels", channels}, {"limited", limited}});
+    terminal.table({"channel", "peak in", "out", "the cone moves", "limited by", "voltage limited by"}, rows);
+    if (limited)
+        terminal.say("A limit was reached (" + (std::isfinite(controls.displacementLimit) ? significant(1e3 * controls.displacementLimit, 3) + " mm" : "no limit of the excursion")
+                     + ", " + (std::isfinite(controls.voltageLimit) ? significant(controls.voltageLimit, 3) + " " + unit : "no limit of the voltage")
+                     + "): what is beyond it is not linear; play more quietly.");
+    if (loudest > options.fullScale)
+        terminal.say("Samples go to " + significant(loudest / options.fullScale, 3) + " times full scale, which only a WAV of floating point, as this one is, can hold.");
+    if (faults > 0)
+        terminal.say("The predistorter had to start anew " + std::to_string(faults) + (faults == 1 ? " time" : " times") + " and let the signal through as it was: the model is driven far beyond what it knows.");
+    terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit + ", as in " + options.input + ".");
+    if (limited || faults > 0)
+        terminal.answer = 1;
+}
+
+} // namespace
+
+void addPredistort(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("predistort", "Bends a WAV so that the loudspeaker plays it as if it were linear")->group(step::use);
+    verb->add_option("MODEL", o->model, "the model, a .json")->required();
+    verb->add_option("IN.wav", o->input, "what is to be played; each of its channels is predistorted by itself")->required();
+    verb->add_option("OUT.wav", o->out, "the predistorted signal, as long and as loud")->required();
+    verb->add_option("--full-scale", o->fullScale, "V at the loudspeaker for a WAV sample of 1.0 (N for a model without a coil)")
+        ->required();
+    verb->add_option("--limit-x", o->displacementLimit, "m that the cone may move at most (default: as far as the model was measured)");
+    verb->add_option("--limit-u", o->voltageLimit, "V that may come out at most (default: no limit)");
+    verb->add_option("--amount", o->amount, "0: the signal as it is, 1: fully linearized")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    verb->add_option("--oversampling", o->oversampling, "1, 2 or 4")->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
+    verb->footer("Exit code 1: the WAV was written, but a limit was reached or the predistorter had to start anew.");
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/Inverse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace excursion {
+namespace {
+
+Tangent carrying(double value, double byTime, double byCurrent)
+{
+    Tangent t(value);
+    t.v[0] = byTime;
+    t.v[1] = byCurrent;
+    return t;
+}
+
+/// sum_k weights_k values_k
+double sumOf(const std::vector<double>& weights, const double* values)
+{
+    return std::inner_product(weights.begin(), weights.end(), values, 0.0);
+}
+
+double byTime(const Tangent& t) { return t.v[0]; }
+double byCurrent(const Tangent& t) { return t.v[1]; }
+
+} // namespace
+
+Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.electrical()), period_(1.0 / sampleRate)
+{
+    Balance<Tangent> atRest;
+    double visited = 0.0;
+    for (const auto& component : model.components) {
+        const auto& effect = *component.effect;
+        std::vector<double> parameters, coefficients(static_cast<std::size_t>(effect.coefficientCount(component.extent)));
+        for (const auto& parameter : component.parameters)
+            parameters.push_back(parameter.value);
+        effect.prepare(component.extent, parameters.data(), coefficients.data());
+        if (&component != &model.base())
+            visited = std::max(visited, component.extent.current);
+
+        std::vector<Tangent> constants(coefficients.begin(), coefficients.end());
+        Memory memory(effect, component.extent, coefficients, sampleRate);
+        std::vector<Tangent> silent(memory.size(), Tangent(0.0)), unused = silent;
+        const Motion<Tangent> rest {carrying(0.0, 0.0, 1.0), Tangent(0.0), Tangent(0.0)};
+        effect.contribute(component.extent, constants.data(), rest, silent.data(), unused.data(), atRest);
+        if (auto form = linearForm(effect, component.extent, coefficients.data())) {
+            linear_.inductance += form->inductance;
+            linear_.mass += form->mass;
+            for (std::size_t q = 0; q < 3; ++q) {
+                linear_.drop[q] += form->drop[q];
+                linear_.force[q] += form->force[q];
+            }
+            dropByCurrent_ += form->drop[0] + sumOf(form->dropByMemory, memory.byCurrent());
+            forceByCurrent_ += form->force[0] + sumOf(form->forceByMemory, memory.byCurrent());
+            for (auto* weights : {&form->dropByMemory, &form->forceByMemory})
+                if (std::all_of(weights->begin(), weights->end(), [](double weight) { return weight == 0.0; }))
+                    weights->clear();
+            if (memory.size() > 0)
+                lagging_.push_back({std::move(memory), std::move(form->dropByMemory), std::move(form->forceByMemory)});
+        } else {
+            curved_.push_back({&effect, component.extent, std::move(constants), std::move(memory), std::move(silent), std::move(unused)});
+        }
+    }
+    if (visited > 0.0)
+        largestCurrent_ = 10.0 * visited;
+    leastForcePerCurrent_ = 0.1 * byCurrent(atRest.force);
+}
+
+void Inverse::reset()
+{
+    for (auto& part : lagging_)
+        part.memory.reset();
+    for (auto& part : curved_)
+        part.memory.reset();
+    last_ = {};
+    current_ = before_ = slope_ = 0.0;
+    ahead_ = {};
+}
+
+double Inverse::step(const MotionPoint& to)
+{
+    const double extrapolated = to.i + 3.0 * (ahead_[0] - ahead_[1]) + ahead_[2];
+    const double guess = electrical_ ? std::clamp(extrapolated, -largestCurrent_, largestCurrent_) : 0.0;
+    const MotionCubic motion {Cubic::past(before_, current_, slope_ * period_, guess),
+                              Cubic::between(last_.x, last_.v * period_, to.x, to.v * period_),
+                              Cubic::between(last_.v, last_.a * period_, to.v, to.a * period_)};
+    last_ = to;
+
+    const auto& [di, dx, dv] = linear_.drop;
+    const auto& [fi, fx, fv] = linear_.force;
+    double drop = di * guess + dx * to.x + dv * to.v, force = fi * guess + fx * to.x + fv * to.v, forceByTime = fx * to.v + fv * to.a;
+    for (auto& part : lagging_) {
+        part.memory.step(motion);
+        drop += sumOf(part.drop, part.memory.value());
+        if (!part.force.empty()) {
+            force += sumOf(part.force, part.memory.value());
+            forceByTime += sumOf(part.force, part.memory.findRate());
+        }
+    }
+    Balance<Tangent> sum;
+    sum.inductance = Tangent(linear_.inductance);
+    sum.mass = Tangent(linear_.mass);
+    sum.drop = carrying(drop, 0.0, dropByCurrent_);   // nobody asks how it goes on in time
+    sum.force = carrying(force, forceByTime, forceByCurrent_);
+    const Motion<Tangent> at {carrying(guess, 0.0, 1.0), carrying(to.x, to.v, 0.0), carrying(to.v, to.a, 0.0)};
+    for (auto& part : curved_) {
+        auto& memory = part.memory;
+        if (memory.size() > 0) {
+            memory.step(motion);
+            const double* const rate = memory.findRate();
+            for (std::size_t k = 0; k < memory.size(); ++k)
+                part.state[k] = carrying(memory.value()[k], rate[k], memory.byCurrent()[k]);
+        }
+        part.effect->contribute(part.extent, part.coefficients.data(), at, part.state.data(), part.rate.data(), sum);
+    }
+    const double missing = sum.mass.a * to.a - sum.force.a;   // N
+    if (!electrical_)
+        return missing;
+
+    const bool weak = byCurrent(sum.force) < leastForcePerCurrent_;
+    const double perCurrent = weak ? leastForcePerCurrent_ : byCurrent(sum.force);
+    const double current = std::clamp(guess + missing / perCurrent, -largestCurrent_, largestCurrent_);
+    const double off = current - guess;
+    const double slope = (sum.mass.a * to.j + byTime(sum.mass) * to.a - byTime(sum.force)) / perCurrent;
+    for (auto& part : lagging_)
+        part.memory.correct(off);
+    for (auto& part : curved_)
+        part.memory.correct(off);
+    before_ = current_;
+    current_ = current;
+    slope_ = slope;
+    const double ahead = current - to.i;
+    // Where force and current have come apart there is no trend to follow.
+    ahead_ = weak ? std::array {ahead, ahead, ahead} : std::array {ahead, ahead_[0], ahead_[1]};
+    const auto corrected = [off](const Tangent& t) { return t.a + byCurrent(t) * off; };
+    return corrected(sum.drop) + corrected(sum.inductance) * slope + corrected(sum.fluxSlope) * to.v;
+}
+
+} // namespace excursion

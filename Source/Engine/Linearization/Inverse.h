@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+#include "Engine/Linearization/LinearForm.h"
+#include "Engine/Linearization/Memory.h"
+#include "Engine/Linearization/Reference.h"
+
+#include <array>
+#include <vector>
+
+namespace excursion {
+
+/// The input with which a driver, with all its effects, moves as it is told: inversion by flatness (Fliess, Levine, Martin &
+/// Rouchon, Int. J. Control 61, 1995; for loudspeakers Schurer, Slump & Herrmann, 1998). Position is a flat output: from x, v, a
+/// and j follow the current, by the force balance, and the voltage, by the electrical loop,
+///     F(i, x, v, m) = M a,
+///     di/dt = (M j - F_t)/F_i,        F_t = F_x v + F_v a + F_m dm/dt,
+///     u = drop + L di/dt + fluxSlope v.
+/// Every effect contributes through the lines that simulate it (Effect::contribute), run on numbers that carry the derivatives
+/// by time and by current, and its memory is carried along (Memory.h). What is linear is asked once and summed up (LinearForm.h).
+///
+/// No iteration: the current is extrapolated by its difference to the linear driver's, which is small and slow, to i_p, and
+/// one Newton step, i = i_p + (M a - F)/F_i, is exact but for the square of what the extrapolation missed (reluctance force
+/// alone is not linear in i). F_i, at rest Bl, is kept from falling below a tenth of its value at rest, where a driver can no
+/// longer be made to follow; the current is bounded by ten times what the model was measured at.
+/// A driver without a coil has u = M a - F.
+class Inverse {
+public:
+    /// @param sampleRate  Hz, of step()
+    Inverse(const Model&, double sampleRate);
+
+    void reset();
+
+    /// The input (V, or N of a driver without a coil) at this point of the motion; call it for every sample of it.
+    double step(const MotionPoint&);
+
+    double current() const { return current_; }   ///< A, at the latest point
+
+private:
+    /// An effect that is asked at every sample.
+    struct Curved {
+        const Effect* effect;
+        Extent extent;
+        std::vector<Tangent> coefficients;
+        Memory memory;
+        std::vector<Tangent> state, rate;
+    };
+    /// The memory of a linear one.
+    struct Lagging {
+        Memory memory;
+        std::vector<double> drop, force;   ///< what each state adds; empty: nothing
+    };
+
+    bool electrical_;
+    double period_;
+    double leastForcePerCurrent_ = 0.0;   ///< N/A
+    double largestCurrent_ = 1e3;         ///< A
+    LinearForm linear_;   ///< of all that is linear, without the memories
+    double dropByCurrent_ = 0.0, forceByCurrent_ = 0.0;   ///< of all that is linear, with what the current does to the memories
+    std::vector<Lagging> lagging_;
+    std::vector<Curved> curved_;
+    MotionPoint last_;
+    double current_ = 0.0, before_ = 0.0, slope_ = 0.0;   ///< i(n-1), i(n-2), A; di/dt, A/s
+    std::array<double, 3> ahead_ {};                      ///< the latest differences to the linear driver's current, A
+};
+
+} // namespace excursion

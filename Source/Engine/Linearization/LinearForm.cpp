@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/LinearForm.h"
+
+#include <cmath>
+
+namespace excursion {
+
+std::optional<LinearForm> linearForm(const Effect& effect, const Extent& extent, const double* coefficients)
+{
+    const auto n = static_cast<std::size_t>(effect.memorySize(extent));
+    const std::array<double, 3> visited {extent.current, extent.displacement, extent.velocity};
+    std::vector<double> memory(n, 0.0), unused(n, 0.0);
+    const auto ask = [&](const std::array<double, 3>& q) {
+        Balance<double> sum;
+        effect.contribute(extent, coefficients, {q[0], q[1], q[2]}, memory.data(), unused.data(), sum);
+        return sum;
+    };
+    const auto rest = ask({});
+    if (rest.drop != 0.0 || rest.force != 0.0)
+        return std::nullopt;
+    LinearForm form;
+    form.inductance = rest.inductance;
+    form.mass = rest.mass;
+    for (std::size_t q = 0; q < 3; ++q) {
+        std::array<double, 3> at {};
+        at[q] = visited[q];
+        const auto sum = ask(at);
+        form.drop[q] = sum.drop / visited[q];
+        form.force[q] = sum.force / visited[q];
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        memory[k] = 1.0;
+        const auto sum = ask({});
+        form.dropByMemory.push_back(sum.drop);
+        form.forceByMemory.push_back(sum.force);
+        memory[k] = 0.0;
+    }
+
+    const auto agrees = [](double value, double expected, double size) { return std::abs(value - expected) <= 1e-9 * size; };
+    for (int trial = 1; trial <= 8; ++trial) {
+        std::array<double, 3> at {};
+        double drop = 0.0, force = 0.0, dropSize = 0.0, forceSize = 0.0;
+        const auto count = [&](double byDrop, double byForce, double q) {
+            drop += byDrop * q;
+            force += byForce * q;
+            dropSize += std::abs(byDrop * q);
+            forceSize += std::abs(byForce * q);
+        };
+        for (std::size_t q = 0; q < 3; ++q) {
+            at[q] = 1.7 * visited[q] * std::sin(1.0 + 2.3 * trial + 1.7 * static_cast<double>(q));   // also beyond what was visited
+            count(form.drop[q], form.force[q], at[q]);
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            memory[k] = std::cos(0.9 * trial + 2.1 * static_cast<double>(k));
+            count(form.dropByMemory[k], form.forceByMemory[k], memory[k]);
+        }
+        const auto sum = ask(at);
+        if (!(agrees(sum.drop, drop, dropSize) && agrees(sum.force, force, forceSize) && sum.fluxSlope == 0.0
+              && agrees(sum.inductance, form.inductance, form.inductance) && agrees(sum.mass, form.mass, form.mass)))
+            return std::nullopt;
+    }
+    return form;
+}
+
+} // namespace excursion

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Effect.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace excursion {
+
+/// What a base or an effect adds to the balance when that is linear in current, motion and memory,
+///     drop = d . (i, x, v) + D . m,   force = f . (i, x, v) + F . m,   with constant inductance and mass and no flux slope.
+/// Asked of the effect itself, once, so that an audio thread need not ask it at every sample.
+struct LinearForm {
+    double inductance = 0.0, mass = 0.0;
+    std::array<double, 3> drop {}, force {};
+    std::vector<double> dropByMemory, forceByMemory;
+};
+
+/// The linear form, or nothing when what the effect adds elsewhere does not agree with it.
+/// @param coefficients  of the effect, prepared
+std::optional<LinearForm> linearForm(const Effect&, const Extent&, const double* coefficients);
+
+} // namespace excursion

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+
+namespace excursion {
+
+/// A peak that one thread raises and another takes: for meters. A peak that comes while it is taken may be lost.
+class Peak {
+public:
+    void raise(double value)
+    {
+        if (value > peak_.load(std::memory_order_relaxed))
+            peak_.store(value, std::memory_order_relaxed);
+    }
+    double take() { return peak_.exchange(0.0, std::memory_order_relaxed); }
+
+private:
+    static_assert(std::atomic<double>::is_always_lock_free);
+    std::atomic<double> peak_ {0.0};
+};
+
+} // namespace excursion

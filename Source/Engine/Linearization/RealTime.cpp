@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/RealTime.h"
+
+#include "Engine/Driver/Linearize.h"
+#include "Engine/Error.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+
+namespace excursion {
+
+bool RealTimeOptions::isValid(std::string* reason) const
+{
+    if (!(sampleRate >= 8000.0 && sampleRate <= 768000.0)) {
+        *reason = "the sample rate must lie between 8000 and 768000 Hz";
+        return false;
+    }
+    if (oversampling != 1 && oversampling != 2 && oversampling != 4) {
+        *reason = "oversampling can be 1, 2 or 4";
+        return false;
+    }
+    return true;
+}
+
+bool LinearizationControls::isValid(std::string* reason) const
+{
+    if (!(amount >= 0.0 && amount <= 1.0)) {
+        *reason = "the amount must lie between 0 and 1";
+        return false;
+    }
+    if (!(displacementLimit > 0.0 && voltageLimit > 0.0)) {
+        *reason = "a limit must be positive";
+        return false;
+    }
+    return true;
+}
+
+void requireRunnable(const Model& model, const RealTimeOptions& options)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The model cannot be run in real time: " + reason + ".");
+    const auto refuse = [&model](const std::string& why) {
+        throw Error(Error::Kind::data, "The model" + (model.name.empty() ? "" : " '" + model.name + "'") + " cannot be run: " + why);
+    };
+    if (!(model.baseParameter("m").value > 0.0))
+        refuse("its mass is not positive.");
+    if (model.electrical()) {
+        if (!(model.baseParameter("Bl").value > 0.0))
+            refuse("its force factor Bl is not positive, so no voltage moves it.");
+    }
+    const auto A = linearize(model).A;
+    if (!A.allFinite())
+        refuse("its equations at rest are not finite numbers.");
+    // The decoupled first state of a driver without a coil, and a memory that only integrates, stand at zero.
+    const double fastest = A.cwiseAbs().maxCoeff();
+    if (A.eigenvalues().real().maxCoeff() > 1e-9 * fastest)
+        refuse("it is not stable at rest: fit it again.");
+}
+
+double measuredDisplacement(const Model& model)
+{
+    double range = 0.0;
+    for (const auto& component : model.components)
+        if (const auto law = component.effect->law(); law && law->argument == "x")
+            range = std::max(range, component.extent.displacement);
+    return range > 0.0 ? range : std::numeric_limits<double>::infinity();
+}
+
+} // namespace excursion

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/Reference.h"
+
+#include "Engine/Driver/Linearize.h"
+#include "Engine/Linearization/Cubic.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+/// How many digits the change to the eigenvectors may cost.
+constexpr double worstCondition = 1e6;
+
+/// Sizes of the states with which rows and columns of A have like sums (Osborne, J. ACM 7, 1960), so that the condition of its
+/// eigenvectors does not hang on units.
+Eigen::VectorXd balance(Eigen::MatrixXd A)
+{
+    Eigen::VectorXd size = Eigen::VectorXd::Ones(A.rows());
+    for (int round = 0; round < 50; ++round)
+        for (Eigen::Index k = 0; k < A.rows(); ++k) {
+            const double own = std::abs(A(k, k));
+            const double column = A.col(k).cwiseAbs().sum() - own, row = A.row(k).cwiseAbs().sum() - own;
+            if (column <= 0.0 || row <= 0.0)
+                continue;
+            const double factor = std::sqrt(row / column);
+            A.col(k) *= factor;
+            A.row(k) /= factor;
+            size[k] *= factor;
+        }
+    return size;
+}
+
+/// Real eigenvectors, of unit length: first the pairs (real and imaginary part), then the real ones.
+Eigen::MatrixXd eigenvectors(const Eigen::MatrixXd& A, Eigen::Index& pairs)
+{
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+    const auto n = A.rows();
+    Eigen::MatrixXd vectors(n, n);
+    Eigen::Index column = 0;
+    for (const bool complex : {true, false}) {
+        for (Eigen::Index k = 0; k < n; ++k) {
+            const double turn = solver.eigenvalues()[k].imag();
+            const Eigen::VectorXcd vector = solver.eigenvectors().col(k);
+            if (complex && turn > 0.0) {
+                vectors.col(column++) = vector.real();
+                vectors.col(column++) = vector.imag();
+            } else if (!complex && turn == 0.0) {
+                vectors.col(column++) = vector.real();
+            }
+        }
+        if (complex)
+            pairs = column / 2;
+    }
+    return vectors;
+}
+
+std::vector<double> padded(const Eigen::VectorXd& values, std::size_t rows)
+{
+    std::vector<double> result(values.data(), values.data() + values.size());
+    result.resize(rows, 0.0);
+    return result;
+}
+
+} // namespace
+
+Reference::Reference(const Model& model, double sampleRate) : electrical_(model.electrical())
+{
+    const auto linear = linearize(model);
+    const auto& A = linear.A;
+    const auto n = A.rows();
+    order_ = static_cast<std::size_t>(n);
+    rows_ = (order_ + lanes - 1) / lanes * lanes;
+
+    // The input on the step, s = 0 .. 1, is a chain of integrators beside the state: u and its derivatives with respect to s.
+    Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(n + 4, n + 4);
+    chain.topLeftCorner(n, n) = A / sampleRate;
+    chain.block(0, n, n, 1) = linear.B / sampleRate;
+    for (Eigen::Index k = 0; k < 3; ++k)
+        chain(n + k, n + k + 1) = 1.0;
+    const Eigen::MatrixXd solution = chain.exp();
+    Eigen::MatrixXd transition = solution.topLeftCorner(n, n), inputs(n, 4), outputs = Eigen::MatrixXd::Zero(5, n);
+    for (std::size_t sample = 0; sample < 4; ++sample) {
+        std::array<double, 4> u {};
+        u[sample] = 1.0;
+        const auto cubic = Cubic::through(u[3], u[2], u[1], u[0]);
+        inputs.col(static_cast<Eigen::Index>(sample)) = solution.block(0, n, n, 4)
+                                                      * Eigen::Vector4d(cubic.c[0], cubic.c[1], 2.0 * cubic.c[2], 6.0 * cubic.c[3]);
+    }
+    outputs(0, 1) = outputs(1, 2) = outputs(4, 0) = 1.0;
+    outputs.row(2) = A.row(2);
+    outputs.row(3) = A.row(2) * A;
+    accelerationInput_ = linear.B[2];
+    jerkInput_ = A.row(2).dot(linear.B);
+
+    const auto size = balance(A);
+    Eigen::MatrixXd vectors = eigenvectors(size.cwiseInverse().asDiagonal() * A * size.asDiagonal(), pairs_);
+    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(vectors).singularValues();
+    dense_ = !(singular[0] < worstCondition * singular[n - 1]);
+    if (dense_) {
+        pairs_ = 0;
+        for (Eigen::Index column = 0; column < n; ++column) {
+            const auto rows = padded(transition.col(column), rows_);
+            transition_.insert(transition_.end(), rows.begin(), rows.end());
+        }
+    } else {
+        vectors = size.asDiagonal() * vectors;
+        const Eigen::FullPivLU<Eigen::MatrixXd> solver(vectors);
+        transition = solver.solve(transition * vectors).eval();
+        inputs = solver.solve(inputs).eval();
+        outputs = (outputs * vectors).eval();
+        transition_ = padded(transition.diagonal(), rows_);
+        for (Eigen::Index k = 0; k < pairs_; ++k)
+            turn_.push_back(0.5 * (transition(2 * k, 2 * k + 1) - transition(2 * k + 1, 2 * k)));
+    }
+    for (std::size_t k = 0; k < inputs_.size(); ++k)
+        inputs_[k] = padded(inputs.col(static_cast<Eigen::Index>(k)), rows_);
+    for (std::size_t k = 0; k < outputs_.size(); ++k)
+        outputs_[k] = padded(outputs.row(static_cast<Eigen::Index>(k)).transpose(), rows_);
+    state_.assign(rows_, 0.0);
+    next_.assign(rows_, 0.0);
+}
+
+void Reference::reset()
+{
+    std::fill(state_.begin(), state_.end(), 0.0);
+    past_ = {};
+    point_ = {};
+}
+
+const MotionPoint& Reference::step(double u)
+{
+    past_ = {u, past_[0], past_[1], past_[2]};
+    const auto lanesOf = [](const Rows& rows, std::size_t row) { return Eigen::Map<const Lanes>(rows.data() + row); };
+    std::array<Lanes, 5> sums;
+    sums.fill(Lanes::Zero());
+    for (std::size_t row = 0; row < rows_; row += lanes) {
+        Lanes next;
+        if (dense_) {
+            next.setZero();
+            for (std::size_t k = 0; k < order_; ++k)
+                next += state_[k] * lanesOf(transition_, k * rows_ + row);
+        } else {
+            next = lanesOf(transition_, row) * lanesOf(state_, row);
+            for (std::size_t k = row / 2; k < turn_.size() && k < row / 2 + lanes / 2; ++k) {
+                const auto first = static_cast<Eigen::Index>(2 * k - row);
+                next[first] += turn_[k] * state_[2 * k + 1];
+                next[first + 1] -= turn_[k] * state_[2 * k];
+            }
+        }
+        for (std::size_t k = 0; k < 4; ++k)
+            next += past_[k] * lanesOf(inputs_[k], row);
+        Eigen::Map<Lanes>(next_.data() + row) = next;
+        for (std::size_t k = 0; k < 5; ++k)
+            sums[k] += next * lanesOf(outputs_[k], row);
+    }
+    std::swap(state_, next_);
+    point_ = {sums[0].sum(), sums[1].sum(), sums[2].sum() + accelerationInput_ * u,
+              electrical_ ? sums[3].sum() + jerkInput_ * u : 0.0, sums[4].sum()};
+    return point_;
+}
+
+} // namespace excursion

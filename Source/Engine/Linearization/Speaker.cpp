@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/Speaker.h"
+
+#include "Engine/Driver/Simulate.h"
+#include "Engine/Linearization/Cubic.h"
+#include "Engine/Linearization/Subnormals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr double implausible = 1e3;   // A, m, m/s, as in a simulation
+constexpr double loudest = 1e6;       // V
+constexpr double followTime = 0.005;  // s
+
+std::vector<double> valuesOf(const Model& model)
+{
+    const auto values = parameterVector(model);
+    return {values.begin(), values.end()};
+}
+
+} // namespace
+
+Speaker::Speaker(const Model& model, const RealTimeOptions& options)
+    : oversampling_((requireRunnable(model, options), options.oversampling)), model_(model), dynamics_(model_, valuesOf(model)),
+      reference_(model, options.sampleRate * options.oversampling),
+      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
+      substeps_(stableSubsteps(model, options.sampleRate * options.oversampling)),
+      step_(1.0 / (options.sampleRate * options.oversampling * substeps_)),
+      smoothing_(1.0 - std::exp(-1.0 / (followTime * options.sampleRate))), state_(static_cast<std::size_t>(dynamics_.order()), 0.0),
+      rates_(state_)
+{
+}
+
+void Speaker::rest()
+{
+    std::fill(state_.begin(), state_.end(), 0.0);
+    past_ = {};
+    reference_.reset();
+}
+
+void Speaker::reset()
+{
+    rest();
+    oversampling_.reset();
+    recovery_.reset();
+    share_ = shareTarget_;
+    faulty_ = false;
+}
+
+void Speaker::setLinearShareRemoved(double share)
+{
+    if (share >= 0.0 && share <= 1.0)
+        shareTarget_ = share;
+}
+
+/// One sample of the higher rate.
+double Speaker::advance(double u)
+{
+    const auto drive = Cubic::through(past_[2], past_[1], past_[0], u);
+    for (int s = 0; s < substeps_; ++s) {
+        const double from = static_cast<double>(s) / substeps_, to = static_cast<double>(s + 1) / substeps_;
+        dynamics_.step(state_.data(), drive.at(from), drive.at(0.5 * (from + to)), drive.at(to), step_);
+    }
+    past_ = {u, past_[0], past_[1]};
+    dynamics_.rates(state_.data(), u, rates_.data());
+    const double linear = reference_.step(u).a;
+    if (!(std::abs(state_[0]) < implausible && std::abs(state_[1]) < implausible && std::abs(state_[2]) < implausible
+          && std::isfinite(rates_[2]) && std::isfinite(linear))) {
+        faulty_ = true;
+        return 0.0;
+    }
+    peakCurrent_ = std::max(peakCurrent_, std::abs(state_[0]));
+    peakDisplacement_ = std::max(peakDisplacement_, std::abs(state_[1]));
+    return rates_[2] - share_ * linear;
+}
+
+void Speaker::process(const double* in, double* out, std::size_t n)
+{
+    const FlushSubnormals flush;
+    const auto factor = static_cast<std::size_t>(oversampling_.factor());
+    while (n > 0) {
+        const std::size_t count = std::min(n, Oversampling::longestBlock);
+        std::array<bool, Oversampling::longestBlock> faultAt;
+        for (std::size_t k = 0; k < count; ++k) {
+            faultAt[k] = !(std::abs(in[k]) < loudest);   // also for NaN
+            block_[k] = faultAt[k] ? 0.0 : in[k];
+        }
+        oversampling_.up(block_.data(), count, fine_.data());
+        for (std::size_t k = 0; k < count; ++k) {
+            share_ += smoothing_ * (shareTarget_ - share_);
+            faulty_ = faultAt[k];
+            for (std::size_t s = 0; s < factor; ++s) {
+                if (!faulty_)
+                    fine_[k * factor + s] = advance(fine_[k * factor + s]);
+                if (faulty_) {
+                    rest();
+                    fine_[k * factor + s] = 0.0;
+                    faultAt[k] = true;
+                }
+            }
+        }
+        oversampling_.down(fine_.data(), count, block_.data());
+        for (std::size_t k = 0; k < count; ++k) {
+            if (faultAt[k]) {
+                recovery_.fault();
+                faults_.fetch_add(1, std::memory_order_relaxed);
+            }
+            out[k] = withoutSubnormals(recovery_.step() * block_[k]);
+        }
+        in += count;
+        out += count;
+        n -= count;
+    }
+    displacement_.raise(peakDisplacement_);
+    current_.raise(peakCurrent_);
+    peakDisplacement_ = peakCurrent_ = 0.0;
+}
+
+Speaker::Meters Speaker::take() { return {displacement_.take(), current_.take(), faults_.load(std::memory_order_relaxed)}; }
+
+double plateau(const Model& model)
+{
+    const double m = model.baseParameter("m").value;
+    return model.electrical() ? model.baseParameter("Bl").value / (model.baseParameter("Re").value * m) : 1.0 / m;
+}
+
+} // namespace excursion

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Dynamics.h"
+#include "Engine/Linearization/Oversampling.h"
+#include "Engine/Linearization/Peak.h"
+#include "Engine/Linearization/RealTime.h"
+#include "Engine/Linearization/Recovery.h"
+#include "Engine/Linearization/Reference.h"
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+namespace excursion {
+
+/// The driver with its effects, in real time: from the voltage to the acceleration of the cone, which is what is heard in front of it.
+///     u -> up -> Runge-Kutta steps of the Dynamics -> (a - share a_linear) -> down
+/// The linear part a_linear is that of Reference; with a share of 1 only the distortion is left.
+/// The steps are as many as the fastest pole asks for (stableSubsteps) and do not adapt; between samples the input is a cubic through the
+/// latest four. As for blocks, faults and the audio thread see Predistorter; after a fault the driver starts from rest and fades in from
+/// silence.
+class Speaker {
+public:
+    /// Throws Error, see requireRunnable.
+    Speaker(const Model&, const RealTimeOptions&);
+
+    int latency() const { return oversampling_.latency(); }   ///< samples; fixed
+    int substeps() const { return substeps_; }                 ///< steps a sample of the higher rate
+    void reset();
+
+    /// @param share  how much of the linear driver's output is taken away, 0 to 1; followed smoothly
+    void setLinearShareRemoved(double share);
+
+    /// @param in   V (or N); n samples
+    /// @param out  m/s^2; may be the same place
+    void process(const double* in, double* out, std::size_t n);
+
+    /// Since the last call of take(); may be read from another thread.
+    struct Meters {
+        double displacement = 0.0;   ///< peak, m
+        double current = 0.0;        ///< peak, A
+        int faults = 0;              ///< since construction
+    };
+    Meters take();
+
+private:
+    double advance(double u);
+    void rest();
+
+    Oversampling oversampling_;
+    const Model model_;   ///< of which the dynamics keep parts
+    Dynamics<double> dynamics_;
+    Reference reference_;
+    Recovery recovery_;
+    int substeps_;
+    double step_, smoothing_, share_ = 0.0, shareTarget_ = 0.0;
+    std::vector<double> state_, rates_;
+    std::array<double, 3> past_ {};   ///< u(n-1), u(n-2), u(n-3)
+    std::array<double, Oversampling::longestBlock> block_ {};
+    std::array<double, 4 * Oversampling::longestBlock> fine_ {};
+    bool faulty_ = false;
+    double peakDisplacement_ = 0.0, peakCurrent_ = 0.0;
+    Peak displacement_, current_;
+    std::atomic<int> faults_ {0};
+};
+
+/// m/s^2 per V that a linear driver approaches well above resonance and below its inductance, Bl/(Re m) (1/m of a driver without a coil): what
+/// its output is divided by to be heard at the level of the input.
+double plateau(const Model&);
+
+} // namespace excursion
