@@ -25,6 +25,7 @@ void addVirtual(CLI::App&, Terminal&);
 void addImport(CLI::App&, Terminal&);
 void addCheck(CLI::App&, Terminal&);
 void addBla(CLI::App&, Terminal&);
+void addIdentify(CLI::App&, Terminal&);
 void addFit(CLI::App&, Terminal&);
 void addCompare(CLI::App&, Terminal&);
 void addDiagnose(CLI::App&, Terminal&);

@@ -115,6 +115,7 @@ int main(int argc, char** argv)
     cli::addVirtual(app, terminal);
     cli::addCheck(app, terminal);
     cli::addBla(app, terminal);
+    cli::addIdentify(app, terminal);
     cli::addFit(app, terminal);
     cli::addCompare(app, terminal);
     cli::addDiagnose(app, terminal);

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
+#include "Cli/OpenResponse.h"
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Document/JsonText.h"
+#include "Engine/Linear/OrderSweep.h"
+#include "Engine/Linear/StateSpaceFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    ResponseChoice response;
+    std::string validation, out;
+    std::vector<int> orders;
+    std::vector<double> band;
+    bool discrete = false, unrefined = false, quick = false, unstable = false;
+};
+
+std::vector<int> ordersFrom(std::vector<int> orders)
+{
+    std::sort(orders.begin(), orders.end());
+    orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
+    return orders;
+}
+
+Frf within(const Frf& frf, const std::vector<double>& band)
+{
+    if (band.empty())
+        return frf;
+    Frf cut;
+    const auto copy = [](const std::vector<double>& from, std::size_t k, std::vector<double>& to) {
+        if (!from.empty())
+            to.push_back(from[k]);
+    };
+    for (std::size_t k = 0; k < frf.frequency.size(); ++k)
+        if (frf.frequency[k] >= band[0] && frf.frequency[k] <= band[1]) {
+            cut.frequency.push_back(frf.frequency[k]);
+            cut.value.push_back(frf.value[k]);
+            copy(frf.noiseVariance, k, cut.noiseVariance);
+            copy(frf.totalVariance, k, cut.totalVariance);
+        }
+    return cut;
+}
+
+Json json(const std::vector<std::complex<double>>& roots)
+{
+    Json list = Json::array();
+    for (const auto& root : roots)
+        list.push_back(Json::array({root.real(), root.imag()}));
+    return list;
+}
+
+Json json(const OrderSweepEntry& entry)
+{
+    Json object {{"order", entry.order},
+                 {"errorDb", entry.found.errorDb},
+                 {"weightedErrorDb", 10.0 * std::log10(std::max(entry.found.cost, 1e-40))},
+                 {"likelihood", numberOrNull(entry.found.likelihood)},
+                 {"mdl", entry.mdl},
+                 {"validationDb", numberOrNull(entry.validationDb.value_or(std::numeric_limits<double>::quiet_NaN()))},
+                 {"stable", entry.found.stable},
+                 {"start", entry.found.start},
+                 {"stopped", entry.found.reason}};
+    return object;
+}
+
+void print(const OrderSweep& sweep, Terminal& terminal)
+{
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& e : sweep.entries)
+        rows.push_back({std::to_string(e.order), fixed(e.found.errorDb, 1), fixed(10.0 * std::log10(std::max(e.found.cost, 1e-40)), 1),
+                        significant(e.mdl, 6), e.validationDb ? fixed(*e.validationDb, 1) : "-", e.found.stable ? "yes" : "no", e.found.start});
+    terminal.table({"order", "error dB", "weighted dB", "MDL", "validation dB", "stable", "from"}, rows);
+}
+
+void run(const Options& options, Terminal& terminal)
+{
+    if (!options.out.empty())
+        requireFilePlace(options.out);
+    if (!options.band.empty() && !(options.band[0] < options.band[1]))
+        throw Error(Error::Kind::usage, "The band of --band begins at or beyond its end.");
+    const auto open = openResponse(options.response);
+    if (options.discrete && open.sampleRate == 0.0)
+        throw Error(Error::Kind::usage, "A frequency response has no sample rate; leave --discrete out.");
+    const auto data = frequencyDataOf(within(open.frf, options.band));
+    std::optional<FrequencyData> validation;
+    if (!options.validation.empty()) {
+        auto choice = options.response;
+        choice.path = options.validation;
+        validation = frequencyDataOf(within(openResponse(choice).frf, options.band));
+    }
+
+    OrderSweepOptions sweeping;
+    sweeping.orders = ordersFrom(options.orders);
+    sweeping.identify.sampleRate = options.discrete ? open.sampleRate : 0.0;
+    sweeping.identify.refine = !options.unrefined;
+    sweeping.identify.thorough = !options.quick;
+    sweeping.identify.refinement.stable = !options.unstable;
+    const auto sweep = sweepOrders(data, sweeping, validation ? &*validation : nullptr, terminal.progress());
+    const auto& chosen = sweep.entries[sweep.chosen];
+    NamedStateSpace named {std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, chosen.found.model};
+    if (!options.out.empty())
+        writeStateSpace(named, options.out);
+
+    terminal.say(open.output + " / " + open.input + ", " + std::to_string(data.lines()) + " lines, "
+                 + (options.discrete ? "discrete time at " + significant(open.sampleRate, 6) + " Hz" : std::string("continuous time")));
+    print(sweep, terminal);
+    if (sweep.entries.size() > 1)
+        terminal.say(wrapped(sweep.sentence));
+    if (!chosen.found.stable)
+        terminal.say("This model is not stable.");
+    if (!options.out.empty())
+        terminal.say("Wrote " + options.out + ".");
+
+    Json document {{"format", "excursion-identification"}, {"version", 1}, {"source", options.response.path}};
+    document["lines"] = data.lines();
+    document["orders"] = Json::array();
+    for (const auto& entry : sweep.entries)
+        document["orders"].push_back(json(entry));
+    document["chosen"] = chosen.order;
+    document["sentence"] = sweep.sentence;
+    document["poles"] = json(poles(named.model));
+    document["zeros"] = json(zeros(named.model));
+    document["model"] = toJson(named);
+    terminal.document(document);
+    if (!chosen.found.stable)
+        terminal.answer = 1;
+}
+
+} // namespace
+
+void addIdentify(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("identify", "Identify a linear state-space model of a frequency response, of a given or of the best order")
+                     ->group(step::fit);
+    verb->add_option("TAKE", o->response.path, "a take, a .csv, .zma or .frd, or the .json of excursion bla")->required();
+    verb->add_option("--order", o->orders, "the order, or several separated by commas to choose from")->delimiter(',')->required()->check(CLI::Range(0, 400));
+    verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
+    verb->add_option("--input", o->response.input, "the channel it is explained by; by default the voltage or force");
+    verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
+    verb->add_option("--band", o->band, "lowest and highest frequency to use, Hz")->delimiter(',')->expected(2);
+    verb->add_option("--validation", o->validation, "another take or response, which then chooses the order")->type_name("TAKE");
+    verb->add_flag("--discrete", o->discrete, "a model of discrete time at the take's sample rate, not of continuous time");
+    verb->add_flag("--subspace", o->unrefined, "by the subspace method alone, without refinement");
+    verb->add_flag("--quick", o->quick, "fewer starts");
+    verb->add_flag("--allow-unstable", o->unstable, "do not keep the poles stable");
+    verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
+    verb->footer("Exit code 1: the model is not stable.");
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli

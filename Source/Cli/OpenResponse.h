@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Measurement/Frf.h"
+#include "Engine/Measurement/Measurement.h"
+
+#include <string>
+
+namespace excursion::cli {
+
+/// Which frequency response of a file or take is meant.
+struct ResponseChoice {
+    std::string path;
+    std::string output, input;   ///< quantities; empty: the first beside the input; the voltage, or the force
+    int level = -1;              ///< of a take with levels; below 0: the loudest
+};
+
+struct OpenResponse {
+    Frf frf;
+    std::string output, input;   ///< quantities
+    double sampleRate = 0.0;     ///< of the take; 0 for a frequency response
+};
+
+/// The frequency response output / input of a take (its best linear approximation, or Welch's estimate without periods), of spectra
+/// (.csv, .zma, .frd), or of the document of `bla` (.json).
+/// Throws Error (usage) for channels that are not there, (input, data) for files that cannot be read or used.
+OpenResponse openResponse(const ResponseChoice&);
+
+} // namespace excursion::cli

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linear/Identify.h"
+
+#include "Engine/Error.h"
+#include "Engine/Linear/Bilinear.h"
+#include "Engine/Linear/Response.h"
+#include "Engine/Linear/Subspace.h"
+#include "Engine/Linear/TallQr.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+struct Candidate {
+    std::string start;
+    Sections sections;
+    double cost = std::numeric_limits<double>::infinity();
+};
+
+double scaleFor(const FrequencyData& data, double sampleRate)
+{
+    return sampleRate > 0.0 ? 1.0 : 2.0 * std::numbers::pi * data.frequency.back();
+}
+
+/// Rates of the bilinear transform that put the band's end at different places of the unit circle, and its middle for wide bands.
+std::vector<double> warpingRates(const FrequencyData& data, bool thorough)
+{
+    const double high = data.frequency.back();
+    const double middle = std::sqrt(std::max(data.frequency.front(), 1e-4 * high) * high);
+    std::vector<double> rates {std::numbers::pi * 0.18 * high, std::numbers::pi * 0.5 * high};
+    if (thorough)
+        rates.insert(rates.end(), {std::numbers::pi * 0.1 * high, std::numbers::pi * 0.3 * high});
+    if (middle < 0.1 * high)
+        rates.push_back(std::numbers::pi * 0.5 * middle);
+    return rates;
+}
+
+StateSpace subspaceAt(const FrequencyData& data, double rate, int order, bool stable)
+{
+    auto warped = data;
+    for (auto& f : warped.frequency)
+        f = warpedFrequency(f, rate);
+    auto model = toContinuous(dynamicsOf(observabilityRange(warped, rate, blockRowsFor(order, data.lines())), order, data.inputs, stable));
+    if (stable)
+        model = mirrored(model);
+    fitInputs(model, data);
+    return model;
+}
+
+/// All models that the subspace method has to offer. Those whose transform does not exist are left out.
+std::vector<StateSpace> subspaceModels(const FrequencyData& data, const IdentifyOptions& options)
+{
+    const bool stable = options.refinement.stable;
+    if (options.sampleRate > 0.0)
+        return {identifySubspace(data, options.sampleRate, options.order, stable)};
+    std::vector<StateSpace> models;
+    for (const double rate : warpingRates(data, options.thorough))
+        try {
+            models.push_back(subspaceAt(data, rate, options.order, stable));
+        } catch (const Error& e) {
+            if (e.kind() != Error::Kind::numerical)
+                throw;
+        }
+    return models;
+}
+
+void add(std::vector<Candidate>& candidates, const char* start, const Sections& sections, const FrequencyData& data)
+{
+    if (!sections.factors.allFinite())
+        return;
+    const auto fit = fitPartialFractions(sections, data);
+    if (std::isfinite(fit.cost))
+        candidates.push_back({start, sections, fit.cost});
+}
+
+Sections fittedVectors(Sections sections, const FrequencyData& data, int times)
+{
+    for (int k = 0; k < times && sections.factors.allFinite(); ++k)
+        sections = relocatePoles(sections, data);
+    return sections;
+}
+
+/// The poles of a larger model, its least sections taken out one after the other.
+Sections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& options, double scale)
+{
+    auto larger = options;
+    larger.order = static_cast<int>(std::min<Index>(2 * order + 10, data.lines() / 8));
+    if ((larger.order - order) % 2 != 0)
+        ++larger.order;
+    double best = std::numeric_limits<double>::infinity();
+    PartialFractionFit fit;
+    for (const auto& model : subspaceModels(data, larger)) {
+        auto candidate = fitPartialFractions(sectionsOf(poles(model), options.sampleRate, scale), data);
+        if (candidate.cost < best) {
+            best = candidate.cost;
+            fit = std::move(candidate);
+        }
+    }
+    auto quick = options.refinement;
+    quick.maximumIterations = 4;
+    while (fit.sections.order() >= order + 2) {
+        fit = fitPartialFractions(withoutLeast(fit, data, false), data);
+        if (isStable(fit.sections))
+            fit = refinePoles(fit.sections, data, quick).fit;
+    }
+    return fit.sections;
+}
+
+LinearIdentification fromFit(const PartialFractionFit& fit, const FrequencyData& data)
+{
+    auto result = judged(realize(fit.sections, fit.C, fit.D), data);
+    result.sections = fit.sections;
+    result.cost = fit.cost;
+    return result;
+}
+
+} // namespace
+
+bool IdentifyOptions::isValid(std::string* reason) const
+{
+    const auto refuse = [reason](const char* sentence) {
+        if (reason)
+            *reason = sentence;
+        return false;
+    };
+    if (order < 0 || order > 400)
+        return refuse("the order must lie between 0 and 400");
+    if (!(sampleRate >= 0.0) || !std::isfinite(sampleRate))
+        return refuse("the sample rate must be 0, for continuous time, or above");
+    return refinement.isValid(reason);
+}
+
+Sections withoutLeast(const PartialFractionFit& fit, const FrequencyData& data, bool odd)
+{
+    const auto& sections = fit.sections;
+    const auto n = sections.order(), K = data.lines();
+    auto result = sections;
+    if (odd && sections.odd()) {
+        result.factors.conservativeResize(n - 1);
+        return result;
+    }
+    if (sections.pairs() == 0)
+        return sections;
+    // Least squares without the columns S costs c_S^T ((R^T R)^-1_SS)^-1 c_S more.
+    const auto lambda = evaluationPoints(data.frequency, sections.sampleRate);
+    const auto basis = partialFractions(sections, lambda);
+    const MatrixXd weights = weightsOf(data);
+    Eigen::VectorXd loss = Eigen::VectorXd::Zero(sections.pairs());
+    for (Index o = 0; o < data.outputs; ++o) {
+        MatrixXd rows = MatrixXd::Zero(2 * K, n + 1);
+        rows.col(0).head(K) = weights.col(o);   // the constant stays: it goes first
+        rows.block(0, 1, K, n) = weights.col(o).asDiagonal() * basis.real();
+        rows.block(K, 1, K, n) = weights.col(o).asDiagonal() * basis.imag();
+        TallQr qr(n + 1);
+        qr.fold(rows);
+        const MatrixXd inverse = qr.R().triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n + 1, n + 1));
+        for (Index i = 0; i < sections.pairs(); ++i) {
+            const Eigen::Matrix2d covariance = inverse.middleRows(2 * i + 1, 2) * inverse.middleRows(2 * i + 1, 2).transpose();
+            const Eigen::Vector2d c = fit.C.block(o, 2 * i, 1, 2).transpose();
+            const double increase = c.dot(covariance.inverse() * c);
+            loss[i] += std::isfinite(increase) ? increase : 0.0;
+        }
+    }
+    Index least = 0;
+    loss.minCoeff(&least);
+    result.factors.resize(n - 2);
+    result.factors << sections.factors.head(2 * least), sections.factors.tail(n - 2 * least - 2);
+    return result;
+}
+
+LinearIdentification judged(StateSpace model, const FrequencyData& data)
+{
+    LinearIdentification result;
+    const auto responses = respond(model, data.frequency);
+    const MatrixXd weights = weightsOf(data);
+    double error = 0.0, power = 0.0, weightedError = 0.0, weightedPower = 0.0, likelihood = 0.0;
+    for (Index k = 0; k < data.lines(); ++k)
+        for (Index e = 0; e < data.value.cols(); ++e) {
+            const double d = std::norm(responses[static_cast<std::size_t>(k)](e % data.outputs, e / data.outputs) - data.value(k, e));
+            error += d;
+            power += std::norm(data.value(k, e));
+            weightedError += d * weights(k, e) * weights(k, e);
+            weightedPower += std::norm(data.value(k, e)) * weights(k, e) * weights(k, e);
+            if (data.deviation.size() != 0)
+                likelihood += d / (data.deviation(k, e) * data.deviation(k, e));
+        }
+    result.cost = weightedError / weightedPower;
+    result.errorDb = 10.0 * std::log10(std::max(error / power, 1e-40));
+    result.likelihood = data.deviation.size() != 0 ? likelihood : std::numeric_limits<double>::quiet_NaN();
+    result.stable = isStable(model);
+    result.model = std::move(model);
+    return result;
+}
+
+LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& options, const Progress& progress)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The frequency response cannot be identified: " + reason + ".");
+    if (!data.isValid(&reason))
+        throw Error(Error::Kind::data, "The frequency response cannot be identified: " + reason + ".");
+    if (2 * data.lines() * data.outputs < 2 * options.order + 1 || options.order >= data.lines())
+        throw Error(Error::Kind::data, "A model of order " + std::to_string(options.order) + " needs more than the "
+                                           + std::to_string(data.lines()) + " lines of the frequency response.");
+    progress.at(0.0, "identifying by subspace");
+    const auto models = subspaceModels(data, options);
+    if (data.inputs > 1 || !options.refine) {
+        LinearIdentification best;
+        best.cost = std::numeric_limits<double>::infinity();
+        for (const auto& model : models)
+            if (auto found = judged(model, data); found.cost < best.cost)
+                best = std::move(found);
+        if (!std::isfinite(best.cost))
+            throw Error(Error::Kind::numerical, "The subspace method found no model of order " + std::to_string(options.order) + ".");
+        best.start = "subspace";
+        best.reason = options.refine ? "models with several inputs are not refined" : "no refinement was asked for";
+        return best;
+    }
+
+    const double scale = scaleFor(data, options.sampleRate);
+    std::vector<Candidate> candidates;
+    for (const auto& model : models)
+        add(candidates, "subspace", sectionsOf(poles(model), options.sampleRate, scale), data);
+    const auto bestCost = [&candidates] {
+        double cost = std::numeric_limits<double>::infinity();
+        for (const auto& c : candidates)
+            cost = std::min(cost, c.cost);
+        return cost;
+    };
+    // Where the subspace model meets the noise, there is nothing left to be found by other starts.
+    const MatrixXd weights = weightsOf(data);
+    const double floor = data.deviation.size() == 0 ? 1e-20
+                                                    : 1.1 * weights.cwiseProduct(data.deviation).squaredNorm()
+                                                          / weights.cwiseProduct(data.value.cwiseAbs()).squaredNorm();
+    if (!(bestCost() < floor)) {
+        progress.at(0.2, "fitting vectors");
+        add(candidates, "vector fitting", fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, false), data, 10), data);
+        add(candidates, "vector fitting", fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, true), data, 10), data);
+        if (options.thorough && options.order >= 2) {
+            progress.at(0.4, "pruning a larger model");
+            add(candidates, "pruned", prunedTo(options.order, data, options, scale), data);
+        }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    if (candidates.empty())
+        throw Error(Error::Kind::numerical, "No start gave a model of order " + std::to_string(options.order) + ".");
+    const std::size_t searches = bestCost() < floor ? 1 : options.thorough ? candidates.size() : 2;
+    if (candidates.size() > searches)
+        candidates.resize(searches);
+
+    LinearIdentification best;
+    best.cost = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        auto start = candidates[c].sections;
+        if (options.refinement.stable)
+            start = mirrored(start);
+        const double share = static_cast<double>(candidates.size());
+        const auto refined = refinePoles(start, data, options.refinement,
+                                         progress.part(0.5 + 0.5 * static_cast<double>(c) / share, 0.5 + 0.5 * static_cast<double>(c + 1) / share));
+        if (refined.fit.cost < best.cost) {
+            best = fromFit(refined.fit, data);
+            best.start = candidates[c].start;
+            best.reason = refined.reason;
+        }
+    }
+    if (!std::isfinite(best.cost))
+        throw Error(Error::Kind::numerical, "No search for a model of order " + std::to_string(options.order) + " ended in finite numbers.");
+    return best;
+}
+
+} // namespace excursion

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Linear/FrequencyData.h"
+#include "Engine/Linear/PartialFractionFit.h"
+#include "Engine/Linear/StateSpace.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// Linear identification of a frequency response (seed chapters 4.2 and 4.3.2): starts by subspace and by vector fitting, refined to
+/// maximum likelihood, the best one kept.
+///
+/// A continuous-time model is identified by subspace through the bilinear transform, at several warpings, since what part of the unit
+/// circle the poles fill decides how well they are seen; the refinement works directly in s with scaled frequency.
+struct IdentifyOptions {
+    int order = 4;
+    double sampleRate = 0.0;   ///< Hz; 0: a model of continuous time
+    bool refine = true;        ///< maximum likelihood after the starts
+    bool thorough = true;      ///< below the true order, where no start reaches the noise: more of them, also by pruning a larger model
+
+    PoleRefinementOptions refinement;
+
+    bool isValid(std::string* reason = nullptr) const;
+};
+
+struct LinearIdentification {
+    StateSpace model;
+    double cost = 0.0;             ///< weighted relative squared error, as PartialFractionFit::cost
+    double errorDb = 0.0;          ///< unweighted relative rms error of all entries (seed 4.26)
+    double likelihood = 0.0;       ///< sum of |model - measured|^2 / deviation^2; NaN without deviations. About 1 a value when all but noise is explained
+    bool stable = false;
+    std::string start;             ///< where the model came from: "subspace", "vector fitting", "pruned", ..
+    std::string reason = "nothing was identified";   ///< why the refinement stopped
+    std::optional<Sections> sections;   ///< of models with one input
+};
+
+/// Throws Error (usage, data) for options or data that make no sense, (numerical) when no start gave a model.
+/// Models with several inputs are those of the subspace method; their refinement is left out, and `reason` says so.
+LinearIdentification identify(const FrequencyData&, const IdentifyOptions&, const Progress& = {});
+
+/// The fit without the section that matters least: the one whose loss, the others' coefficients refitted, raises the cost least.
+/// @param odd  take out the lone real pole instead of a pair
+Sections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd);
+
+/// Errors, likelihood and stability of any model on data.
+LinearIdentification judged(StateSpace, const FrequencyData&);
+
+} // namespace excursion

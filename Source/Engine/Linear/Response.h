@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Linear/StateSpace.h"
+#include "Engine/Measurement/Frf.h"
+
+namespace excursion {
+
+/// What frequency responses are computed at: lambda = z - 1 in discrete time, lambda = j w in continuous time, so that
+///     G = C (lambda I - L)^-1 B + D,  L = A - I or A.
+/// z - 1 = 2j sin(w/2) exp(j w/2), w = 2 pi f / fs, loses no digits at frequencies far below the sample rate, where z itself would.
+std::complex<double> evaluationPoint(double frequency, double sampleRate);
+Eigen::VectorXcd evaluationPoints(const std::vector<double>& frequency, double sampleRate);
+
+/// (lambda I - L)^-1 for many lambda, by one complex Schur form L = U T U^H and a triangular solve a point.
+class Resolvent {
+public:
+    explicit Resolvent(const StateSpace&);
+
+    /// C (lambda I - L)^-1, p x n.
+    Eigen::MatrixXcd left(std::complex<double> lambda) const;
+
+    /// C (lambda I - L)^-1 B + D, p x m.
+    Eigen::MatrixXcd response(std::complex<double> lambda) const;
+
+private:
+    Eigen::MatrixXcd T_, U_, CU_, UB_, D_;
+    Eigen::MatrixXcd solveLeft(std::complex<double> lambda) const;   // C U (lambda I - T)^-1
+};
+
+/// The frequency response at frequencies in Hz, one p x m matrix each. Throws Error (usage) when the model is not valid.
+std::vector<Eigen::MatrixXcd> respond(const StateSpace&, const std::vector<double>& frequency);
+
+/// The response of one input and output, as an Frf without variances.
+Frf frfOf(const StateSpace&, const std::vector<double>& frequency, Eigen::Index output = 0, Eigen::Index input = 0);
+
+/// 20 log10(|model - measured| / |measured|), rms over the lines of the Frf (seed 4.26).
+double relativeErrorDb(const Frf& measured, const Frf& model);
+
+} // namespace excursion

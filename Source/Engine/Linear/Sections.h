@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Linear/StateSpace.h"
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <vector>
+
+namespace excursion {
+
+/// The poles of a model with one input as quadratic and linear factors, and the partial fractions over them that carry its response:
+///     G(lambda) = D + sum_i (c_1i + c_2i (mu + b_i/2)) / (mu^2 + b_i mu + e_i)  [+ c / (mu + a)],   mu = lambda / scale
+/// with lambda = z - 1 or s (see Response.h). Real pairs and complex pairs pass into one another smoothly, and poles far apart do not
+/// disturb each other's digits as the coefficients of one long polynomial would.
+struct Sections {
+    Eigen::VectorXd factors;     ///< b_1, e_1, b_2, e_2, ..; then a when the order is odd
+    double sampleRate = 0.0;     ///< Hz; 0: continuous time
+    double scale = 1.0;          ///< rad/s in continuous time, else 1
+
+    Eigen::Index order() const { return factors.size(); }
+    Eigen::Index pairs() const { return factors.size() / 2; }
+    bool odd() const { return factors.size() % 2 != 0; }
+};
+
+/// @param poles  closed under conjugation (the imaginary part of a lone one is dropped)
+Sections sectionsOf(const std::vector<std::complex<double>>& poles, double sampleRate, double scale);
+
+/// The factors' roots, as poles of the model: z or s.
+std::vector<std::complex<double>> poles(const Sections&);
+
+/// All roots within the stable region.
+bool isStable(const Sections&);
+
+/// Unstable roots mirrored: 1/conj(z) or -conj(s).
+Sections mirrored(const Sections&);
+
+/// The basis functions at points lambda, K x n: 1/q_i and (mu + b_i/2)/q_i for each pair, then 1/(mu + a).
+Eigen::MatrixXcd partialFractions(const Sections&, const Eigen::VectorXcd& lambda);
+
+/// sum_j c_j d(basis_j)/d(factor), one column a factor, given the partial fractions at the same points.
+Eigen::MatrixXcd partialFractionSlopes(const Sections&, const Eigen::VectorXcd& lambda, const Eigen::MatrixXcd& basis, const Eigen::VectorXd& c);
+
+/// The model with these poles. @param C  p x n, coefficients of the partial fractions; @param D  p x 1
+/// Complex pairs become rotations [r, -w; w, r], B and C of a state equally long.
+StateSpace realize(const Sections&, const Eigen::MatrixXd& C, const Eigen::VectorXd& D);
+
+} // namespace excursion

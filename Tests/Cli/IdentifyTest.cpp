@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Linear models from the command line.
+#include "Cli/Chain.h"
+
+using namespace excursion::test;
+
+TEST_CASE("identify chooses an order, keeps the model, and reads what bla wrote")
+{
+    const Scratch scratch;
+    const auto& chain = Chain::get();
+    const auto model = (scratch / "linear.json").string(), response = (scratch / "bla.json").string();
+    const auto told = runProgram(scratch.folder(), {"identify", chain.take(), "--order", "2,3,4", "--out", model, "--json"});
+    REQUIRE(told.code == 0);
+    const auto document = nlohmann::json::parse(told.out);
+    CHECK(document.at("format") == "excursion-identification");
+    CHECK(document.at("orders").size() == 3);
+    const auto& third = document.at("orders").at(1);
+    CHECK(third.at("order") == 3);
+    CHECK(third.at("weightedErrorDb") < document.at("orders").at(0).at("weightedErrorDb"));
+    CHECK(third.at("stable") == true);
+    const auto kept = nlohmann::json::parse(bytesOf(model));
+    CHECK(kept == document.at("model"));
+    CHECK(kept.at("A").size() == document.at("chosen"));
+
+    REQUIRE(runProgram(scratch.folder(), {"bla", chain.take(), "--out", response}).code == 0);
+    const auto again = runProgram(scratch.folder(), {"identify", response, "--order", "2,3,4", "--json"});
+    REQUIRE(again.code == 0);
+    CHECK(nlohmann::json::parse(again.out).at("model").at("A") == kept.at("A"));
+
+    CHECK(runProgram(scratch.folder(), {"identify", response, "--order", "3", "--discrete"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "3", "--output", "pressure"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "3", "--band", "100,101"}).code == 4);
+}

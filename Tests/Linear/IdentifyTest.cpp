@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Identification against systems that are known, and against the figures that other programs reach on fixed problems.
+#include "Engine/Linear/Bilinear.h"
+#include "Engine/Linear/OrderSweep.h"
+#include "Engine/Linear/Response.h"
+#include "Engine/Linear/Subspace.h"
+#include "Linear/Problem.h"
+
+#include <numbers>
+
+using namespace excursion;
+using namespace excursion::test;
+
+namespace {
+
+/// Three resonances between 2 inputs and 3 outputs, at 1 kHz.
+StateSpace plant()
+{
+    StateSpace model;
+    model.sampleRate = 1000.0;
+    model.A = Eigen::MatrixXd::Zero(6, 6);
+    Normal normal(5);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        const double r = 0.9 + 0.03 * static_cast<double>(i), w = 0.2 + 0.7 * static_cast<double>(i);
+        model.A.block(2 * i, 2 * i, 2, 2) << r * std::cos(w), r * std::sin(w), -r * std::sin(w), r * std::cos(w);
+    }
+    model.B.resize(6, 2);
+    model.C.resize(3, 6);
+    model.D.resize(3, 2);
+    for (auto* M : {&model.B, &model.C, &model.D})
+        for (auto& x : M->reshaped())
+            x = normal();
+    return model;
+}
+
+FrequencyData measured(const StateSpace& model, const std::vector<double>& f)
+{
+    FrequencyData data;
+    data.frequency = f;
+    data.outputs = model.outputs();
+    data.inputs = model.inputs();
+    data.value.resize(static_cast<Eigen::Index>(f.size()), data.outputs * data.inputs);
+    const auto responses = respond(model, f);
+    for (std::size_t k = 0; k < f.size(); ++k)
+        data.value.row(static_cast<Eigen::Index>(k)) = responses[k].reshaped().transpose();
+    return data;
+}
+
+std::vector<double> logarithmic(double low, double high, int count)
+{
+    std::vector<double> f;
+    for (int k = 0; k < count; ++k)
+        f.push_back(low * std::pow(high / low, static_cast<double>(k) / (count - 1)));
+    return f;
+}
+
+std::vector<double> uniform(int first, int last, double step)
+{
+    std::vector<double> f;
+    for (int k = first; k <= last; ++k)
+        f.push_back(k * step);
+    return f;
+}
+
+} // namespace
+
+TEST_CASE("Subspace identification recovers several inputs and outputs on an uneven grid")
+{
+    const auto data = measured(plant(), logarithmic(3.0, 499.0, 90));
+    const auto model = identifySubspace(data, 1000.0, 6);
+    CHECK(judged(model, data).errorDb < -250.0);
+    // Between the lines, and in its poles
+    const auto elsewhere = measured(plant(), uniform(1, 99, 5.0));
+    CHECK(judged(model, elsewhere).errorDb < -240.0);
+    const auto found = poles(model), truth = poles(plant());
+    for (std::size_t k = 0; k < truth.size(); ++k)
+        CHECK(std::abs(found[k] - truth[k]) < 1e-11);
+    IdentifyOptions options;
+    options.order = 6;
+    options.sampleRate = 1000.0;
+    CHECK(identify(data, options).reason == "models with several inputs are not refined");
+}
+
+TEST_CASE("Algorithm 1 recovers the same from a uniform grid, and says when there is none")
+{
+    const auto data = measured(plant(), uniform(0, 256, 1000.0 / 512));
+    auto model = dynamicsOf(observabilityRangeUniform(data, 1000.0, 20), 6, 2, true);
+    fitInputs(model, data);
+    CHECK(judged(model, data).errorDb < -230.0);
+    // Without the lines at 0 and fs/2, which are then extrapolated
+    const auto without = measured(plant(), uniform(1, 255, 1000.0 / 512));
+    auto close = dynamicsOf(observabilityRangeUniform(without, 1000.0, 20), 6, 2, true);
+    fitInputs(close, without);
+    CHECK(judged(close, without).errorDb < -60.0);
+    refused(Error::Kind::data, "uniform grid",
+            [&] { observabilityRangeUniform(measured(plant(), logarithmic(3.0, 499.0, 90)), 1000.0, 20); });
+}
+
+TEST_CASE("Responses of one input to several outputs share their poles in the refinement")
+{
+    auto system = plant();
+    system.B = system.B.leftCols(1).eval();
+    system.D = system.D.leftCols(1).eval();
+    auto data = measured(system, uniform(1, 200, 2.4));
+    Normal normal(9);
+    data.deviation = Eigen::MatrixXd::Constant(200, 3, 0.01);
+    data.deviation.col(1) *= 5.0;
+    for (Eigen::Index e = 0; e < 3; ++e)
+        for (Eigen::Index k = 0; k < 200; ++k)
+            data.value(k, e) += data.deviation(k, e) * std::sqrt(0.5) * std::complex<double>(normal(), normal());
+    IdentifyOptions options;
+    options.order = 6;
+    options.sampleRate = 1000.0;
+    const auto found = identify(data, options);
+    CHECK(found.stable);
+    // 1200 real values of unit variance less 27 parameters, one standard deviation is 2 %
+    CHECK(found.likelihood / (0.5 * (1200.0 - 27.0)) == Approx(1.0).margin(0.08));
+    const auto truth = poles(system), estimate = poles(found.model);
+    for (std::size_t k = 0; k < truth.size(); ++k)
+        CHECK(std::abs(truth[k] - estimate[k]) < 1e-3);
+    // The refinement is a minimum: what the subspace method found is no better.
+    CHECK(judged(identifySubspace(data, 1000.0, 6), data).cost >= found.cost);
+}
+
+TEST_CASE("The order of a noisy response is found, in continuous time too")
+{
+    StateSpace truth;   // a driver's admittance: 3.3 ohm, 0.27 mH, 57 Hz
+    truth.A.resize(3, 3);
+    truth.A << 0, 1, 0, -1852 / 14.35e-3, -0.786 / 14.35e-3, 4.95 / 14.35e-3, 0, -4.95 / 266e-6, -3.3 / 266e-6;
+    truth.B.resize(3, 1);
+    truth.B << 0, 0, 1 / 266e-6;
+    truth.C.resize(1, 3);
+    truth.C << 0, 0, 1;
+    truth.D = Eigen::MatrixXd::Zero(1, 1);
+    auto data = measured(truth, logarithmic(10.0, 20000.0, 200));
+    Normal normal(3);
+    data.deviation = 1e-3 * data.value.cwiseAbs();
+    for (Eigen::Index k = 0; k < 200; ++k)
+        data.value(k, 0) += data.deviation(k, 0) * std::sqrt(0.5) * std::complex<double>(normal(), normal());
+    OrderSweepOptions options;
+    options.orders = {1, 2, 3, 4, 5, 6};
+    const auto sweep = sweepOrders(data, options);
+    CHECK(sweep.entries[sweep.chosen].order == 3);
+    CHECK(sweep.sentence.find("Order 3") == 0);
+    for (std::size_t k = 1; k < sweep.entries.size(); ++k)
+        CHECK(sweep.entries[k].found.cost <= sweep.entries[k - 1].found.cost * (1.0 + 1e-6));
+    const auto& found = sweep.entries[2].found;
+    CHECK(found.stable);
+    CHECK(found.likelihood == Approx(200.0).margin(60.0));
+    const auto p = poles(found.model), t = poles(truth);
+    for (std::size_t k = 0; k < 3; ++k)
+        CHECK(std::abs(p[k] - t[k]) < 3e-3 * std::abs(t[k]));
+    // Chosen by validation as well
+    auto validation = measured(truth, logarithmic(12.0, 18000.0, 150));
+    CHECK(sweepOrders(data, options, &validation).entries[sweep.chosen].order == 3);
+}
+
+TEST_CASE("Bad input of an identification is told in a sentence")
+{
+    auto data = measured(plant(), uniform(1, 20, 10.0));
+    IdentifyOptions options;
+    options.order = -1;
+    refused(Error::Kind::usage, "order", [&] { identify(data, options); });
+    options.order = 50;
+    refused(Error::Kind::data, "lines", [&] { identify(data, options); });
+    options.order = 2;
+    options.sampleRate = 100.0;
+    refused(Error::Kind::usage, "half its sample rate", [&] { identify(data, options); });
+    data.value(3, 1) = std::numeric_limits<double>::quiet_NaN();
+    refused(Error::Kind::data, "not finite", [&] { identify(data, options); });
+}
+
+TEST_CASE("An exact response of order 3 is met to rounding at any order and any standard deviation, stable")
+{
+    const auto frf = problemResponse("P3i.csv");
+    if (frf.frequency.empty())
+        return;
+    for (const double deviation : {0.0, 1e-12, 1.0, 1e6})
+        for (const int order : {3, 4, 5, 6, 8, 11, 15, 20}) {
+            auto data = frequencyDataOf(frf);
+            if (deviation > 0.0)
+                data.deviation = Eigen::MatrixXd::Constant(data.lines(), 1, deviation);
+            INFO("order " << order << ", deviation " << deviation);
+            const auto subspace = judged(identifySubspace(data, 48000.0, order), data);
+            CHECK(subspace.errorDb < -250.0);
+            CHECK(subspace.stable);
+            if (deviation == 1e6 || deviation == 1.0)
+                continue;
+            IdentifyOptions options;
+            options.order = order;
+            options.sampleRate = 48000.0;
+            const auto refined = identify(data, options);
+            CHECK(refined.errorDb < -270.0);
+            CHECK(refined.stable);
+        }
+}
+
+TEST_CASE("32 cone modes: the noise at the true order, and below it no worse than vector fitting")
+{
+    const auto frf = problemResponse("P3ii.csv");
+    if (frf.frequency.empty())
+        return;
+    const auto data = frequencyDataOf(frf);
+    Frf truth = frf;
+    const auto rows = problemRows("P3ii.csv");
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        truth.value[k] = {rows[k][4], rows[k][5]};
+    IdentifyOptions options;
+    options.order = 67;
+    const auto full = identify(data, options);
+    CHECK(full.errorDb <= -60.1);
+    CHECK(relativeErrorDb(truth, frfOf(full.model, truth.frequency)) < -74.5);
+    CHECK(full.stable);
+    for (const auto& [order, db] : {std::pair {12, -12.6}, std::pair {22, -15.3}, std::pair {76, -60.2}}) {
+        options.order = order;
+        const auto found = identify(data, options);
+        INFO("order " << order);
+        CHECK(found.errorDb <= db + 0.05);
+        CHECK(found.stable);
+    }
+}

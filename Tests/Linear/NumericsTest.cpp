@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numerical ground: triangular factors, orthogonal powers, partial fractions.
+#include "Engine/Linear/OrthogonalPowers.h"
+#include "Engine/Linear/Response.h"
+#include "Engine/Linear/Sections.h"
+#include "Engine/Linear/TallQr.h"
+#include "Engine/Linear/TruncatedSolve.h"
+#include "Linear/Problem.h"
+
+#include <numbers>
+
+using namespace excursion;
+using namespace excursion::test;
+using Complex = std::complex<double>;
+
+TEST_CASE("The factor of a tall matrix solves least squares that normal equations cannot")
+{
+    // Columns that differ by 1e-9: the normal equations' condition is beyond the digits of a double.
+    Normal normal(1);
+    Eigen::MatrixXd M(1000, 4);
+    for (auto& x : M.reshaped())
+        x = normal();
+    M.col(2) = M.col(1) + 1e-9 * M.col(2);
+    const Eigen::Vector4d truth(1.0, -2.0, 3.0, 0.5);
+    TallQr qr(5);
+    for (Eigen::Index first = 0; first < 1000; first += 125) {   // blocks of any size
+        Eigen::MatrixXd rows(125, 5);
+        rows << M.middleRows(first, 125), M.middleRows(first, 125) * truth;
+        qr.fold(rows);
+    }
+    const Eigen::VectorXd x = truncatedSolve(qr.R().topLeftCorner(4, 4), qr.R().col(4).head(4));
+    CHECK((x - truth).norm() < 1e-5);
+    CHECK((M * x - M * truth).norm() < 1e-13 * (M * truth).norm());
+    CHECK(qr.R().triangularView<Eigen::StrictlyLower>().toDenseMatrix().norm() == 0.0);
+    // What is left over is the distance to the range, here of a column that is orthogonal by construction.
+    TallQr other(2);
+    Eigen::MatrixXd pair(3, 2);
+    pair << 1, 0, 0, 4, 0, 3;
+    other.fold(pair);
+    CHECK(std::abs(other.R()(1, 1)) == Approx(5.0));
+}
+
+TEST_CASE("Powers are orthonormal far past where plain powers break down, and obey their recurrence")
+{
+    const Eigen::Index K = 300, q = 120;
+    Eigen::VectorXcd z(K);
+    Eigen::VectorXd w(K);
+    for (Eigen::Index k = 0; k < K; ++k) {   // an arc, not a circle
+        z[k] = std::polar(1.0, 0.2 + 1.3 * static_cast<double>(k) / static_cast<double>(K));
+        w[k] = 1.0 + 0.5 * std::sin(static_cast<double>(k));
+    }
+    const auto basis = orthogonalPowers(z, w, q);
+    REQUIRE(basis.values.cols() == q);
+    const Eigen::MatrixXd gram = (basis.values.adjoint() * basis.values).real();
+    CHECK((gram - Eigen::MatrixXd::Identity(q, q)).cwiseAbs().maxCoeff() < 1e-13);
+    const Eigen::MatrixXcd left = z.asDiagonal() * basis.values.leftCols(q - 1);
+    CHECK((left - basis.values * basis.H.topLeftCorner(q, q - 1)).cwiseAbs().maxCoeff() < 1e-13);
+    CHECK(orthogonalPowers(z.head(3), w.head(3), 20).values.cols() == 6);   // three points carry six real polynomials
+}
+
+TEST_CASE("Sections hold any poles, mirror what is unstable, and slopes are derivatives")
+{
+    for (const double rate : {0.0, 48000.0}) {
+        const std::vector<Complex> roots = rate == 0.0
+            ? std::vector<Complex> {{-300, 5000}, {-300, -5000}, {-20, 0}, {-9000, 0}, {-4000, 0}}
+            : std::vector<Complex> {{0.9, 0.3}, {0.9, -0.3}, {0.99, 0}, {-0.4, 0}, {0.2, 0}};
+        const auto sections = sectionsOf(roots, rate, rate == 0.0 ? 1e4 : 1.0);
+        CHECK(isStable(sections));
+        for (const auto& root : roots) {
+            double nearest = 1e9;
+            for (const auto& pole : poles(sections))
+                nearest = std::min(nearest, std::abs(pole - root));
+            CHECK(nearest < 1e-12 * std::max(1.0, std::abs(root)));
+        }
+        const std::vector<double> f {10.0, 333.0, 1500.0, 20000.0};
+        const auto lambda = evaluationPoints(f, rate);
+        const Eigen::VectorXd c = Eigen::VectorXd::LinSpaced(5, 0.5, 2.0);
+        const auto basis = partialFractions(sections, lambda);
+        const auto slopes = partialFractionSlopes(sections, lambda, basis, c);
+        for (Eigen::Index j = 0; j < 5; ++j) {
+            auto up = sections, down = sections;
+            const double h = 1e-5 * std::abs(sections.factors[j]);
+            up.factors[j] += h;
+            down.factors[j] -= h;
+            const Eigen::VectorXcd numeric = (partialFractions(up, lambda) - partialFractions(down, lambda)) * c / (2.0 * h);
+            CHECK((numeric - slopes.col(j)).norm() < 1e-6 * slopes.col(j).norm());
+        }
+        // The realization has that response.
+        const auto model = realize(sections, c.transpose(), Eigen::VectorXd::Constant(1, 0.25));
+        const Eigen::VectorXcd wanted = basis * c + Eigen::VectorXcd::Constant(4, 0.25);
+        for (std::size_t k = 0; k < f.size(); ++k)
+            CHECK(std::abs(respond(model, {f[k]})[0](0, 0) - wanted[static_cast<Eigen::Index>(k)]) < 1e-12 * wanted.norm());
+    }
+    const auto outside = sectionsOf({{1.2, 0.5}, {1.2, -0.5}, {-3.0, 0.0}}, 1.0, 1.0);
+    CHECK_FALSE(isStable(outside));
+    const auto inside = poles(mirrored(outside));
+    CHECK(std::abs(inside[0] - Complex(1.2, -0.5) / 1.69) < 1e-12);
+    CHECK(std::abs(inside[2] - Complex(-1.0 / 3.0, 0.0)) < 1e-12);
+    CHECK(isStable(mirrored(outside)));
+}
