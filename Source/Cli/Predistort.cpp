@@ -3,6 +3,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/JsonText.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
 #include "Engine/Linearization/Predistorter.h"
@@ -76,8 +77,6 @@ void bend(std::vector<double>& samples, Predistorter& predistorter, double fullS
         sample /= fullScale;
 }
 
-nlohmann::ordered_json limitJson(double limit) { return std::isfinite(limit) ? nlohmann::ordered_json(limit) : nlohmann::ordered_json(nullptr); }
-
 /// Beyond how much of a limit it counts as limiting: less is rounding.
 constexpr double noticed = 1e-6;
 
@@ -118,8 +117,8 @@ void run(const Options& options, Terminal& terminal)
         limited = limited || meters.displacementExcess > noticed || meters.voltageExcess > noticed;
         channels.push_back({{"peakIn", before}, {"peakOut", after}, {"displacement", meters.displacement},
                             {"displacementExcess", meters.displacementExcess}, {"voltageExcess", meters.voltageExcess}, {"faults", meters.faults}});
-        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit, significant(1e3 * meters.displacement) + " mm",
-                        fixed(100.0 * meters.displacementExcess, 0) + " %", fixed(100.0 * meters.voltageExcess, 0) + " %"});
+        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
+                        significant(1e3 * meters.displacement) + " mm", fixed(100.0 * meters.displacementExcess, 0) + " %", fixed(100.0 * meters.voltageExcess, 0) + " %"});
     }
     DraftFile draft(options.out);
     writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
@@ -127,17 +126,20 @@ void run(const Options& options, Terminal& terminal)
 
     terminal.document({{"format", "excursion-predistort"}, {"version", 1}, {"model", options.model}, {"input", options.input}, {"output", options.out},
                        {"sampleRate", wav.sampleRate}, {"samples", wav.channels.front().size()}, {"fullScale", options.fullScale},
-                       {"amount", options.amount}, {"oversampling", options.oversampling}, {"displacementLimit", limitJson(controls.displacementLimit)},
-                       {"voltageLimit", limitJson(controls.voltageLimit)}, {"channels", channels}, {"limited", limited}});
+                       {"amount", options.amount}, {"oversampling", options.oversampling}, {"displacementLimit", numberOrNull(controls.displacementLimit)},
+                       {"voltageLimit", numberOrNull(controls.voltageLimit)}, {"channels", channels}, {"limited", limited}});
     terminal.table({"channel", "peak in", "out", "the cone moves", "limited by", "voltage limited by"}, rows);
     if (limited)
-        terminal.say("A limit was reached (" + (std::isfinite(controls.displacementLimit) ? significant(1e3 * controls.displacementLimit, 3) + " mm" : "no limit of the excursion")
+        terminal.say("A limit was reached ("
+                     + (std::isfinite(controls.displacementLimit) ? significant(1e3 * controls.displacementLimit, 3) + " mm" : "no limit of the excursion")
                      + ", " + (std::isfinite(controls.voltageLimit) ? significant(controls.voltageLimit, 3) + " " + unit : "no limit of the voltage")
                      + "): what is beyond it is not linear; play more quietly.");
     if (loudest > options.fullScale)
-        terminal.say("Samples go to " + significant(loudest / options.fullScale, 3) + " times full scale, which only a WAV of floating point, as this one is, can hold.");
+        terminal.say("Samples go to " + significant(loudest / options.fullScale, 3)
+                     + " times full scale, which only a WAV of floating point, as this one is, can hold.");
     if (faults > 0)
-        terminal.say("The predistorter had to start anew " + std::to_string(faults) + (faults == 1 ? " time" : " times") + " and let the signal through as it was: the model is driven far beyond what it knows.");
+        terminal.say("The predistorter had to start anew " + std::to_string(faults) + (faults == 1 ? " time" : " times")
+                     + " and let the signal through as it was: the model is driven far beyond what it knows.");
     terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit + ", as in " + options.input + ".");
     if (limited || faults > 0)
         terminal.answer = 1;

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <limits>
+
 using namespace excursion;
 
 namespace {
@@ -56,6 +58,20 @@ TEST_CASE("A chain does what its mode says, always as late", "[chain]")
     for (std::size_t n = 0; n < sum.size(); ++n)
         sum[n] += linear[n];
     CHECK(relativeError(sum, played(Mode::speaker, u)) < 1e-4);
+}
+
+TEST_CASE("No mode lets through what is not finite", "[chain]")
+{
+    for (const auto mode : modes) {
+        INFO(name(mode));
+        Chain chain(everything(), {48000.0, 2}, controls(mode));
+        auto u = burst(48000.0, 0.3, 0.5);
+        u[5000] = std::numeric_limits<double>::quiet_NaN();
+        u[5001] = -std::numeric_limits<double>::infinity();
+        const auto out = through(chain, u);
+        CHECK(std::all_of(out.begin(), out.end(), [](double value) { return std::isfinite(value); }));
+        CHECK(chain.take().faults == 2);
+    }
 }
 
 TEST_CASE("Modes and levels are changed without a click", "[chain]")

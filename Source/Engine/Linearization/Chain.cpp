@@ -47,7 +47,9 @@ void Chain::process(const double* in, double* out, std::size_t n)
         for (std::size_t k = 0; k < count; ++k) {
             now_.fullScale += smoothing_ * (target_.fullScale - now_.fullScale);
             now_.trim += smoothing_ * (target_.trim - now_.trim);
-            block_[k] = in[k] * now_.fullScale;
+            block_[k] = std::isfinite(in[k]) ? in[k] * now_.fullScale : 0.0;
+            if (!std::isfinite(in[k]))
+                faults_.fetch_add(1, std::memory_order_relaxed);
             back[k] = now_.trim / now_.fullScale;
         }
         bend_.process(block_.data(), count, 1.0);
@@ -58,6 +60,13 @@ void Chain::process(const double* in, double* out, std::size_t n)
         out += count;
         n -= count;
     }
+}
+
+Chain::Meters Chain::take()
+{
+    const auto bend = bend_.engine().take();
+    const auto play = play_.engine().take();
+    return {bend, play, bend.faults + play.faults + faults_.load(std::memory_order_relaxed)};
 }
 
 } // namespace excursion

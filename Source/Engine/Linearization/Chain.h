@@ -7,6 +7,7 @@
 #include "Engine/Linearization/Stage.h"
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 
 namespace excursion {
@@ -21,7 +22,7 @@ struct ChainControls {
 
 /// One channel of the plugin: sample -> V -> Predistorter -> Speaker -> sample, with either of the two switched in as the mode says. What the
 /// speaker makes is heard at the level of a linear driver's plateau (see plateau()), so that it can be compared with the signal. The latency is
-/// that of both, whatever the mode. Audio thread and blocks: as Predistorter.
+/// that of both, whatever the mode. A sample that is not a finite number is silence in every mode. Audio thread and blocks: as Predistorter.
 class Chain {
 public:
     /// Throws Error, see requireRunnable.
@@ -35,8 +36,9 @@ public:
     struct Meters {
         Predistorter::Meters predistorter;
         Speaker::Meters speaker;
+        int faults = 0;   ///< of both, and samples that were not finite, since construction
     };
-    Meters take() { return {bend_.engine().take(), play_.engine().take()}; }   ///< from any one thread
+    Meters take();   ///< from any one thread
 
 private:
     Stage<Predistorter> bend_;
@@ -46,6 +48,7 @@ private:
         double fullScale = 1.0, trim = 1.0;
     } now_, target_;
     std::array<double, Stage<Speaker>::longestBlock> block_ {};
+    std::atomic<int> faults_ {0};
 };
 
 } // namespace excursion

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Plugin/Juce.h"
+
+namespace excursion::plugin {
+
+/// A bar against a limit, with the words that belong to it; it falls slowly and turns its colour when the limit is at work.
+class Meter : public juce::Component {
+public:
+    explicit Meter(juce::String title) : title_(std::move(title)) {}
+
+    /// @param share    of the limit, 1: as far as allowed
+    /// @param words    the value with its unit
+    /// @param limited  more was asked for than is allowed
+    void show(double share, const juce::String& words, bool limited);
+    void paint(juce::Graphics&) override;
+
+private:
+    juce::String title_, words_;
+    double share_ = 0.0;
+    int limited_ = 0;   ///< how many more times it is shown
+};
+
+} // namespace excursion::plugin

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Linearization/Crossfade.h"
+#include "Engine/Linearization/Peak.h"
+#include "Plugin/Juce.h"
+#include "Plugin/Parameters.h"
+#include "Plugin/State.h"
+
+#include <array>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace excursion::plugin {
+
+/// The plugin without its window. One Chain a channel plays; a thread of its own builds new chains when the model or the switches of
+/// the effects change, and frees the old ones. The audio thread sees parameters (atomics) and the hand-over, nothing else.
+class Processor : public juce::AudioProcessor {
+public:
+    static constexpr int oversampling = 2;
+    static constexpr double fadeTime = 0.05;   ///< s, from model to model
+
+    Processor();
+    ~Processor() override;
+
+    Parameters& parameters() { return parameters_; }
+
+    /// Any thread but the audio thread. Throws Error for a model that cannot be run; then the one before stays.
+    void setModel(const Model&);
+    Model model() const;
+
+    /// Since the last call, over all channels.
+    struct Meters {
+        double displacement = 0.0;         ///< m, of the predistorter's plan or of the modelled speaker
+        double displacementExcess = 0.0;   ///< see Predistorter::Meters
+        double voltage = 0.0;              ///< V, of the predistorter
+        double voltageExcess = 0.0;
+        int faults = 0;                    ///< of the chains that play now
+    };
+    Meters take();
+
+    void prepareToPlay(double sampleRate, int longestBlock) override;
+    void releaseResources() override {}
+    void reset() override;
+    bool isBusesLayoutSupported(const BusesLayout&) const override;
+    bool supportsDoublePrecisionProcessing() const override { return true; }
+    void processBlock(juce::AudioBuffer<float>& buffer, juce::MidiBuffer&) override { play(buffer, false); }
+    void processBlock(juce::AudioBuffer<double>& buffer, juce::MidiBuffer&) override { play(buffer, false); }
+    void processBlockBypassed(juce::AudioBuffer<float>& buffer, juce::MidiBuffer&) override { play(buffer, true); }
+    void processBlockBypassed(juce::AudioBuffer<double>& buffer, juce::MidiBuffer&) override { play(buffer, true); }
+
+    juce::AudioProcessorEditor* createEditor() override;
+    bool hasEditor() const override { return true; }
+    const juce::String getName() const override { return "Excursion"; }
+    bool acceptsMidi() const override { return false; }
+    bool producesMidi() const override { return false; }
+    double getTailLengthSeconds() const override { return 0.5; }
+    int getNumPrograms() override { return 1; }
+    int getCurrentProgram() override { return 0; }
+    void setCurrentProgram(int) override {}
+    const juce::String getProgramName(int) override { return {}; }
+    void changeProgramName(int, const juce::String&) override {}
+    void getStateInformation(juce::MemoryBlock&) override;
+    void setStateInformation(const void*, int) override;
+
+private:
+    template <class Sample>
+    void play(juce::AudioBuffer<Sample>&, bool bypassed);
+    void build();
+    void work(const std::stop_token&);
+    std::vector<std::unique_ptr<Chain>> chains(const Model&) const;
+
+    Parameters parameters_;
+    mutable std::mutex mutex_;   ///< of what follows; never locked on the audio thread
+    Model model_;
+    double sampleRate_ = 0.0;    ///< 0: not prepared
+    std::atomic<double> measuredDisplacement_ {0.0};
+    std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;   ///< changed only while no audio runs
+    std::array<double, 256> block_ {};
+    Peak displacement_, displacementExcess_, voltage_, voltageExcess_;
+    std::atomic<int> faults_ {0};
+    std::condition_variable_any wake_;
+    std::jthread worker_;
+};
+
+} // namespace excursion::plugin

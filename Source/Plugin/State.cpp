@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/State.h"
+
+#include "Engine/Document/JsonText.h"
+#include "Engine/Driver/ModelFile.h"
+#include "Engine/Error.h"
+
+#include <FactoryDrivers.h>
+#include <FactoryRecipes.h>
+
+#include <algorithm>
+
+namespace excursion::plugin {
+namespace {
+
+constexpr auto formatName = "excursion-plugin-state";
+constexpr int formatVersion = 1;
+
+nlohmann::json parsed(std::string_view text, const std::string& where)
+{
+    auto document = nlohmann::json::parse(text, nullptr, false);
+    if (!document.is_object())
+        throw Error(Error::Kind::input, "'" + where + "' is no JSON document: give one that Excursion has written.");
+    return document;
+}
+
+double resonance(const Model& model) { return model.baseParameter("K").value / model.baseParameter("m").value; }
+
+} // namespace
+
+std::string bytesOf(const State& state)
+{
+    return jsonText({{"format", formatName}, {"version", formatVersion}, {"recipe", toJson(state.recipe)}, {"model", toJson(state.model)}});
+}
+
+State stateFrom(std::string_view bytes)
+{
+    const std::string where = "the plugin's state";
+    const auto document = parsed(bytes, where);
+    const JsonField field(document, "", where);
+    field.requireFormat(formatName, formatVersion);
+    return {recipeFromJson(field.at("recipe")), modelFromJson(field.at("model"))};
+}
+
+Model modelFromText(std::string_view text, const std::string& where)
+{
+    const auto document = parsed(text, where);
+    return modelFromJson(document, where);
+}
+
+Recipe recipeFromText(std::string_view text, const std::string& where)
+{
+    const auto document = parsed(text, where);
+    return recipeFromJson(JsonField(document, "", where));
+}
+
+const std::vector<Factory>& factoryDrivers()
+{
+    static const auto list = [] {
+        std::vector<std::pair<double, Factory>> found;
+        for (int k = 0; k < FactoryDrivers::namedResourceListSize; ++k) {
+            int size = 0;
+            const char* data = FactoryDrivers::getNamedResource(FactoryDrivers::namedResourceList[k], size);
+            const std::string_view text(data, static_cast<std::size_t>(size));
+            const auto model = modelFromText(text, FactoryDrivers::namedResourceList[k]);
+            found.push_back({resonance(model), {model.name, text}});
+        }
+        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+        std::vector<Factory> sorted;
+        for (auto& [unused, factory] : found)
+            sorted.push_back(std::move(factory));
+        return sorted;
+    }();
+    return list;
+}
+
+const std::vector<Factory>& factoryRecipes()
+{
+    static const auto list = [] {
+        std::vector<Factory> found;
+        for (int k = 0; k < FactoryRecipes::namedResourceListSize; ++k) {
+            int size = 0;
+            const char* data = FactoryRecipes::getNamedResource(FactoryRecipes::namedResourceList[k], size);
+            const std::string_view text(data, static_cast<std::size_t>(size));
+            found.push_back({recipeFromText(text, FactoryRecipes::namedResourceList[k]).title, text});
+        }
+        return found;
+    }();
+    return list;
+}
+
+} // namespace excursion::plugin

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Linearization/Recipe.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace excursion::plugin {
+
+/// What a host keeps of the plugin, format "excursion-plugin-state", version 1: the recipe and the model itself, not a path to it.
+/// Same state, same bytes.
+struct State {
+    Recipe recipe;
+    Model model;
+};
+
+std::string bytesOf(const State&);
+/// Throws Error (input).
+State stateFrom(std::string_view bytes);
+
+/// A document that is built in.
+struct Factory {
+    std::string title;
+    std::string_view text;
+};
+const std::vector<Factory>& factoryDrivers();   ///< by resonance, the highest first
+const std::vector<Factory>& factoryRecipes();
+
+Model modelFromText(std::string_view text, const std::string& where);     ///< throws Error (input)
+Recipe recipeFromText(std::string_view text, const std::string& where);   ///< throws Error (input)
+
+} // namespace excursion::plugin

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/Editor.h"
+
+#include "Engine/Driver/ModelFile.h"
+
+#include <catch2/catch.hpp>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+using namespace excursion;
+using plugin::Editor;
+using plugin::Processor;
+
+TEST_CASE("The window is drawn, with a picture kept to look at", "[plugin]")
+{
+    Processor processor;
+    processor.prepareToPlay(48000.0, 512);
+    Editor editor(processor);
+    const auto picture = editor.createComponentSnapshot(editor.getLocalBounds());
+    REQUIRE(picture.getWidth() == editor.getWidth());
+    int colours = 0;   // something is drawn: not all of one colour
+    for (int x = 0; x < picture.getWidth(); x += 5)
+        for (int y = 0; y < picture.getHeight(); y += 5)
+            colours += picture.getPixelAt(x, y) != picture.getPixelAt(0, 0) ? 1 : 0;
+    CHECK(colours > 1000);
+    const juce::File file(juce::String(EXCURSION_SCREENSHOTS) + "/linearize.png");
+    file.getParentDirectory().createDirectory();
+    file.deleteFile();
+    juce::FileOutputStream stream(file);
+    CHECK(juce::PNGImageFormat().writeImageToStream(picture, stream));
+}
+
+TEST_CASE("A model is loaded from a file, and what is none is told and changes nothing", "[plugin]")
+{
+    const auto folder = std::filesystem::temp_directory_path() / "excursion plugin \u00e4";
+    std::filesystem::create_directories(folder);
+    Processor processor;
+    Editor editor(processor);
+    auto model = plugin::modelFromText(plugin::factoryDrivers().front().text, "a driver");
+    model.name = "of a file";
+    writeModel(model, folder / "model.json");
+    std::ofstream(folder / "broken.json") << "{\"format\": \"excursion-model\"";
+    editor.load(juce::File(folder.string()).getChildFile("model.json"));
+    CHECK(processor.model().name == "of a file");
+    CHECK(editor.status().contains("model.json"));
+    editor.load(juce::File(folder.string()).getChildFile("broken.json"));
+    CHECK(processor.model().name == "of a file");
+    CHECK(editor.status().contains("broken.json"));
+    model.baseParameter("Bl").value = 0.0;
+    writeModel(model, folder / "model.json");
+    editor.load(juce::File(folder.string()).getChildFile("model.json"));
+    CHECK(processor.model().baseParameter("Bl").value > 0.0);
+    CHECK(editor.status().contains("Bl"));
+    std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("The window opens and closes while audio runs", "[plugin]")
+{
+    Processor processor;
+    processor.prepareToPlay(48000.0, 128);
+    std::atomic<bool> done {false};
+    std::thread audio([&] {
+        juce::AudioBuffer<float> buffer(2, 128);
+        juce::MidiBuffer midi;
+        while (!done) {
+            buffer.clear();
+            processor.processBlock(buffer, midi);
+        }
+    });
+    for (int k = 0; k < 10; ++k) {
+        const std::unique_ptr<juce::AudioProcessorEditor> editor(processor.createEditor());
+        CHECK(editor->getWidth() > 0);
+        processor.editorBeingDeleted(editor.get());
+    }
+    done = true;
+    audio.join();
+}

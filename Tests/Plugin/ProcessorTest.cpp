@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/Processor.h"
+
+#include "Engine/Driver/Catalogue.h"
+
+#include <catch2/catch.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <thread>
+
+using namespace excursion;
+using plugin::Processor;
+
+namespace {
+
+/// Plays a signal through, on every channel, without its latency.
+std::vector<float> played(Processor& processor, const std::vector<float>& u, int block, int channels = 2)
+{
+    auto in = u;
+    in.resize(u.size() + static_cast<std::size_t>(processor.getLatencySamples()), 0.0f);
+    std::vector<float> out;
+    juce::MidiBuffer midi;
+    for (std::size_t n = 0; n < in.size();) {
+        const int count = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(block), in.size() - n));
+        juce::AudioBuffer<float> buffer(channels, count);
+        for (int c = 0; c < channels; ++c)
+            buffer.copyFrom(c, 0, in.data() + n, count);
+        processor.processBlock(buffer, midi);
+        out.insert(out.end(), buffer.getReadPointer(channels - 1), buffer.getReadPointer(channels - 1) + count);
+        n += static_cast<std::size_t>(count);
+    }
+    out.erase(out.begin(), out.begin() + processor.getLatencySamples());
+    return out;
+}
+
+std::vector<float> tone(double sampleRate, double seconds, double amplitude)
+{
+    std::vector<float> u(static_cast<std::size_t>(sampleRate * seconds));
+    for (std::size_t n = 0; n < u.size(); ++n) {
+        const double t = static_cast<double>(n) / sampleRate;
+        u[n] = static_cast<float>(amplitude * std::sin(2.0 * std::numbers::pi * 60.0 * t) * std::min(1.0, 20.0 * t));
+    }
+    return u;
+}
+
+double distance(const std::vector<float>& a, const std::vector<float>& b)
+{
+    double worst = 0.0;
+    for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n)
+        worst = std::max(worst, std::abs(static_cast<double>(a[n]) - static_cast<double>(b[n])));
+    return worst;
+}
+
+void setMode(Processor& processor, Mode mode) { processor.parameters().mode() = static_cast<int>(mode); }
+
+void layout(Processor& processor, int channels)
+{
+    const auto set = channels == 1 ? juce::AudioChannelSet::mono() : juce::AudioChannelSet::stereo();
+    juce::AudioProcessor::BusesLayout buses;
+    buses.inputBuses.add(set);
+    buses.outputBuses.add(set);
+    REQUIRE(processor.setBusesLayout(buses));
+}
+
+juce::MemoryBlock stateOf(Processor& processor)
+{
+    juce::MemoryBlock block;
+    processor.getStateInformation(block);
+    return block;
+}
+
+} // namespace
+
+TEST_CASE("Every mode does what the engine's chain does, at every rate, in mono and stereo", "[plugin]")
+{
+    for (const double rate : {44100.0, 48000.0, 96000.0})
+        for (const int channels : {1, 2})
+            for (const auto mode : modes) {
+                INFO(rate << " Hz, " << channels << " channels, " << name(mode));
+                Processor processor;
+                layout(processor, channels);
+                setMode(processor, mode);
+                processor.prepareToPlay(rate, 512);
+                const auto u = tone(rate, 0.15, 0.4);
+                const auto out = played(processor, u, 512, channels);
+                Chain chain(processor.model(), {rate, Processor::oversampling}, processor.parameters().controls(measuredDisplacement(processor.model())));
+                CHECK(chain.latency() == processor.getLatencySamples());
+                std::vector<double> expected(u.begin(), u.end());
+                expected.resize(u.size() + static_cast<std::size_t>(chain.latency()), 0.0);
+                chain.process(expected.data(), expected.data(), expected.size());
+                std::vector<float> rounded(expected.begin() + chain.latency(), expected.end());
+                CHECK(distance(out, rounded) < 1e-7);
+                if (mode == Mode::bypass)
+                    CHECK(distance(out, u) < 1e-7);
+            }
+}
+
+TEST_CASE("Blocks from 1 to 8192 samples, larger ones than announced included, give the same", "[plugin]")
+{
+    const auto u = tone(48000.0, 0.3, 0.4);
+    const auto play = [&u](int block) {
+        Processor processor;
+        setMode(processor, Mode::audition);
+        processor.prepareToPlay(48000.0, 64);
+        return played(processor, u, block);
+    };
+    const auto expected = play(64);
+    for (const int block : {1, 7, 500, 8192})
+        CHECK(play(block) == expected);
+}
+
+TEST_CASE("The host's bypass is the signal as it was, as late as ever", "[plugin]")
+{
+    Processor processor;
+    setMode(processor, Mode::speaker);
+    processor.prepareToPlay(48000.0, 512);
+    const auto u = tone(48000.0, 0.5, 0.4);
+    const auto latency = static_cast<std::size_t>(processor.getLatencySamples());
+    juce::MidiBuffer midi;
+    std::vector<float> out;
+    for (std::size_t n = 0; n + 480 <= u.size(); n += 480) {
+        juce::AudioBuffer<float> buffer(2, 480);
+        for (int c = 0; c < 2; ++c)
+            buffer.copyFrom(c, 0, u.data() + n, 480);
+        processor.processBlockBypassed(buffer, midi);
+        out.insert(out.end(), buffer.getReadPointer(0), buffer.getReadPointer(0) + 480);
+    }
+    double worst = 0.0;   // once the mode has been faded out
+    for (std::size_t n = 4800; n < out.size(); ++n)
+        worst = std::max(worst, std::abs(static_cast<double>(out[n] - u[n - latency])));
+    CHECK(worst < 1e-6);
+}
+
+TEST_CASE("The state is byte for byte the same when it is saved twice, and when it has been restored", "[plugin]")
+{
+    Processor processor;
+    const auto& drivers = plugin::factoryDrivers();
+    REQUIRE(drivers.size() >= 6);
+    REQUIRE(plugin::factoryRecipes().size() >= 3);
+    processor.setModel(plugin::modelFromText(drivers.front().text, "a driver"));
+    std::mt19937 random(4);
+    for (int round = 0; round < 20; ++round) {
+        for (auto* parameter : processor.getParameters())
+            parameter->setValueNotifyingHost(static_cast<float>(random() % 10001) / 10000.0f);
+        const auto state = stateOf(processor);
+        CHECK(stateOf(processor) == state);
+        Processor other;
+        other.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+        CHECK(stateOf(other) == state);
+        CHECK(other.model().name == drivers.front().title);
+        CHECK(other.parameters().recipe().mode == processor.parameters().recipe().mode);
+    }
+}
+
+TEST_CASE("A state that cannot be used changes nothing", "[plugin]")
+{
+    Processor processor;
+    processor.parameters().set(plugin::recipeFromText(plugin::factoryRecipes().front().text, "a recipe"));
+    const auto state = stateOf(processor);
+    auto text = state.toString().toStdString();
+    auto later = text;
+    later.replace(later.find("\"version\": 1"), 12, "\"version\": 9");
+    for (const auto& broken : {std::string(), std::string("{"), std::string("[]"), std::string(1000, '\0'), text.substr(0, text.size() / 2), later}) {
+        processor.setStateInformation(broken.data(), static_cast<int>(broken.size()));
+        CHECK(stateOf(processor) == state);
+    }
+    processor.setStateInformation(nullptr, 0);
+    CHECK(stateOf(processor) == state);
+}
+
+TEST_CASE("A recipe reaches the parameters and comes back as it was", "[plugin]")
+{
+    Processor processor;
+    for (const auto& factory : plugin::factoryRecipes()) {
+        auto recipe = plugin::recipeFromText(factory.text, factory.title);
+        recipe.off = {"creep"};
+        processor.parameters().set(recipe);
+        auto back = processor.parameters().recipe();
+        back.title = recipe.title;
+        back.words = recipe.words;
+        CHECK(toJson(back).dump() == toJson(recipe).dump());
+    }
+}
+
+TEST_CASE("An effect is switched off while audio runs, and a model replaced, without a step", "[plugin]")
+{
+    Processor processor;
+    setMode(processor, Mode::speaker);
+    processor.prepareToPlay(48000.0, 480);
+    const auto u = tone(48000.0, 4.0, 0.5);
+    juce::MidiBuffer midi;
+    std::vector<float> out;
+    for (std::size_t n = 0; n + 480 <= u.size(); n += 480) {
+        juce::AudioBuffer<float> buffer(2, 480);
+        for (int c = 0; c < 2; ++c)
+            buffer.copyFrom(c, 0, u.data() + n, 480);
+        processor.processBlock(buffer, midi);
+        out.insert(out.end(), buffer.getReadPointer(0), buffer.getReadPointer(0) + 480);
+        if (n == 48000)
+            *processor.parameters().effects()[1] = false;
+        if (n == 96000)
+            processor.setModel(plugin::modelFromText(plugin::factoryDrivers().back().text, "a driver"));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));   // the thread that builds has its time
+    }
+    double steepest = 0.0;
+    for (std::size_t n = 1; n < out.size(); ++n)
+        steepest = std::max(steepest, std::abs(static_cast<double>(out[n] - out[n - 1])));
+    CHECK(steepest < 0.05);
+    const auto period = [&](std::size_t from) { return std::vector<float>(out.begin() + static_cast<std::ptrdiff_t>(from), out.begin() + static_cast<std::ptrdiff_t>(from + 800)); };
+    CHECK(distance(period(47200), period(95200)) > 1e-4);    // the effect is gone
+    CHECK(distance(period(95200), period(180000)) > 1e-2);   // another driver
+}
+
+TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
+{
+    std::mt19937 random(11);
+    Processor processor;
+    double rate = 48000.0;
+    int channels = 2;
+    processor.prepareToPlay(rate, 256);
+    juce::MidiBuffer midi;
+    auto kept = stateOf(processor);
+    bool finite = true;
+    for (int operation = 0; operation < 2000; ++operation) {
+        switch (random() % 12) {
+        case 0:
+            rate = std::array {44100.0, 48000.0, 96000.0}[random() % 3];
+            processor.prepareToPlay(rate, 256);
+            break;
+        case 1:
+            kept = stateOf(processor);
+            break;
+        case 2:
+            processor.setStateInformation(kept.getData(), static_cast<int>(kept.getSize()));
+            break;
+        case 3: {
+            const auto& drivers = plugin::factoryDrivers();
+            processor.setModel(plugin::modelFromText(drivers[random() % drivers.size()].text, "a driver"));
+            break;
+        }
+        case 4:
+        case 5: {
+            auto& all = processor.getParameters();
+            all[static_cast<int>(random() % static_cast<unsigned>(all.size()))]->setValueNotifyingHost(static_cast<float>(random() % 1001) / 1000.0f);
+            break;
+        }
+        case 6:
+            processor.reset();
+            break;
+        default: {
+            juce::AudioBuffer<float> buffer(channels, static_cast<int>(random() % 5 == 0 ? random() % 3000 : random() % 200));
+            for (int c = 0; c < channels; ++c)
+                for (int n = 0; n < buffer.getNumSamples(); ++n)
+                    buffer.setSample(c, n, static_cast<float>(random() % 2001) / 1000.0f - 1.0f);
+            if (random() % 20 == 0 && buffer.getNumSamples() > 0)
+                buffer.setSample(0, 0, std::numeric_limits<float>::quiet_NaN());
+            random() % 10 == 0 ? processor.processBlockBypassed(buffer, midi) : processor.processBlock(buffer, midi);
+            for (int c = 0; c < channels; ++c)
+                for (int n = 0; n < buffer.getNumSamples(); ++n)
+                    finite = finite && std::isfinite(buffer.getSample(c, n));
+        }
+        }
+    }
+    CHECK(finite);
+}
