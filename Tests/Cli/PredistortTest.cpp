@@ -27,7 +27,7 @@ std::string bentModel(const Scratch& scratch)
                   {"parameters", {parameter("Re", "ohm", 3.3), parameter("Le", "H", 266e-6), parameter("Bl", "N/A", 4.95),
                                   parameter("m", "kg", 0.01435), parameter("Rms", "N s/m", 0.786), parameter("K", "N/m", 1852.0)}}}},
         {"effects", {{{"id", "stiffness"},
-                      {"extent", {{"displacement", 4e-3}, {"velocity", 2.0}, {"current", 10.0}, {"lowFrequency", 15.0}, {"highFrequency", 8000.0}, {"degree", 2}}},
+                      {"extent", {{"displacement", 4e-3}, {"velocity", 2.0}, {"current", 10.0}, {"lowFrequency", 15.0}, {"highFrequency", 8000.0}, {"degree", 2}, {"scale", 1852.0}}},
                       {"parameters", {parameter("c1", "N/m", 0.0), parameter("c2", "N/m", 550.0)}}}}},
         {"path", {{"parameters", {parameter("Sd", "m^2", 0.0132), parameter("tau", "s", 0.0)}}, {"microphoneDistance", 1.0}}},
         {"covariance", nullptr}, {"laws", nlohmann::json::array()}};
