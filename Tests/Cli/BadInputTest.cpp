@@ -42,6 +42,7 @@ void takeRefused(int code, const std::string& take, const Scratch& scratch, cons
     refusedWith(code, {"check", take}, scratch, named);
     refusedWith(code, {"bla", take}, scratch, named);
     refusedWith(code, {"identify", take, "--order", "3", "--out", out}, scratch, named);
+    refusedWith(code, {"pnlss", take, "--order", "2", "--out", out}, scratch, named);
     refusedWith(code, {"import", take, "--out", folder}, scratch, named);
     refusedWith(code, {"fit", take, "--out", out, "--json", (scratch / "said.json").string()}, scratch, named);
     refusedWith(code, {"compare", take, "--model", model}, scratch, named);

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/Monomials.h"
+
+#include "Engine/Error.h"
+
+namespace excursion {
+namespace {
+
+constexpr std::size_t most = 1'000'000;
+
+/// Appends all ways to spread `degree` over the variables from `from` on, the first variable's power descending.
+void spread(std::vector<int>& exponents, std::size_t from, int degree, std::vector<std::vector<int>>& rows)
+{
+    if (from + 1 == exponents.size()) {
+        exponents[from] = degree;
+        rows.push_back(exponents);
+        if (rows.size() > most)
+            throw Error(Error::Kind::usage, "More than a million monomials; lower the degree or the order of the model.");
+        return;
+    }
+    for (int power = degree; power >= 0; --power) {
+        exponents[from] = power;
+        spread(exponents, from + 1, degree - power, rows);
+    }
+    exponents[from] = 0;
+}
+
+} // namespace
+
+Exponents monomials(int variables, int lowest, int highest)
+{
+    if (variables < 1 || lowest < 1 || highest < lowest || highest > 20)
+        throw Error(Error::Kind::usage, "Monomials need at least one variable and degrees that ascend from 1 to at most 20.");
+    std::vector<std::vector<int>> rows;
+    std::vector<int> exponents(static_cast<std::size_t>(variables), 0);
+    for (int degree = lowest; degree <= highest; ++degree)
+        spread(exponents, 0, degree, rows);
+    Exponents result(static_cast<Eigen::Index>(rows.size()), variables);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        result.row(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::RowVectorXi>(rows[k].data(), variables);
+    return result;
+}
+
+std::string_view name(TermMask mask)
+{
+    switch (mask) {
+    case TermMask::full: return "full";
+    case TermMask::statesOnly: return "states-only";
+    case TermMask::noCrossProducts: return "no-cross-products";
+    case TermMask::diagonal: return "diagonal";
+    }
+    return "";
+}
+
+std::vector<TermMask> termMasks() { return {TermMask::full, TermMask::statesOnly, TermMask::noCrossProducts, TermMask::diagonal}; }
+
+Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> allowed(TermMask mask, const Exponents& exponents, int states, int outputs)
+{
+    Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> result(states + outputs, exponents.rows());
+    for (Eigen::Index k = 0; k < exponents.rows(); ++k) {
+        const bool withInput = exponents.row(k).tail(exponents.cols() - states).sum() > 0;
+        const bool pure = (exponents.row(k).array() > 0).count() == 1;
+        for (int row = 0; row < states + outputs; ++row)
+            switch (mask) {
+            case TermMask::full: result(row, k) = true; break;
+            case TermMask::statesOnly: result(row, k) = !withInput; break;
+            case TermMask::noCrossProducts: result(row, k) = pure; break;
+            case TermMask::diagonal: result(row, k) = pure && !withInput && (row >= states || exponents(k, row) > 0); break;
+            }
+    }
+    return result;
+}
+
+} // namespace excursion

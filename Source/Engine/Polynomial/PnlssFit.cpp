@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/PnlssFit.h"
+
+#include "Engine/Error.h"
+#include "Engine/Linear/TallQr.h"
+#include "Engine/Polynomial/Recursion.h"
+#include "Engine/Signal/Fft.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace excursion {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double boldness = 100.0;   // by how much the damping falls with every step that is taken
+
+/// The gain L of the stationary Kalman filter x(t+1|t) of a linear model, process noise on all states in the proportion of their
+/// movement: by iterating Riccati's equation, which converges for an unstable A as well.
+MatrixXd kalmanGain(const StateSpace& model, const VectorXd& movement, const VectorXd& outputPower, double ratio)
+{
+    const auto n = model.order();
+    const MatrixXd Q = movement.cwiseAbs2().asDiagonal();
+    const MatrixXd R = (ratio * outputPower).asDiagonal();
+    MatrixXd P = Q;
+    MatrixXd L = MatrixXd::Zero(n, model.outputs());
+    for (int k = 0; k < 500; ++k) {
+        const MatrixXd S = model.C * P * model.C.transpose() + R;
+        L = model.A * P * model.C.transpose() * S.inverse();
+        P = model.A * P * model.A.transpose() - L * S * L.transpose() + Q;
+        P = (0.5 * (P + P.transpose())).eval();
+    }
+    return L;
+}
+
+/// The record's errors, weighted; and how the fit sees them.
+class Problem {
+public:
+    Problem(const std::vector<PnlssRecord>& records, const PnlssFitOptions& options, const Pnlss& structure)
+        : records_(records), options_(options), recursion_(structure, options.linearFree), n_(structure.linear.order())
+    {
+        for (const auto& record : records) {
+            power_ += weighted(record.output.bottomRows(record.output.rows() - record.skip)).squaredNorm();
+        }
+        states_.resize(records.size());
+        outputs_.resize(records.size());
+    }
+
+    Index parameters() const { return recursion_.parameters() + (options_.estimateInitialStates ? n_ * static_cast<Index>(records_.size()) : 0); }
+
+    VectorXd valuesOf(const Pnlss& model) const
+    {
+        VectorXd values = VectorXd::Zero(parameters());
+        values.head(recursion_.parameters()) = recursion_.valuesOf(model);
+        return values;
+    }
+
+    Pnlss modelAt(const Pnlss& structure, const VectorXd& values) const
+    {
+        auto model = structure;
+        recursion_.setValues(model, values.head(recursion_.parameters()));
+        return model;
+    }
+
+    VectorXd initialState(const VectorXd& values, std::size_t record) const
+    {
+        if (!options_.estimateInitialStates)
+            return VectorXd::Zero(n_);
+        return values.segment(recursion_.parameters() + n_ * static_cast<Index>(record), n_);
+    }
+
+    /// States may not go further than this: far beyond what the start needs.
+    double bound = infinity;
+    MatrixXd gain;   ///< empty: not guided
+
+    /// |weighted error|^2 over |weighted output|^2; infinite when the model runs away.
+    double cost(const Pnlss& model, const VectorXd& values)
+    {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < records_.size(); ++k) {
+            if (!run(model, values, k))
+                return infinity;
+            sum += weighted(error(k)).squaredNorm();
+        }
+        return std::isfinite(sum) ? sum / power_ : infinity;
+    }
+
+    /// The triangular factor of [J, error], states and outputs being those of the last cost() at the same values.
+    MatrixXd factor(const Pnlss& model)
+    {
+        const auto P = recursion_.parameters(), all = parameters();
+        TallQr qr(all + 1);
+        for (std::size_t k = 0; k < records_.size(); ++k) {
+            const auto& record = records_[k];
+            const MatrixXd rest = error(k);
+            const auto guide = guideOf(record);
+            const bool spectral = options_.lineWeights.size() != 0;
+            std::vector<MatrixXd> whole;   // for weights along the spectrum the record's Jacobian has to stand as a whole
+            if (spectral)
+                whole.assign(static_cast<std::size_t>(record.output.cols()), MatrixXd::Zero(rest.rows(), all + 1));
+            recursion_.differentiate(
+                model, record.input, states_[k],
+                [&](Index first, std::vector<MatrixXd>& derivatives) {
+                    for (Index o = 0; o < record.output.cols(); ++o) {
+                        auto& block = derivatives[static_cast<std::size_t>(o)];
+                        const Index drop = std::clamp<Index>(record.skip - first, 0, block.rows());
+                        const Index rows = block.rows() - drop;
+                        if (rows == 0)
+                            continue;
+                        MatrixXd part = MatrixXd::Zero(rows, all + 1);
+                        part.leftCols(P) = block.block(drop, 0, rows, P);
+                        if (options_.estimateInitialStates)
+                            part.middleCols(P + n_ * static_cast<Index>(k), n_) = block.block(drop, P, rows, n_);
+                        const Index at = first + drop - record.skip;
+                        part.col(all) = rest.col(o).segment(at, rows);
+                        if (spectral)
+                            whole[static_cast<std::size_t>(o)].middleRows(at, rows) = part;
+                        else
+                            qr.fold(part);
+                    }
+                },
+                guide ? &*guide : nullptr);
+            for (const auto& part : whole) {
+                MatrixXd filtered = weighted(part);
+                qr.fold(filtered);
+            }
+        }
+        return qr.R();
+    }
+
+    /// How far the states of the last cost() went, rms of each.
+    VectorXd movement() const
+    {
+        VectorXd sum = VectorXd::Zero(n_);
+        double count = 0.0;
+        for (const auto& states : states_) {
+            sum += states.rowwise().squaredNorm();
+            count += static_cast<double>(states.cols());
+        }
+        return (sum / count).cwiseSqrt();
+    }
+
+    VectorXd outputPower() const
+    {
+        VectorXd sum = VectorXd::Zero(records_.front().output.cols());
+        for (const auto& record : records_)
+            sum += record.output.colwise().squaredNorm().transpose() / static_cast<double>(record.output.rows());
+        return sum / static_cast<double>(records_.size());
+    }
+
+private:
+    std::optional<Recursion::Guide> guideOf(const PnlssRecord& record) const
+    {
+        if (gain.size() == 0)
+            return std::nullopt;
+        return Recursion::Guide {gain, &record.output};
+    }
+
+    bool run(const Pnlss& model, const VectorXd& values, std::size_t k)
+    {
+        const auto guide = guideOf(records_[k]);
+        return recursion_.run(model, records_[k].input, initialState(values, k), bound, states_[k], outputs_[k], guide ? &*guide : nullptr);
+    }
+
+    MatrixXd error(std::size_t k) const
+    {
+        const auto rows = records_[k].output.rows() - records_[k].skip;
+        return records_[k].output.bottomRows(rows) - outputs_[k].bottomRows(rows);
+    }
+
+    /// Columns through the weights of the spectrum; their sum of squares is the weighted power (Parseval).
+    MatrixXd weighted(const MatrixXd& columns) const
+    {
+        if (options_.lineWeights.size() == 0)
+            return columns;
+        const auto N = columns.rows();
+        MatrixXd result(N, columns.cols());
+        for (Index c = 0; c < columns.cols(); ++c) {
+            auto spectrum = fft(std::span<const double>(columns.col(c).data(), static_cast<std::size_t>(N)));
+            for (std::size_t line = 0; line < spectrum.size(); ++line)
+                spectrum[line] *= options_.lineWeights[static_cast<Index>(line)];
+            const auto back = inverseFft(spectrum, static_cast<std::size_t>(N));
+            result.col(c) = Eigen::Map<const VectorXd>(back.data(), N);
+        }
+        return result;
+    }
+
+    const std::vector<PnlssRecord>& records_;
+    const PnlssFitOptions& options_;
+    Recursion recursion_;
+    Index n_;
+    double power_ = 0.0;
+    std::vector<MatrixXd> states_, outputs_;
+};
+
+void require(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options)
+{
+    std::string reason;
+    if (!start.isValid(&reason) || !options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
+    if (estimation.empty())
+        throw Error(Error::Kind::data, "The model cannot be fitted: there is no record to fit it to.");
+    for (const auto* records : {&estimation, &validation})
+        for (const auto& record : *records) {
+            if (record.input.cols() != start.linear.inputs() || record.output.cols() != start.linear.outputs()
+                || record.input.rows() != record.output.rows() || record.skip < 0 || record.skip >= record.input.rows())
+                throw Error(Error::Kind::data, "A record does not fit the model: its inputs, outputs or length are others.");
+            if (!record.input.allFinite() || !record.output.allFinite())
+                throw Error(Error::Kind::data, "A record holds a sample that is not finite.");
+            if (records == &estimation && options.lineWeights.size() != 0
+                && (!record.periodic || (record.input.rows() - record.skip) / 2 + 1 != options.lineWeights.size()))
+                throw Error(Error::Kind::data, "Weights of the spectrum need periodic records, and as many numbers as a record has lines.");
+        }
+}
+
+} // namespace
+
+bool PnlssFitOptions::isValid(std::string* reason) const
+{
+    const auto refuse = [reason](const char* sentence) {
+        if (reason)
+            *reason = sentence;
+        return false;
+    };
+    if (maximumIterations < 1)
+        return refuse("a fit needs at least one iteration");
+    if (!(costTolerance > 0.0 && costTolerance < 1.0) || !(rankTolerance > 0.0 && rankTolerance < 1.0))
+        return refuse("tolerances must lie between 0 and 1");
+    for (const double g : guideGains)
+        if (!(g > 0.0 && g <= 1.0))
+            return refuse("the gains of a guided start must lie above 0 and not above 1");
+    if (lineWeights.size() != 0 && (!lineWeights.allFinite() || lineWeights.minCoeff() < 0.0 || lineWeights.maxCoeff() == 0.0))
+        return refuse("weights of the spectrum must be at least 0, and not all 0");
+    return true;
+}
+
+PnlssRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index before)
+{
+    PnlssRecord record;
+    const auto N = input.rows();
+    record.skip = before;
+    record.periodic = true;
+    record.input.resize(N + before, input.cols());
+    record.output.resize(N + before, output.cols());
+    for (Index t = 0; t < N + before; ++t) {
+        const Index from = ((t - before) % N + N) % N;
+        record.input.row(t) = input.row(from);
+        record.output.row(t) = output.row(from);
+    }
+    return record;
+}
+
+double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& records, const std::vector<VectorXd>& initialStates)
+{
+    const Recursion recursion(model, false);
+    double error = 0.0, power = 0.0;
+    MatrixXd states, outputs;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+        const auto& record = records[k];
+        const VectorXd initial = k < initialStates.size() ? initialStates[k] : VectorXd::Zero(model.linear.order());
+        if (!recursion.run(model, record.input, initial, 1e100, states, outputs))
+            return infinity;
+        const auto rows = record.output.rows() - record.skip;
+        error += (record.output.bottomRows(rows) - outputs.bottomRows(rows)).squaredNorm();
+        power += record.output.bottomRows(rows).squaredNorm();
+    }
+    return std::isfinite(error) ? 10.0 * std::log10(std::max(error / power, 1e-40)) : infinity;
+}
+
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+                  const PnlssFitOptions& options, const Progress& progress)
+{
+    require(start, estimation, validation, options);
+    Problem problem(estimation, options, start);
+    VectorXd values = problem.valuesOf(start);
+    PnlssFit result;
+    result.model = start;
+    result.reason = "the model runs away at its start, guided or not";
+    result.estimationDb = result.validationDb = infinity;
+    double bestJudged = infinity;
+
+    auto gains = options.guideGains;
+    gains.push_back(0.0);
+    int left = options.maximumIterations;
+    for (std::size_t stage = 0; stage < gains.size(); ++stage) {
+        auto model = problem.modelAt(start, values);
+        problem.bound = 1e12;
+        problem.gain.resize(0, 0);
+        if (gains[stage] > 0.0) {
+            // The filter is made for states of the size that the linear model moves at the measured input.
+            auto linear = model;
+            linear.E.setZero();
+            linear.F.setZero();
+            VectorXd movement = VectorXd::Ones(start.linear.order());
+            if (std::isfinite(problem.cost(linear, values)))
+                movement = problem.movement();
+            problem.gain = gains[stage] * kalmanGain(model.linear, 0.1 * movement, problem.outputPower(), 1e-3);
+        }
+        double cost = problem.cost(model, values);
+        if (!std::isfinite(cost))
+            continue;
+        problem.bound = 1e3 * std::max(problem.movement().maxCoeff(), 1e-300);
+        double damping = 1.0;
+        int still = 0;
+        const bool last = stage + 1 == gains.size();
+        // A guided stage only has to lead to the next.
+        const int share = last ? left : std::min(left, std::max(3, options.maximumIterations / (4 * static_cast<int>(gains.size()))));
+        int used = 0;
+        result.reason = "the largest number of iterations was reached";
+        const auto judge = [&] {
+            if (!last)
+                return;
+            result.history.push_back(10.0 * std::log10(std::max(cost, 1e-40)));
+            std::vector<VectorXd> initial;
+            if (options.estimateInitialStates)
+                for (std::size_t k = 0; k < estimation.size(); ++k)
+                    initial.push_back(problem.initialState(values, k));
+            const double validationDb = validation.empty() ? std::numeric_limits<double>::quiet_NaN() : relativeErrorDb(model, validation);
+            const double judged = validation.empty() ? cost : validationDb;
+            if (judged < bestJudged) {
+                bestJudged = judged;
+                result.model = model;
+                result.initialStates = std::move(initial);
+                result.validationDb = validationDb;
+                result.estimationDb = relativeErrorDb(model, estimation, result.initialStates);
+            }
+        };
+        judge();
+        while (used < share) {
+            progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "fitting the polynomial model");
+            ++used;
+            ++result.iterations;
+            problem.cost(model, values);   // leaves the states of the present model
+            const MatrixXd R = problem.factor(model);
+            const auto P = R.cols() - 1;
+            const VectorXd scale = R.leftCols(P).colwise().norm().transpose().unaryExpr(
+                [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+            const Eigen::BDCSVD<MatrixXd> svd(R.topLeftCorner(P, P) * scale.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+            const VectorXd s = svd.singularValues();
+            const VectorXd q = svd.matrixU().transpose() * R.col(P).head(P);
+            const auto stepAt = [&](double lambda) -> VectorXd {
+                VectorXd y = VectorXd::Zero(P);
+                for (Index k = 0; k < P; ++k)
+                    if (s[k] > options.rankTolerance * s[0])
+                        y[k] = q[k] * s[k] / (s[k] * s[k] + lambda * s[0] * s[0]);
+                return scale.cwiseProduct(svd.matrixV() * y);
+            };
+            // Boldly towards Gauss-Newton: weak directions of the Jacobian have to move early, or the search creeps along curved valleys.
+            double trialCost = infinity, lambda = damping / boldness;
+            VectorXd trialValues;
+            for (int attempt = 0; attempt < 32 && !(trialCost < cost) && lambda < 1e6; ++attempt, lambda *= 10.0) {
+                trialValues = values + stepAt(lambda);
+                trialCost = trialValues.allFinite() ? problem.cost(problem.modelAt(start, trialValues), trialValues) : infinity;
+                damping = std::max(lambda, 1e-30);
+            }
+            if (!(trialCost < cost)) {
+                result.reason = "no step lowers the error any further";
+                result.converged = last;
+                break;
+            }
+            const double gain = (cost - trialCost) / cost;
+            values = trialValues;
+            cost = trialCost;
+            model = problem.modelAt(start, values);
+            judge();
+            still = gain < options.costTolerance ? still + 1 : 0;
+            if (cost < 1e-31) {
+                result.reason = "the error is no more than rounding";
+                result.converged = last;
+                break;
+            }
+            if (still >= 3) {
+                result.reason = "the error no longer falls";
+                result.converged = last;
+                break;
+            }
+        }
+        left = std::max(1, left - used);
+    }
+    result.stable = isStable(result.model.linear) && std::isfinite(result.estimationDb);
+    return result;
+}
+
+} // namespace excursion

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Polynomial/Pnlss.h"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <vector>
+
+namespace excursion {
+
+/// The recursion of a PNLSS model and of its derivatives, compiled once for a structure and run often: by every step of a fit.
+///
+/// The sensitivities X = dx/dtheta obey a linear recursion that varies in time (seed 4.22):
+///     X(t+1) = M(t) X(t) + e_i r_j(t),  dy/dtheta = G(t) X(t) [+ e_o r_j(t)],   M = A + E dp/dx,  G = C + F dp/dx
+/// where a parameter is the coefficient of regressor r_j, r = (x, u, p), in row i of the state or row o of the output equation. M and G are computed
+/// for a block of time steps at once, vectorized along time, from products that monomials share. Then a few parameters at a time, side by side,
+/// run through the block with X in registers.
+class Recursion {
+public:
+    /// @param linearFree  A, B, C, D are parameters too, not E and F alone
+    Recursion(const Pnlss& structure, bool linearFree);
+
+    Eigen::Index parameters() const { return static_cast<Eigen::Index>(columns_.size()); }
+    Eigen::VectorXd valuesOf(const Pnlss&) const;
+    void setValues(Pnlss&, const Eigen::VectorXd&) const;
+
+    /// Follows a measured output while it runs: x(t+1) gets L (y(t) - yhat(t)) added, as an observer does. Without: a pure simulation.
+    struct Guide {
+        Eigen::MatrixXd gain;           ///< L, n x p
+        const Eigen::MatrixXd* output;  ///< measured, N x p
+    };
+
+    /// @param states   becomes n x (N + 1), @param outputs N x p
+    /// @return false where the states leave `bound` (in the units of the states), or are not finite
+    bool run(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::VectorXd& initial, double bound, Eigen::MatrixXd& states,
+             Eigen::MatrixXd& outputs, const Guide* guide = nullptr) const;
+
+    /// Takes the derivatives of a stretch of T outputs: one matrix an output, T x (parameters + n), the last n columns those by the initial state.
+    using Taker = std::function<void(Eigen::Index first, std::vector<Eigen::MatrixXd>& derivatives)>;
+
+    /// The exact Jacobian along a run, block by block in ascending time; memory does not grow with the record.
+    void differentiate(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states, const Taker&, const Guide* guide = nullptr) const;
+
+private:
+    struct Column {
+        Eigen::Index row;         // states first, then outputs
+        Eigen::Index regressor;   // x, u, monomials
+    };
+    struct Product {
+        Eigen::Index left, right;   // nodes
+    };
+    struct Slope {   // d(monomial)/d(state) = factor * node
+        Eigen::Index term, state, node;
+        double factor;
+    };
+    struct Group {   // columns of one row, side by side
+        Eigen::Index row, first, count;
+    };
+
+    Eigen::Index node(const Eigen::RowVectorXi& exponents);
+
+    Eigen::Index n_, m_, p_;
+    std::vector<Column> columns_;
+    std::vector<Group> groups_;
+    std::vector<Eigen::RowVectorXi> nodes_;   // 1, z_1 .. z_{n+m}, then products
+    std::vector<Product> products_;           // of nodes 1 + n + m and on
+    std::vector<Eigen::Index> termNode_;
+    std::vector<Slope> slopes_;
+};
+
+} // namespace excursion

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polynomial state-space models from the command line.
+#include "Cli/Chain.h"
+
+using namespace excursion::test;
+
+TEST_CASE("pnlss explains more than its linear start, keeps the model, and judges and plays it again")
+{
+    const Scratch scratch;
+    const auto& chain = Chain::get();
+    const auto model = (scratch / "pnlss.json").string(), played = (scratch / "played").string();
+    const auto told = runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--iterations", "8", "--out", model, "--json"});
+    INFO(told.err);
+    REQUIRE(told.code == 0);
+    const auto document = nlohmann::json::parse(told.out);
+    CHECK(document.at("format") == "excursion-pnlss-fit");
+    CHECK(document.at("stable") == true);
+    const auto& history = document.at("history");
+    CHECK(history.back().get<double>() < history.front().get<double>() - 10.0);
+    CHECK(nlohmann::json::parse(bytesOf(model)) == document.at("model"));
+
+    const auto judged = runProgram(scratch.folder(), {"pnlss", chain.take(), "--model", model, "--played", played, "--json"});
+    REQUIRE(judged.code == 0);
+    CHECK(nlohmann::json::parse(judged.out).at("estimationDb").get<double>() == Approx(document.at("estimationDb").get<double>()).epsilon(1e-9));
+    CHECK(nlohmann::json::parse(judged.out).at("validationDb").get<double>() == Approx(document.at("validationDb").get<double>()).epsilon(1e-9));
+    CHECK(runProgram(scratch.folder(), {"check", played}).code <= 1);   // a take that can be read
+
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take()}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--mask", "odd"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--level", "7"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--model", chain.model()}).code == 3);
+}

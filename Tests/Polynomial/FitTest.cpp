@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fits of models that are known, and of fixed problems on which other programs have been measured.
+#include "Engine/Linear/Identify.h"
+#include "Engine/Linear/Simulation.h"
+#include "Engine/Measurement/ImportCsv.h"
+#include "Engine/Measurement/Welch.h"
+#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Signal/Fft.h"
+#include "Linear/Problem.h"
+
+using namespace excursion;
+using namespace excursion::test;
+using Eigen::Index;
+
+namespace {
+
+Eigen::MatrixXd matrixOf(const std::vector<std::vector<double>>& rows)
+{
+    Eigen::MatrixXd M(static_cast<Index>(rows.size()), rows.empty() ? 0 : static_cast<Index>(rows[0].size()));
+    for (Index r = 0; r < M.rows(); ++r)
+        for (Index c = 0; c < M.cols(); ++c)
+            M(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+    return M;
+}
+
+/// The mean of Y/U over records of one length, on the lines that all inputs excite.
+FrequencyData meanResponse(const std::vector<Eigen::VectorXd>& u, const std::vector<Eigen::VectorXd>& y, double rate)
+{
+    const auto N = u[0].size();
+    const auto spectrum = [N](const Eigen::VectorXd& x) { return fft(std::span<const double>(x.data(), static_cast<std::size_t>(N))); };
+    std::vector<std::complex<double>> mean(static_cast<std::size_t>(N / 2), 0.0);
+    std::vector<bool> excited(mean.size(), true);
+    for (std::size_t r = 0; r < u.size(); ++r) {
+        const auto U = spectrum(u[r]), Y = spectrum(y[r]);
+        double largest = 0.0;
+        for (const auto& value : U)
+            largest = std::max(largest, std::abs(value));
+        for (std::size_t k = 1; k < mean.size(); ++k) {
+            excited[k] = excited[k] && std::abs(U[k]) > 1e-3 * largest;
+            mean[k] += Y[k] / U[k] / static_cast<double>(u.size());
+        }
+    }
+    Frf frf;
+    for (std::size_t k = 1; k < mean.size(); ++k)
+        if (excited[k]) {
+            frf.frequency.push_back(static_cast<double>(k) * rate / static_cast<double>(N));
+            frf.value.push_back(mean[k]);
+        }
+    return frequencyDataOf(frf);
+}
+
+StateSpace linearStart(const FrequencyData& data, int order, double rate)
+{
+    IdentifyOptions options;
+    options.order = order;
+    options.sampleRate = rate;
+    return identify(data, options).model;
+}
+
+} // namespace
+
+TEST_CASE("A fit from a linear start finds a nonlinear model, with transients estimated or waited for, weighted or not")
+{
+    // A resonance with a hardening spring, and noise at -70 dB on its output
+    StateSpace linear;
+    linear.sampleRate = 1000.0;
+    linear.A.resize(2, 2);
+    linear.A << 0.95, 0.25, -0.25, 0.95;
+    linear.A *= 0.97;
+    linear.B = Eigen::Vector2d(0.1, 0.3);
+    linear.C = Eigen::RowVector2d(1.0, 0.2);
+    linear.D = Eigen::MatrixXd::Zero(1, 1);
+    auto truth = withTerms(linear, 3, TermMask::statesOnly);
+    for (Index k = 0; k < truth.terms(); ++k)
+        if (truth.exponents(k, 0) == 3)
+            truth.E(1, k) = -0.05;
+    Normal normal(4);
+    const auto period = [&](double noise) {
+        Eigen::MatrixXd u(1024, 1);
+        for (auto& x : u.reshaped())
+            x = 0.3 * normal();
+        Eigen::MatrixXd y = simulate(truth, u.replicate(4, 1)).bottomRows(1024);
+        const double size = noise * y.norm() / 32.0;
+        for (auto& x : y.reshaped())
+            x += size * normal();
+        return std::pair {u, y};
+    };
+    const double level = std::pow(10.0, -70.0 / 20.0);
+    const auto [u1, y1] = period(level);
+    const auto [u2, y2] = period(level);
+    const auto [u3, y3] = period(0.0);
+    const std::vector validation {periodicRecord(u3, y3, 1024)};
+    const auto start = withTerms(linearStart(meanResponse({u1.col(0), u2.col(0)}, {y1.col(0), y2.col(0)}, 1000.0), 2, 1000.0), 3, TermMask::statesOnly);
+
+    const auto waited = fitPnlss(start, {periodicRecord(u1, y1, 1024), periodicRecord(u2, y2, 1024)}, validation);
+    CHECK(relativeErrorDb(start, validation) > -40.0);   // the linear start is far from it
+    CHECK(waited.estimationDb == Approx(-70.0).margin(0.7));
+    CHECK(waited.validationDb < -78.0);
+    CHECK(waited.stable);
+    CHECK(waited.history.front() > waited.history.back());
+
+    PnlssFitOptions estimating;
+    estimating.estimateInitialStates = true;
+    const auto estimated = fitPnlss(start, {{u1, y1, 0, true}, {u2, y2, 0, true}}, validation, estimating);
+    CHECK(estimated.initialStates.size() == 2);
+    CHECK(estimated.estimationDb == Approx(-70.0).margin(0.7));
+    CHECK(estimated.validationDb < -78.0);
+
+    PnlssFitOptions weighting;
+    weighting.lineWeights = Eigen::VectorXd::Ones(513);
+    const std::vector records {periodicRecord(u1, y1, 1024), periodicRecord(u2, y2, 1024)};
+    const auto weighted = fitPnlss(start, records, validation, weighting);
+    CHECK(weighted.validationDb == Approx(waited.validationDb).margin(0.05));   // all weights equal: the same problem, by Parseval
+    weighting.lineWeights.tail(300).setZero();
+    const auto low = fitPnlss(start, records, validation, weighting);
+    CHECK(low.validationDb < -60.0);
+    // On the lines that count it is the better one.
+    const auto counted = [&](const Pnlss& model) {
+        double sum = 0.0;
+        for (const auto& record : records) {
+            const Eigen::VectorXd error = (record.output - simulate(model, record.input)).bottomRows(1024);
+            const auto spectrum = fft(std::span<const double>(error.data(), 1024));
+            for (std::size_t k = 0; k < 213; ++k)
+                sum += (k == 0 ? 0.5 : 1.0) * std::norm(spectrum[k]);
+        }
+        return sum;
+    };
+    CHECK(counted(low.model) < counted(waited.model));
+
+    // A, B, C, D kept: with a linear part that is only nearly right the error stays up.
+    PnlssFitOptions fixed;
+    fixed.linearFree = false;
+    const auto kept = fitPnlss(start, records, validation, fixed);
+    CHECK((kept.model.linear.A.array() == start.linear.A.array()).all());
+    CHECK(kept.validationDb > -70.0);
+
+    // A start that runs away needs to be guided.
+    auto unstable = start;
+    unstable.linear.A *= 1.03 / 0.97;
+    REQUIRE_FALSE(isStable(unstable.linear));
+    PnlssFitOptions guided;
+    guided.guideGains = {1.0, 0.3, 0.1};
+    const auto saved = fitPnlss(unstable, records, validation, guided);
+    CHECK(saved.stable);
+    CHECK(saved.validationDb < -78.0);
+}
+
+TEST_CASE("What cannot be fitted is told in a sentence")
+{
+    const auto start = [] {
+        StateSpace linear;
+        linear.sampleRate = 1.0;
+        linear.A = linear.B = linear.C = linear.D = Eigen::MatrixXd::Constant(1, 1, 0.5);
+        return withTerms(linear, 2);
+    }();
+    const Eigen::MatrixXd u = Eigen::MatrixXd::Ones(10, 1);
+    PnlssFitOptions options;
+    options.maximumIterations = 0;
+    refused(Error::Kind::usage, "iteration", [&] { fitPnlss(start, {{u, u, 0, false}}, {}, options); });
+    refused(Error::Kind::data, "no record", [&] { fitPnlss(start, {}, {}); });
+    refused(Error::Kind::data, "does not fit", [&] { fitPnlss(start, {{u, u.topRows(5), 0, false}}, {}); });
+    Eigen::MatrixXd bad = u;
+    bad(3, 0) = std::numeric_limits<double>::quiet_NaN();
+    refused(Error::Kind::data, "not finite", [&] { fitPnlss(start, {{u, bad, 0, false}}, {}); });
+    options = {};
+    options.lineWeights = Eigen::VectorXd::Ones(6);
+    refused(Error::Kind::data, "periodic", [&] { fitPnlss(start, {{u, u, 0, false}}, {}, options); });
+}
+
+TEST_CASE("The seed's loudspeaker is recovered to rounding, from its true linear part and from its best linear approximation")
+{
+    for (const std::string tag : {"48000_p", "44100_m"}) {
+        const auto io = matrixOf(problemRows("P1_" + tag + "_io.csv")), lin = matrixOf(problemRows("P1_" + tag + "_lin.csv"));
+        if (io.size() == 0)
+            return;
+        INFO(tag);
+        const double rate = std::stod(tag);
+        StateSpace truth;
+        truth.sampleRate = rate;
+        truth.A = lin.topLeftCorner(3, 3);
+        truth.B = lin.topRightCorner(3, 1);
+        truth.C = lin.bottomLeftCorner(1, 3);
+        truth.D = lin.bottomRightCorner(1, 1);
+        const std::vector estimation {PnlssRecord {io.col(0), io.col(1), 0, false}}, validation {PnlssRecord {io.col(2), io.col(3), 0, false}};
+
+        PnlssFitOptions options;
+        options.linearFree = false;
+        const auto exact = fitPnlss(withTerms(truth, 2, TermMask::statesOnly), estimation, validation, options);
+        CHECK(exact.estimationDb < -218.0);
+        CHECK(exact.validationDb < -204.0);
+
+        const auto bla = linearStart(meanResponse({io.col(0)}, {io.col(1)}, rate), 3, rate);
+        const auto measured = fitPnlss(withTerms(bla, 2, TermMask::statesOnly), estimation, validation);
+        CHECK(measured.estimationDb < -120.0);
+        CHECK(measured.validationDb < -110.0);
+        CHECK(measured.stable);
+    }
+}
+
+TEST_CASE("A driver with four nonlinear laws is explained down to its noise, from its measured best linear approximation")
+{
+    const auto rows = matrixOf(problemRows("P2_io.csv"));
+    if (rows.size() == 0)
+        return;
+    const Index N = 8192;
+    std::vector<Eigen::VectorXd> u, y;
+    std::vector<PnlssRecord> records;
+    for (Index r = 0; r < 3; ++r) {   // two periods of each realization, averaged
+        u.emplace_back(0.5 * (rows.block(2 * r * N, 2, N, 1) + rows.block((2 * r + 1) * N, 2, N, 1)));
+        y.emplace_back(0.5 * (rows.block(2 * r * N, 3, N, 1) + rows.block((2 * r + 1) * N, 3, N, 1)));
+        records.push_back(periodicRecord(u.back(), y.back(), 500));
+    }
+    const auto bla = linearStart(meanResponse({u[0], u[1]}, {y[0], y[1]}, 8000.0), 3, 8000.0);
+    PnlssFitOptions options;
+    options.maximumIterations = 30;
+    const auto fit = fitPnlss(withTerms(bla, 3), {records[0], records[1]}, {records[2]}, options);
+    CHECK(fit.validationDb < -78.0);
+    CHECK(fit.stable);
+}
+
+TEST_CASE("The Silverbox is explained to a quarter of a millivolt")
+{
+    const auto folder = dataFolder("silverbox");
+    if (folder.empty())
+        return;
+    ImportOptions import;
+    import.columns = {parseColumnQuantity("V1=force:V"), parseColumnQuantity("V2=displacement:V")};
+    import.sampleRate = 1e7 / 16384;
+    import.removeMean = true;
+    auto take = std::get<Measurement>(importCsv(folder / "SNLS80mV.csv", import));
+    const auto record = [&](std::size_t from, std::size_t to, Index skip) {
+        const auto cut = [&](int channel) {
+            return Eigen::MatrixXd(Eigen::Map<const Eigen::VectorXd>(take.channels[static_cast<std::size_t>(channel)].samples.data() + from,
+                                                                     static_cast<Index>(to - from)));
+        };
+        return PnlssRecord {cut(0), cut(1), skip, false};
+    };
+    // Nine multisines, then the tenth, then the arrow, whose record begins amid a transient.
+    const std::vector estimation {record(40580, 118800, 200)}, last {record(118800, 127400, 200)}, arrow {record(0, 40000, 1000)};
+    auto part = take;
+    for (auto& channel : part.channels)
+        channel.samples = {channel.samples.begin() + 40580, channel.samples.begin() + 118800};
+    const auto response = welch(part, Quantity::displacement, {.segment = 8192}).frf;
+    Frf band;
+    for (std::size_t k = 0; k < response.frequency.size(); ++k)
+        if (response.frequency[k] < 200.0) {
+            band.frequency.push_back(response.frequency[k]);
+            band.value.push_back(response.value[k]);
+        }
+    auto start = withTerms(linearStart(frequencyDataOf(band), 2, take.sampleRate), 3, TermMask::full, true);
+    start.free.bottomRows(1).rightCols(start.terms() - 1).setConstant(false);
+    PnlssFitOptions options;
+    options.maximumIterations = 10;
+    const auto fit = fitPnlss(start, estimation, {}, options);
+    const auto millivolts = [&](const std::vector<PnlssRecord>& records) {
+        const auto rows = records[0].output.rows() - records[0].skip;
+        return 1e3 * std::pow(10.0, relativeErrorDb(fit.model, records) / 20.0) * records[0].output.bottomRows(rows).norm()
+             / std::sqrt(static_cast<double>(rows));
+    };
+    CHECK(millivolts(last) < 0.235);
+    CHECK(millivolts(arrow) < 0.26);
+    CHECK(fit.stable);
+}
