@@ -150,6 +150,23 @@ void combine(double* target, const double* W, const double* r, Index rows, Index
     }
 }
 
+/// Eight columns, each contiguous along time, to rows of eight, and back: a line of the cache at a time.
+EXCURSION_DISPATCH
+void toRows(double* rows, Index stride, const double* const* columns, Index T)
+{
+    for (Index t = 0; t < T; ++t)
+        for (Index c = 0; c < lanes; ++c)
+            rows[t * stride + c] = columns[c][t];
+}
+
+EXCURSION_DISPATCH
+void toColumns(double* columns, Index columnStride, const double* rows, Index stride, Index count, Index T)
+{
+    for (Index t = 0; t < T; ++t)
+        for (Index c = 0; c < count; ++c)
+            columns[c * columnStride + t] = rows[t * stride + c];
+}
+
 Index padded(Index count, Index unit) { return (count + unit - 1) / unit * unit; }
 
 } // namespace
@@ -331,10 +348,13 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
             const auto& group = groups[g];
             const bool initial = group.row < 0;
             if (!initial)
-                for (Index c = 0; c < group.count; ++c) {
-                    const auto regressor = columns_[static_cast<std::size_t>(group.first + c)].regressor;
-                    const auto from = regressor < n_ + m_ ? 1 + regressor : termNode_[static_cast<std::size_t>(regressor - n_ - m_)];
-                    regressors.col(place[g] + c).head(T) = values.col(from).head(T);
+                for (Index c = 0; c < padded(group.count, lanes); c += lanes) {
+                    const double* from[lanes];
+                    for (Index l = 0; l < lanes; ++l) {   // the last one again where there are no more
+                        const auto regressor = columns_[static_cast<std::size_t>(group.first + std::min(c + l, group.count - 1))].regressor;
+                        from[l] = values.col(regressor < n_ + m_ ? 1 + regressor : termNode_[static_cast<std::size_t>(regressor - n_ - m_)]).data();
+                    }
+                    toRows(regressors.data() + place[g] + c, width, from, T);
                 }
             if (!initial && group.row >= n_ && !guide) {
                 for (Index o = 0; o < p_; ++o)
@@ -351,7 +371,9 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
             auto& target = derivatives[static_cast<std::size_t>(o)];
             target.resize(T, P + n_);
             for (std::size_t g = 0; g < groups.size(); ++g)
-                target.middleCols(groups[g].first, groups[g].count) = J.block(o * stretch, place[g], T, groups[g].count);
+                for (Index c = 0; c < groups[g].count; c += lanes)
+                    toColumns(target.data() + (groups[g].first + c) * T, T, J.data() + o * stretch * width + place[g] + c, width,
+                              std::min(lanes, groups[g].count - c), T);
         }
         take(first, derivatives);
     }
