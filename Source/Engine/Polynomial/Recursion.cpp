@@ -14,6 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index stretch = 256;   // time steps of a block: M, G and the regressors stay in the nearest caches
+constexpr Index pitch = stretch + 8;   // between entries along time: no power of two, or they would compete for the same lines of the cache
 constexpr Index lanes = 8;       // parameters side by side
 
 /// One step for 8 parameters: J = G X, X <- M X + g r. M, G are laid out [entry][time], r and J [time][parameter].
@@ -28,9 +29,9 @@ template <int N, bool general>
     }
     for (Index t = 0; t < T; ++t) {
         for (Index o = 0; o < p; ++o) {
-            Four ya = G[(o * N) * stretch + t] * a[0], yb = G[(o * N) * stretch + t] * b[0];
+            Four ya = G[(o * N) * pitch + t] * a[0], yb = G[(o * N) * pitch + t] * b[0];
             for (int j = 1; j < N; ++j) {
-                const double e = G[(o * N + j) * stretch + t];
+                const double e = G[(o * N + j) * pitch + t];
                 ya += e * a[j];
                 yb += e * b[j];
             }
@@ -41,11 +42,11 @@ template <int N, bool general>
         const Four ra = *reinterpret_cast<const Four*>(r + t * strideR), rb = *reinterpret_cast<const Four*>(r + t * strideR + 4);
         Four na[N], nb[N];
         for (int i = 0; i < N; ++i) {
-            const double first = M[(i * N) * stretch + t];
+            const double first = M[(i * N) * pitch + t];
             na[i] = first * a[0];
             nb[i] = first * b[0];
             for (int j = 1; j < N; ++j) {
-                const double e = M[(i * N + j) * stretch + t];
+                const double e = M[(i * N + j) * pitch + t];
                 na[i] += e * a[j];
                 nb[i] += e * b[j];
             }
@@ -77,7 +78,7 @@ template <int N, bool general>
         for (Index o = 0; o < p; ++o) {
             Four ya {}, yb {};
             for (Index j = 0; j < N; ++j) {
-                const double e = G[(o * N + j) * stretch + t];
+                const double e = G[(o * N + j) * pitch + t];
                 ya += e * *reinterpret_cast<const Four*>(X + lanes * j);
                 yb += e * *reinterpret_cast<const Four*>(X + lanes * j + 4);
             }
@@ -89,7 +90,7 @@ template <int N, bool general>
         for (Index i = 0; i < N; ++i) {
             Four na = g[i] * ra, nb = g[i] * rb;
             for (Index j = 0; j < N; ++j) {
-                const double e = M[(i * N + j) * stretch + t];
+                const double e = M[(i * N + j) * pitch + t];
                 na += e * *reinterpret_cast<const Four*>(X + lanes * j);
                 nb += e * *reinterpret_cast<const Four*>(X + lanes * j + 4);
             }
@@ -294,9 +295,9 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
 {
     const auto N = input.rows(), P = parameters();
     const auto nodes = static_cast<Index>(nodes_.size());
-    MatrixXd values(stretch, nodes);   // [node][time]
+    MatrixXd values(pitch, nodes);   // [node][time]
     values.col(0).setOnes();
-    MatrixXd MG(stretch, (n_ + p_) * n_);
+    MatrixXd MG(pitch, (n_ + p_) * n_);
     // Columns of a row side by side, padded to whole lanes; then those of the initial state.
     std::vector<Group> groups = groups_;
     groups.push_back({-1, P, n_});
@@ -343,7 +344,7 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                     for (Index j = 0; j < n_; ++j)
                         addScaled(MG.col(i * n_ + j).data(), -guide->gain(i, o), MG.col((n_ + o) * n_ + j).data(), T);
         const double* M = MG.data();
-        const double* G = MG.data() + n_ * n_ * stretch;
+        const double* G = MG.data() + n_ * n_ * pitch;
         for (std::size_t g = 0; g < groups.size(); ++g) {
             const auto& group = groups[g];
             const bool initial = group.row < 0;
