@@ -4,10 +4,10 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Identify.h"
+#include "Engine/Linear/ThinSvd.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <cmath>
 
@@ -61,14 +61,13 @@ Balanced balanced(const StateSpace& model)
     }
     const MatrixXd Lc = root(gramian(discrete.A, discrete.B * discrete.B.transpose()));
     const MatrixXd Lo = root(gramian(discrete.A.transpose(), discrete.C.transpose() * discrete.C));
-    const Eigen::BDCSVD<MatrixXd> svd(Lo.transpose() * Lc, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const auto& sigma = svd.singularValues();
+    const auto [U, sigma, V] = thinSvd(Lo.transpose() * Lc);
     Index kept = 0;
     while (kept < sigma.size() && sigma[kept] > 1e-14 * sigma[0])
         ++kept;
     const VectorXd scale = sigma.head(kept).cwiseSqrt().cwiseInverse();
-    const MatrixXd T = Lc * svd.matrixV().leftCols(kept) * scale.asDiagonal();
-    const MatrixXd back = scale.asDiagonal() * svd.matrixU().leftCols(kept).transpose() * Lo.transpose();
+    const MatrixXd T = Lc * V.leftCols(kept) * scale.asDiagonal();
+    const MatrixXd back = scale.asDiagonal() * U.leftCols(kept).transpose() * Lo.transpose();
     result.singularValues = sigma.head(kept);
     result.model.A = back * model.A * T;
     result.model.B = back * model.B;

@@ -5,11 +5,11 @@
 #include "Engine/Linear/OrthogonalPowers.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/TallQr.h"
+#include "Engine/Linear/ThinSvd.h"
 #include "Engine/Linear/TruncatedSolve.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <cmath>
 
@@ -74,9 +74,9 @@ ObservabilityRange observabilityRange(const FrequencyData& data, double sampleRa
         }
         qr.fold(Z);
     }
-    const Eigen::BDCSVD<MatrixXd> svd(qr.R().transpose(), Eigen::ComputeThinU);
-    range.U = svd.matrixU();
-    range.singularValues = svd.singularValues() / std::max(svd.singularValues()[0], 1e-300);
+    auto svd = leftSvd(qr.R().transpose());
+    range.U = std::move(svd.U);
+    range.singularValues = svd.s / std::max(svd.s[0], 1e-300);
     return range;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // McKelvey's algorithm 1; see Subspace.h.
-#include "Engine/Error.h"
 #include "Engine/Linear/Subspace.h"
-#include "Engine/Signal/Fft.h"
 
-#include <Eigen/SVD>
+#include "Engine/Error.h"
+#include "Engine/Linear/ThinSvd.h"
+#include "Engine/Signal/Fft.h"
 
 #include <cmath>
 
@@ -70,9 +70,9 @@ ObservabilityRange observabilityRangeUniform(const FrequencyData& data, double s
     // The plain powers: z p_i = p_{i+1}
     range.H = MatrixXd::Zero(q + 1, q);
     range.H.diagonal(-1).setOnes();
-    const Eigen::BDCSVD<MatrixXd> svd(hankel, Eigen::ComputeThinU);
-    range.U = svd.matrixU();
-    range.singularValues = svd.singularValues() / std::max(svd.singularValues()[0], 1e-300);
+    auto svd = leftSvd(hankel);
+    range.U = std::move(svd.U);
+    range.singularValues = svd.s / std::max(svd.s[0], 1e-300);
     return range;
 }
 

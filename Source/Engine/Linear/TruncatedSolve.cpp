@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linear/TruncatedSolve.h"
 
-#include <Eigen/SVD>
+#include "Engine/Linear/ThinSvd.h"
 
 namespace excursion {
 
@@ -11,12 +11,11 @@ Eigen::MatrixXd truncatedSolve(const Eigen::MatrixXd& R, const Eigen::MatrixXd& 
         return Eigen::MatrixXd::Zero(0, q.cols());
     const Eigen::VectorXd scale
         = R.colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(R * scale.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const auto& s = svd.singularValues();
-    Eigen::MatrixXd y = svd.matrixU().transpose() * q;
+    const auto [U, s, V] = thinSvd(R * scale.asDiagonal());
+    Eigen::MatrixXd y = U.transpose() * q;
     for (Eigen::Index k = 0; k < s.size(); ++k)
         y.row(k) *= s[k] > relative * s[0] && s[k] > 0.0 ? 1.0 / s[k] : 0.0;
-    return scale.asDiagonal() * (svd.matrixV() * y);
+    return scale.asDiagonal() * (V * y);
 }
 
 } // namespace excursion

@@ -3,11 +3,11 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/TallQr.h"
+#include "Engine/Linear/ThinSvd.h"
 #include "Engine/Polynomial/Recursion.h"
 #include "Engine/Signal/Fft.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <cmath>
 #include <limits>
@@ -343,15 +343,15 @@ PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation
             const auto P = R.cols() - 1;
             const VectorXd scale = R.leftCols(P).colwise().norm().transpose().unaryExpr(
                 [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
-            const Eigen::BDCSVD<MatrixXd> svd(R.topLeftCorner(P, P) * scale.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-            const VectorXd s = svd.singularValues();
-            const VectorXd q = svd.matrixU().transpose() * R.col(P).head(P);
+            const auto svd = thinSvd(R.topLeftCorner(P, P) * scale.asDiagonal());
+            const auto& s = svd.s;
+            const VectorXd q = svd.U.transpose() * R.col(P).head(P);
             const auto stepAt = [&](double lambda) -> VectorXd {
                 VectorXd y = VectorXd::Zero(P);
                 for (Index k = 0; k < P; ++k)
                     if (s[k] > options.rankTolerance * s[0])
                         y[k] = q[k] * s[k] / (s[k] * s[k] + lambda * s[0] * s[0]);
-                return scale.cwiseProduct(svd.matrixV() * y);
+                return scale.cwiseProduct(svd.V * y);
             };
             // Boldly towards Gauss-Newton: weak directions of the Jacobian have to move early, or the search creeps along curved valleys.
             double trialCost = infinity, lambda = damping / boldness;

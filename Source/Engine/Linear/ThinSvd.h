@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+namespace excursion {
+
+/// A = U diag(s) V^T with s descending; min(rows, columns) columns in U and V. Eigen's divide and conquer, compiled in
+/// one place, as it takes the compiler half a minute.
+struct ThinSvd {
+    Eigen::MatrixXd U;
+    Eigen::VectorXd s;
+    Eigen::MatrixXd V;
+};
+
+ThinSvd thinSvd(const Eigen::MatrixXd& A);
+
+/// The same without V, which is left empty.
+ThinSvd leftSvd(const Eigen::MatrixXd& A);
+
+} // namespace excursion
