@@ -26,6 +26,7 @@ void addImport(CLI::App&, Terminal&);
 void addCheck(CLI::App&, Terminal&);
 void addBla(CLI::App&, Terminal&);
 void addIdentify(CLI::App&, Terminal&);
+void addReduce(CLI::App&, Terminal&);
 void addPnlss(CLI::App&, Terminal&);
 void addFit(CLI::App&, Terminal&);
 void addCompare(CLI::App&, Terminal&);

@@ -116,6 +116,7 @@ int main(int argc, char** argv)
     cli::addCheck(app, terminal);
     cli::addBla(app, terminal);
     cli::addIdentify(app, terminal);
+    cli::addReduce(app, terminal);
     cli::addPnlss(app, terminal);
     cli::addFit(app, terminal);
     cli::addCompare(app, terminal);

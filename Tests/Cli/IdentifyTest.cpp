@@ -31,3 +31,26 @@ TEST_CASE("identify chooses an order, keeps the model, and reads what bla wrote"
     CHECK(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "3", "--output", "pressure"}).code == 2);
     CHECK(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "3", "--band", "100,101"}).code == 4);
 }
+
+TEST_CASE("reduce truncates a model within its bound, and prunes one by a response")
+{
+    const Scratch scratch;
+    const auto& chain = Chain::get();
+    const auto large = (scratch / "large.json").string(), small = (scratch / "small.json").string();
+    REQUIRE(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "7", "--quick", "--out", large}).code == 0);
+    const auto truncated = runProgram(scratch.folder(), {"reduce", large, "--order", "3", "--out", small, "--json"});
+    INFO(truncated.err);
+    REQUIRE(truncated.code == 0);
+    const auto told = nlohmann::json::parse(truncated.out);
+    CHECK(told.at("order") == 3);
+    CHECK(told.at("stable") == true);
+    CHECK(told.at("bound").get<double>() > 0.0);
+    CHECK(nlohmann::json::parse(bytesOf(small)) == told.at("model"));
+    const auto pruned = runProgram(scratch.folder(), {"reduce", large, "--order", "3", "--response", chain.take(), "--out", small, "--json"});
+    REQUIRE(pruned.code == 0);
+    CHECK(nlohmann::json::parse(pruned.out).at("order") == 3);
+    CHECK(nlohmann::json::parse(pruned.out).at("steps").size() == 3);
+
+    CHECK(runProgram(scratch.folder(), {"reduce", large, "--out", small}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"reduce", chain.model(), "--order", "2", "--out", small}).code == 3);
+}

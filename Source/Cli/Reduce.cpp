@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
+#include "Cli/OpenResponse.h"
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Document/JsonText.h"
+#include "Engine/Error.h"
+#include "Engine/Linear/Identify.h"
+#include "Engine/Linear/Reduction.h"
+#include "Engine/Linear/StateSpaceFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+
+namespace excursion::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::string model, out;
+    ResponseChoice response;
+    int order = -1;
+    double errorDb = 0.0;
+    bool settled = false;
+};
+
+void balance(const Options& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+{
+    if (options.order < 0)
+        throw Error(Error::Kind::usage, "Give the --order to reduce the model to, or a --response to prune it by.");
+    const auto all = balanced(named.model);
+    const double bound = truncationBound(all, options.order);
+    named.model = truncated(all, options.order, options.settled ? Truncation::singularPerturbation : Truncation::direct);
+    document["method"] = options.settled ? "singular-perturbation" : "balanced-truncation";
+    document["singularValues"] = numbersOrNulls({all.singularValues.begin(), all.singularValues.end()});
+    document["bound"] = bound;
+    terminal.say("Balanced and truncated to order " + std::to_string(named.model.order()) + ": the response changes by at most "
+                 + significant(bound, 3) + " at any frequency.");
+}
+
+void pruneBy(const Options& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+{
+    if (named.model.inputs() != 1 || named.model.outputs() != 1)
+        throw Error(Error::Kind::data, "Only models with one input and one output are pruned by a response.");
+    if (options.order < 0 && options.errorDb == 0.0)
+        throw Error(Error::Kind::usage, "Give --order or --error, to say where the pruning is to end.");
+    auto choice = options.response;
+    choice.input = named.inputs[0];
+    choice.output = named.outputs[0];
+    const auto data = frequencyDataOf(openResponse(choice).frf);
+    const double rate = named.model.sampleRate;
+    const auto start = fitPartialFractions(
+        sectionsOf(poles(named.model), rate, rate > 0.0 ? 1.0 : 2.0 * std::numbers::pi * data.frequency.back()), data);
+    PruningOptions pruning;
+    pruning.order = std::max(options.order, 0);
+    pruning.errorDb = options.errorDb;
+    const auto result = prune(start, data, pruning, terminal.progress());
+    named.model = realize(result.fit.sections, result.fit.C, result.fit.D);
+    document["method"] = "pruning";
+    document["stopped"] = result.reason;
+    document["steps"] = Json::array();
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& step : result.steps) {
+        document["steps"].push_back({{"order", step.order}, {"weightedErrorDb", step.errorDb}});
+        rows.push_back({std::to_string(step.order), fixed(step.errorDb, 1)});
+    }
+    document["errorDb"] = judged(named.model, data).errorDb;
+    terminal.table({"order", "weighted error dB"}, rows);
+    terminal.say("Ended: " + result.reason + ".");
+}
+
+void run(const Options& options, Terminal& terminal)
+{
+    requireFilePlace(options.out);
+    auto named = readStateSpace(options.model);
+    Json document {{"format", "excursion-reduction"}, {"version", 1}, {"source", options.model}, {"from", named.model.order()}};
+    if (options.response.path.empty())
+        balance(options, named, document, terminal);
+    else
+        pruneBy(options, named, document, terminal);
+    document["order"] = named.model.order();
+    document["stable"] = isStable(named.model);
+    writeStateSpace(named, options.out);
+    terminal.say("Wrote " + options.out + ".");
+    document["model"] = toJson(named);
+    terminal.document(document);
+}
+
+} // namespace
+
+void addReduce(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<Options>();
+    auto* verb = app.add_subcommand("reduce", "A smaller linear model in place of a large one, with a bound or with the error that it has")
+                     ->group(step::fit);
+    verb->add_option("MODEL", o->model, "the model, as identify wrote it")->required();
+    verb->add_option("--order", o->order, "the order to reduce it to")->check(CLI::Range(0, 400));
+    verb->add_option("--response", o->response.path, "prune by this take or response, refitting after every step; else the model is balanced and truncated")
+        ->type_name("TAKE");
+    verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
+    verb->add_option("--error", o->errorDb, "stop pruning before the weighted error would pass this, dB")->check(CLI::Range(-400.0, 0.0));
+    verb->add_flag("--settled", o->settled, "truncated states are taken as settled: exact at frequency 0");
+    verb->add_option("--out", o->out, "the smaller model, a .json")->required()->type_name("FILE");
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli
