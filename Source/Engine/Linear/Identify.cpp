@@ -20,6 +20,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+constexpr int cheapOrder = 20;   // up to here every start is tried, as it costs nothing
+
 struct Candidate {
     std::string start;
     Sections sections;
@@ -56,8 +58,8 @@ StateSpace subspaceAt(const FrequencyData& data, double rate, int order, bool st
     return model;
 }
 
-/// All models that the subspace method has to offer. Those whose transform does not exist are left out.
-std::vector<StateSpace> subspaceModels(const FrequencyData& data, const IdentifyOptions& options)
+/// All models that the subspace method has to offer, up to the first that costs less than `enough`. Those whose transform does not exist are left out.
+std::vector<StateSpace> subspaceModels(const FrequencyData& data, const IdentifyOptions& options, double enough = 0.0)
 {
     const bool stable = options.refinement.stable;
     if (options.sampleRate > 0.0)
@@ -66,6 +68,8 @@ std::vector<StateSpace> subspaceModels(const FrequencyData& data, const Identify
     for (const double rate : warpingRates(data, options.thorough))
         try {
             models.push_back(subspaceAt(data, rate, options.order, stable));
+            if (enough > 0.0 && judged(models.back(), data).cost < enough)
+                break;
         } catch (const Error& e) {
             if (e.kind() != Error::Kind::numerical)
                 throw;
@@ -211,8 +215,13 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
     if (2 * data.lines() * data.outputs < 2 * options.order + 1 || options.order >= data.lines())
         throw Error(Error::Kind::data, "A model of order " + std::to_string(options.order) + " needs more than the "
                                            + std::to_string(data.lines()) + " lines of the frequency response.");
+    // Where the subspace model meets the noise, there is nothing left to be found by other starts.
+    const MatrixXd weights = weightsOf(data);
+    const double floor = data.deviation.size() == 0 ? 1e-20
+                                                    : 1.1 * weights.cwiseProduct(data.deviation).squaredNorm()
+                                                          / weights.cwiseProduct(data.value.cwiseAbs()).squaredNorm();
     progress.at(0.0, "identifying by subspace");
-    const auto models = subspaceModels(data, options);
+    const auto models = subspaceModels(data, options, options.order > cheapOrder ? floor : 0.0);
     if (data.inputs > 1 || !options.refine) {
         LinearIdentification best;
         best.cost = std::numeric_limits<double>::infinity();
@@ -236,11 +245,6 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
             cost = std::min(cost, c.cost);
         return cost;
     };
-    // Where the subspace model meets the noise, there is nothing left to be found by other starts.
-    const MatrixXd weights = weightsOf(data);
-    const double floor = data.deviation.size() == 0 ? 1e-20
-                                                    : 1.1 * weights.cwiseProduct(data.deviation).squaredNorm()
-                                                          / weights.cwiseProduct(data.value.cwiseAbs()).squaredNorm();
     if (!(bestCost() < floor)) {
         progress.at(0.2, "fitting vectors");
         add(candidates, "vector fitting", fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, false), data, 10), data);
