@@ -69,7 +69,7 @@ TEST_CASE("Nothing is added to a driver without effects, and its parameters are 
     }
 }
 
-TEST_CASE("One hidden effect is named, added, and the error falls to the noise", "[improve]")
+TEST_CASE("One hidden effect is named, added, and the error falls to the noise", "[improve][slow]")
 {
     const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness", "inductance-position", "eddy-currents", "creep",
                              "damping-velocity");
@@ -104,7 +104,7 @@ TEST_CASE("The current alone tells a stiffening suspension", "[improve]")
     CHECK(ladder.verdict == Verdict::complete);
 }
 
-TEST_CASE("What the catalogue does not hold is not given another name", "[improve]")
+TEST_CASE("What the catalogue does not hold is not given another name", "[improve][slow]")
 {
     const auto id = GENERATE(as<std::string> {}, "inductance-current", "cone-breakup", "vented-box");
     REQUIRE(std::none_of(catalogue().begin(), catalogue().end(), [&](const Effect* e) { return e->id() == id; }));

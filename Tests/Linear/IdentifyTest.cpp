@@ -170,7 +170,7 @@ TEST_CASE("Bad input of an identification is told in a sentence")
     refused(Error::Kind::data, "not finite", [&] { identify(data, options); });
 }
 
-TEST_CASE("An exact response of order 3 is met to rounding at any order and any standard deviation, stable")
+TEST_CASE("An exact response of order 3 is met to rounding at any order and any standard deviation, stable", "[slow]")
 {
     const auto frf = problemResponse("P3i.csv");
     if (frf.frequency.empty())
@@ -195,7 +195,7 @@ TEST_CASE("An exact response of order 3 is met to rounding at any order and any 
         }
 }
 
-TEST_CASE("32 cone modes: the noise at the true order, and below it no worse than vector fitting")
+TEST_CASE("32 cone modes: the noise at the true order, and below it no worse than vector fitting", "[slow]")
 {
     const auto frf = problemResponse("P3ii.csv");
     if (frf.frequency.empty())

@@ -70,7 +70,7 @@ TEST_CASE("A balanced model keeps its response, and a truncated one its bound")
     refused(Error::Kind::data, "stable", [&] { balanced(unstable); });
 }
 
-TEST_CASE("Pruning stops before its bound, and ends where a direct fit would")
+TEST_CASE("Pruning stops before its bound, and ends where a direct fit would", "[slow]")
 {
     const auto frf = problemResponse("P3ii.csv");
     if (frf.frequency.empty())

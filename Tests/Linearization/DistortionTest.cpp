@@ -96,7 +96,7 @@ void checkResidual(const Model& model, double sampleRate, int oversampling)
 
 } // namespace
 
-TEST_CASE("Predistorter and driver together are linear to -90 dB at 75 % of xmax", "[linearization]")
+TEST_CASE("Predistorter and driver together are linear to -90 dB at 75 % of xmax", "[linearization][slow]")
 {
     SECTION("each effect alone")
     {

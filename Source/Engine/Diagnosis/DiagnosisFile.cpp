@@ -11,8 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto formatName = "excursion-diagnosis";
-constexpr int formatVersion = 1;
+constexpr auto diagnosisFormat = "excursion-diagnosis";
+constexpr int diagnosisVersion = 1;
 
 Json rankedJson(const RankedEffect& ranked)
 {
@@ -98,8 +98,8 @@ std::vector<std::string> textsFromJson(const JsonField& field)
 
 Json toJson(const Diagnosis& diagnosis)
 {
-    Json document {{"format", formatName},
-                   {"version", formatVersion},
+    Json document {{"format", diagnosisFormat},
+                   {"version", diagnosisVersion},
                    {"verdict", name(diagnosis.verdict)},
                    {"sentence", diagnosis.sentence},
                    {"error", toJson(diagnosis.error)}};
@@ -114,7 +114,7 @@ Json toJson(const Diagnosis& diagnosis)
 
 Diagnosis diagnosisFromJson(const JsonField& field)
 {
-    field.requireFormat(formatName, formatVersion);
+    field.requireFormat(diagnosisFormat, diagnosisVersion);
     Diagnosis diagnosis;
     diagnosis.verdict = verdictFromJson(field.at("verdict"));
     diagnosis.sentence = field.at("sentence").text();

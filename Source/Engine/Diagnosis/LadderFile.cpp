@@ -11,8 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto formatName = "excursion-ladder";
-constexpr int formatVersion = 1;
+constexpr auto ladderFormat = "excursion-ladder";
+constexpr int ladderVersion = 1;
 
 Json parametersJson(const Model& model)
 {
@@ -214,8 +214,8 @@ LadderFile makeLadderFile(Ladder ladder, const Take& take, const std::string& pa
 
 Json toJson(const LadderFile& file)
 {
-    Json document {{"format", formatName},
-                   {"version", formatVersion},
+    Json document {{"format", ladderFormat},
+                   {"version", ladderVersion},
                    {"verdict", name(file.ladder.verdict)},
                    {"sentence", file.ladder.sentence},
                    {"problems", toJson(file.ladder.problems)},
@@ -233,7 +233,7 @@ Json toJson(const LadderFile& file)
 LadderFile ladderFromJson(const nlohmann::json& document, const std::string& where)
 {
     const JsonField root(document, "", where);
-    root.requireFormat(formatName, formatVersion);
+    root.requireFormat(ladderFormat, ladderVersion);
     LadderFile file;
     file.ladder.verdict = verdictFromJson(root.at("verdict"));
     file.ladder.sentence = root.at("sentence").text();

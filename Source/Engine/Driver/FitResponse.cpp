@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double unseen = 1e-2;   // standard errors
+constexpr double unseenErrors = 1e-2;   // standard errors
 constexpr double reach = 1e3;   // a search does not leave its start by more than this factor
 
 bool positive(const Parameter& p) { return p.lower >= 0.0 && p.value > 0.0 && !p.strength; }
@@ -81,8 +81,8 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
         p.standardError = std::sqrt(covariance(r, r));
         // A positive parameter that the data takes for zero (an inductance that the eddy currents have taken over) stays away from the
         // singular point, but so near that nobody sees it.
-        if (positive(p) && p.lower == 0.0 && p.value < unseen * p.standardError)
-            p.value = unseen * p.standardError;
+        if (positive(p) && p.lower == 0.0 && p.value < unseenErrors * p.standardError)
+            p.value = unseenErrors * p.standardError;
     }
 }
 

@@ -10,7 +10,7 @@
 namespace excursion {
 namespace {
 
-constexpr double unseen = 1e-13;   // relative eigenvalue of the scaled normal matrix below which a direction is void
+constexpr double voidDirection = 1e-13;   // relative eigenvalue of the scaled normal matrix below which a direction is void
 
 /// Eigenvectors and eigenvalues of N scaled to a unit diagonal.
 struct ScaledSpectrum {
@@ -68,7 +68,7 @@ public:
         J.setZero();
         const double largest = std::max(spectrum.values.maxCoeff(), 1e-300);
         for (Eigen::Index k = 0; k < P; ++k) {
-            if (spectrum.values[k] <= unseen * largest)
+            if (spectrum.values[k] <= voidDirection * largest)
                 continue;
             const double root = std::sqrt(spectrum.values[k]);
             const Eigen::VectorXd v = spectrum.vectors.col(k);

@@ -70,7 +70,7 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
 }
 
 /// How often a channel must be integrated to give displacement; the pressure of a piston follows the acceleration.
-std::optional<int> integrationsToDisplacement(Quantity quantity)
+std::optional<int> integrationsToMotion(Quantity quantity)
 {
     switch (quantity) {
     case Quantity::displacement: return 0;
@@ -104,7 +104,7 @@ int quietestRealization(const Measurement& take)
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     std::vector<std::pair<const Channel*, int>> motions;
     for (const auto& channel : take.channels)
-        if (const auto n = integrationsToDisplacement(channel.quantity)) {
+        if (const auto n = integrationsToMotion(channel.quantity)) {
             motions.emplace_back(&channel, *n);       // displacement
             motions.emplace_back(&channel, *n - 1);   // velocity
         } else if (channel.quantity == Quantity::current) {

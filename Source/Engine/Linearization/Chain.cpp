@@ -8,14 +8,14 @@ namespace excursion {
 namespace {
 
 constexpr double fadeTime = 0.03;       // s, from mode to mode
-constexpr double followTime = 0.005;    // s, time constant of the levels
+constexpr double levelTime = 0.005;    // s, time constant of the levels
 
 } // namespace
 
 Chain::Chain(const Model& model, const RealTimeOptions& options, const ChainControls& controls)
     : bend_(static_cast<int>(fadeTime * options.sampleRate), model, options, controls.linearization),
       play_(static_cast<int>(fadeTime * options.sampleRate), model, options), perVolt_(1.0 / plateau(model)),
-      smoothing_(1.0 - std::exp(-1.0 / (followTime * options.sampleRate)))
+      smoothing_(1.0 - std::exp(-1.0 / (levelTime * options.sampleRate)))
 {
     set(controls);
     reset();

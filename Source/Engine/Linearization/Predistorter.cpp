@@ -10,8 +10,8 @@
 namespace excursion {
 namespace {
 
-constexpr double implausible = 1e6;      // V, far beyond any amplifier
-constexpr double followTime = 0.005;     // s, time constant of the controls
+constexpr double implausibleVoltage = 1e6;      // V, far beyond any amplifier
+constexpr double controlTime = 0.005;     // s, time constant of the controls
 constexpr double declickTime = 0.002;    // s
 
 double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
@@ -22,7 +22,7 @@ Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, c
     : oversampling_((requireRunnable(model, options), options.oversampling)),
       reference_(model, options.sampleRate * options.oversampling), inverse_(model, options.sampleRate * options.oversampling),
       recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
-      smoothing_(1.0 - std::exp(-1.0 / (followTime * options.sampleRate))), release_(std::exp(-1.0 / (declickTime * options.sampleRate))),
+      smoothing_(1.0 - std::exp(-1.0 / (controlTime * options.sampleRate))), release_(std::exp(-1.0 / (declickTime * options.sampleRate))),
       dry_(static_cast<std::size_t>(oversampling_.latency()), 0.0)
 {
     target_ = {1.0, 0.0, 0.0};
@@ -57,7 +57,7 @@ double Predistorter::advance(double u)
     const double asked = std::abs(motion.x), share = asked * now_.displacement;
     softlimit::apply(motion, now_.displacement);
     const double bent = inverse_.step(motion);
-    if (!(std::abs(bent) < implausible && asked < implausible)) {
+    if (!(std::abs(bent) < implausibleVoltage && asked < implausibleVoltage)) {
         faulty_ = true;
         return 0.0;
     }
@@ -91,7 +91,7 @@ void Predistorter::process(const double* in, double* out, std::size_t n)
         const std::size_t count = std::min(n, Oversampling::longestBlock);
         std::array<bool, Oversampling::longestBlock> faultAt;
         for (std::size_t k = 0; k < count; ++k) {
-            faultAt[k] = !(std::abs(in[k]) < implausible);   // also for NaN
+            faultAt[k] = !(std::abs(in[k]) < implausibleVoltage);   // also for NaN
             block_[k] = faultAt[k] ? 0.0 : in[k];
         }
         oversampling_.up(block_.data(), count, fine_.data());

@@ -11,9 +11,9 @@
 namespace excursion {
 namespace {
 
-constexpr double implausible = 1e3;   // A, m, m/s, as in a simulation
+constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
 constexpr double loudest = 1e6;       // V
-constexpr double followTime = 0.005;  // s
+constexpr double followingTime = 0.005;  // s
 
 std::vector<double> valuesOf(const Model& model)
 {
@@ -29,7 +29,7 @@ Speaker::Speaker(const Model& model, const RealTimeOptions& options)
       recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
       substeps_(stableSubsteps(model, options.sampleRate * options.oversampling)),
       step_(1.0 / (options.sampleRate * options.oversampling * substeps_)),
-      smoothing_(1.0 - std::exp(-1.0 / (followTime * options.sampleRate))), state_(static_cast<std::size_t>(dynamics_.order()), 0.0),
+      smoothing_(1.0 - std::exp(-1.0 / (followingTime * options.sampleRate))), state_(static_cast<std::size_t>(dynamics_.order()), 0.0),
       rates_(state_)
 {
 }
@@ -67,7 +67,7 @@ double Speaker::advance(double u)
     past_ = {u, past_[0], past_[1]};
     dynamics_.rates(state_.data(), u, rates_.data());
     const double linear = reference_.step(u).a;
-    if (!(std::abs(state_[0]) < implausible && std::abs(state_[1]) < implausible && std::abs(state_[2]) < implausible
+    if (!(std::abs(state_[0]) < implausibleState && std::abs(state_[1]) < implausibleState && std::abs(state_[2]) < implausibleState
           && std::isfinite(rates_[2]) && std::isfinite(linear))) {
         faulty_ = true;
         return 0.0;
