@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How many seconds of loudspeaker a second of one core simulates, with every effect of the catalogue. Target: 20.
-#include "Engine/Driver/Catalogue.h"
+#include "Everything.h"
+
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Signal/Multisine.h"
 
@@ -11,32 +12,6 @@
 using namespace excursion;
 
 namespace {
-
-/// A midbass with all effects at moderate strength.
-Model everything()
-{
-    auto model = makeModel("electrodynamic");
-    const std::pair<const char*, double> base[] {{"Re", 3.3}, {"Le", 266e-6}, {"Bl", 4.95}, {"m", 0.01435}, {"Rms", 0.786}, {"K", 1852.0}};
-    for (const auto& [name, value] : base)
-        model.baseParameter(name).value = value;
-    Extent extent;
-    extent.displacement = 4e-3;
-    extent.velocity = 1.5;
-    extent.current = 6.0;
-    extent.lowFrequency = 15.0;
-    extent.highFrequency = 8000.0;
-    for (const auto* effect : catalogue()) {
-        model = withEffect(model, *effect, extent);
-        auto& added = model.components.back();
-        if (effect->law())
-            added.parameters[1].value = (effect->id() == "stiffness" ? 0.1 : -0.1) * added.extent.scale;
-        else
-            for (auto& parameter : added.parameters)
-                if (parameter.strength)
-                    parameter.value = effect->id() == "creep" ? 300.0 : 0.01;
-    }
-    return model;
-}
 
 double wallNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double coreNow() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

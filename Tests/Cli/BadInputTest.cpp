@@ -17,23 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One sentence on stderr, nothing on stdout, nothing written.
-void refusedWith(int code, const std::vector<std::string>& arguments, const Scratch& scratch, const std::string& named)
-{
-    std::string line;
-    for (const auto& argument : arguments)
-        line += argument + " ";
-    INFO(line);
-    const auto before = contents(scratch.folder());
-    const auto told = runProgram(scratch.folder(), arguments);
-    INFO("stderr: " << told.err);
-    CHECK(told.code == code);
-    CHECK(told.out.empty());
-    CHECK_THAT(told.err, Catch::StartsWith("excursion: ") && Catch::EndsWith("\n") && Catch::Contains(named));
-    CHECK(std::count(told.err.begin(), told.err.end(), '\n') == 1);
-    CHECK(contents(scratch.folder()) == before);
-}
-
 /// Every verb that reads a take refuses this one.
 void takeRefused(int code, const std::string& take, const Scratch& scratch, const std::string& named)
 {

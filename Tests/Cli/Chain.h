@@ -5,7 +5,10 @@
 #include "Engine/Measurement/WavFile.h"
 #include "Measurement/Scratch.h"
 
+#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace excursion::test {
 
@@ -70,6 +73,23 @@ inline nlohmann::json documentOf(const Outcome& outcome, const std::string& form
     CHECK(document.at("format") == format);
     CHECK(document.at("version") == 1);
     return document;
+}
+
+/// One sentence on stderr, nothing on stdout, nothing written.
+inline void refusedWith(int code, const std::vector<std::string>& arguments, const Scratch& scratch, const std::string& named)
+{
+    std::string line;
+    for (const auto& argument : arguments)
+        line += argument + " ";
+    INFO(line);
+    const auto before = contents(scratch.folder());
+    const auto told = runProgram(scratch.folder(), arguments);
+    INFO("stderr: " << told.err);
+    CHECK(told.code == code);
+    CHECK(told.out.empty());
+    CHECK_THAT(told.err, Catch::StartsWith("excursion: ") && Catch::EndsWith("\n") && Catch::Contains(named));
+    CHECK(std::count(told.err.begin(), told.err.end(), '\n') == 1);
+    CHECK(contents(scratch.folder()) == before);
 }
 
 } // namespace excursion::test

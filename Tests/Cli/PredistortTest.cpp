@@ -62,19 +62,6 @@ double distance(const std::vector<double>& a, const std::vector<double>& b)
     return worst;
 }
 
-void refused(const Scratch& scratch, int code, std::vector<std::string> arguments, const std::string& named)
-{
-    arguments.insert(arguments.begin(), "predistort");
-    const auto before = contents(scratch.folder());
-    const auto told = runProgram(scratch.folder(), arguments);
-    INFO("stderr: " << told.err);
-    CHECK(told.code == code);
-    CHECK(told.out.empty());
-    CHECK_THAT(told.err, Catch::StartsWith("excursion: ") && Catch::EndsWith("\n") && Catch::Contains(named));
-    CHECK(std::count(told.err.begin(), told.err.end(), '\n') == 1);
-    CHECK(contents(scratch.folder()) == before);
-}
-
 } // namespace
 
 TEST_CASE("predistort makes the simulated driver linear", "[cli]")
@@ -143,24 +130,24 @@ TEST_CASE("predistort refuses what it cannot play", "[cli][bad-input]")
 {
     const Scratch scratch;
     const auto model = bentModel(scratch), in = wavOf(scratch, {tone(0.4)}), out = (scratch / "out.wav").string();
-    refused(scratch, 2, {model, in, out}, "--full-scale");
-    refused(scratch, 2, {model, in, out, "--full-scale", "0"}, "--full-scale");
-    refused(scratch, 2, {model, in, out, "--full-scale", "20", "--amount", "1.5"}, "--amount");
-    refused(scratch, 2, {model, in, out, "--full-scale", "20", "--oversampling", "3"}, "--oversampling");
-    refused(scratch, 2, {model, in, out, "--full-scale", "20", "--limit-x", "-1"}, "--limit-x");
-    refused(scratch, 2, {model, in, out, "--full-scale", "20", "--limit-u", "nan"}, "--limit-u");
-    refused(scratch, 2, {model, in, in, "--full-scale", "20"}, "overwritten");
-    refused(scratch, 3, {model, (scratch / "absent.wav").string(), out, "--full-scale", "20"}, "absent.wav");
-    refused(scratch, 3, {(scratch / "absent.json").string(), in, out, "--full-scale", "20"}, "absent.json");
-    refused(scratch, 3, {in, in, out, "--full-scale", "20"}, "in.wav");
-    refused(scratch, 3, {model, model, out, "--full-scale", "20"}, "bent.json");
+    refusedWith(2, {"predistort", model, in, out}, scratch, "--full-scale");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "0"}, scratch, "--full-scale");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--amount", "1.5"}, scratch, "--amount");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--oversampling", "3"}, scratch, "--oversampling");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-x", "-1"}, scratch, "--limit-x");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-u", "nan"}, scratch, "--limit-u");
+    refusedWith(2, {"predistort", model, in, in, "--full-scale", "20"}, scratch, "overwritten");
+    refusedWith(3, {"predistort", model, (scratch / "absent.wav").string(), out, "--full-scale", "20"}, scratch, "absent.wav");
+    refusedWith(3, {"predistort", (scratch / "absent.json").string(), in, out, "--full-scale", "20"}, scratch, "absent.json");
+    refusedWith(3, {"predistort", in, in, out, "--full-scale", "20"}, scratch, "in.wav");
+    refusedWith(3, {"predistort", model, model, out, "--full-scale", "20"}, scratch, "bent.json");
     auto poisoned = tone(0.4);
     poisoned[7] = std::numeric_limits<double>::infinity();
     wavOf(scratch, {poisoned});
-    refused(scratch, 3, {model, in, out, "--full-scale", "20"}, "sample 7 is not a finite number");
+    refusedWith(3, {"predistort", model, in, out, "--full-scale", "20"}, scratch, "sample 7 is not a finite number");
     auto dead = nlohmann::json::parse(bytesOf(model));
     dead["base"]["parameters"][2]["value"] = 0.0;
     wavOf(scratch, {tone(0.4)});
     std::ofstream(model) << dead.dump();
-    refused(scratch, 4, {model, in, out, "--full-scale", "20"}, "Bl");
+    refusedWith(4, {"predistort", model, in, out, "--full-scale", "20"}, scratch, "Bl");
 }

@@ -36,17 +36,6 @@ double measuredPeak(const Record& record, const Section& section, std::size_t ch
     return peakOf(inverseFft(spectrum, section.window));
 }
 
-/// How often `quantity` must be integrated to give displacement.
-std::optional<int> integrationsToDisplacement(Quantity quantity)
-{
-    switch (quantity) {
-    case Quantity::displacement: return 0;
-    case Quantity::velocity: return 1;
-    case Quantity::acceleration: return 2;
-    default: return std::nullopt;
-    }
-}
-
 /// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of relaxations that
 /// has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others.
 std::vector<Eigen::Index> telling(const Model& model, const Record& record, const std::vector<std::size_t>& sections, int substeps,

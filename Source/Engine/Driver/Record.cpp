@@ -69,18 +69,6 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
     period = inverseFft(spectrum, period.size());
 }
 
-/// How often a channel must be integrated to give displacement; the pressure of a piston follows the acceleration.
-std::optional<int> integrationsToMotion(Quantity quantity)
-{
-    switch (quantity) {
-    case Quantity::displacement: return 0;
-    case Quantity::velocity: return 1;
-    case Quantity::acceleration:
-    case Quantity::pressure: return 2;
-    default: return std::nullopt;
-    }
-}
-
 /// Peaks upwards and downwards of an averaged period integrated n times within the excited band, in any unit.
 std::pair<double, double> integratedPeaks(const Measurement& take, const Channel& channel, int level, int realization, int integrations)
 {
@@ -104,7 +92,8 @@ int quietestRealization(const Measurement& take)
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     std::vector<std::pair<const Channel*, int>> motions;
     for (const auto& channel : take.channels)
-        if (const auto n = integrationsToMotion(channel.quantity)) {
+        // The pressure of a piston follows the acceleration.
+        if (const auto n = integrationsToDisplacement(channel.quantity == Quantity::pressure ? Quantity::acceleration : channel.quantity)) {
             motions.emplace_back(&channel, *n);       // displacement
             motions.emplace_back(&channel, *n - 1);   // velocity
         } else if (channel.quantity == Quantity::current) {
@@ -197,6 +186,16 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
 }
 
 } // namespace
+
+std::optional<int> integrationsToDisplacement(Quantity quantity)
+{
+    switch (quantity) {
+    case Quantity::displacement: return 0;
+    case Quantity::velocity: return 1;
+    case Quantity::acceleration: return 2;
+    default: return std::nullopt;
+    }
+}
 
 std::optional<std::size_t> Record::channelIndex(Quantity quantity) const
 {

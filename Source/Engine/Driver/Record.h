@@ -66,6 +66,9 @@ struct RecordOptions {
     bool isValid(std::string* reason) const;
 };
 
+/// How often a measured motion must be integrated to give displacement; nothing for what is no motion.
+std::optional<int> integrationsToDisplacement(Quantity);
+
 /// Throws Error (data) when the take has no output channel or is too short.
 Record makeRecord(const Measurement&, const RecordOptions& = {});
 

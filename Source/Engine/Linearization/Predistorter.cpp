@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Predistorter.h"
 
+#include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/SoftLimit.h"
 #include "Engine/Linearization/Subnormals.h"
 
@@ -10,7 +11,6 @@
 namespace excursion {
 namespace {
 
-constexpr double implausibleVoltage = 1e6;      // V, far beyond any amplifier
 constexpr double controlTime = 0.005;     // s, time constant of the controls
 constexpr double declickTime = 0.002;    // s
 
@@ -57,7 +57,7 @@ double Predistorter::advance(double u)
     const double asked = std::abs(motion.x), share = asked * now_.displacement;
     softlimit::apply(motion, now_.displacement);
     const double bent = inverse_.step(motion);
-    if (!(std::abs(bent) < implausibleVoltage && asked < implausibleVoltage)) {
+    if (!(std::abs(bent) < InputGuard::loudest && asked < InputGuard::loudest)) {
         faulty_ = true;
         return 0.0;
     }
@@ -89,11 +89,8 @@ void Predistorter::process(const double* in, double* out, std::size_t n)
     const auto factor = static_cast<std::size_t>(oversampling_.factor());
     while (n > 0) {
         const std::size_t count = std::min(n, Oversampling::longestBlock);
-        std::array<bool, Oversampling::longestBlock> faultAt;
-        for (std::size_t k = 0; k < count; ++k) {
-            faultAt[k] = !(std::abs(in[k]) < implausibleVoltage);   // also for NaN
-            block_[k] = faultAt[k] ? 0.0 : in[k];
-        }
+        InputGuard guard;
+        guard.pass(in, count, block_.data());
         oversampling_.up(block_.data(), count, fine_.data());
         std::array<Levels, Oversampling::longestBlock> levels;
         for (std::size_t k = 0; k < count; ++k) {
@@ -101,14 +98,14 @@ void Predistorter::process(const double* in, double* out, std::size_t n)
             now_.displacement += smoothing_ * (target_.displacement - now_.displacement);
             now_.voltage += smoothing_ * (target_.voltage - now_.voltage);
             levels[k] = now_;
-            if (faultAt[k])
+            if (guard.faultAt[k])
                 fault();
             for (std::size_t s = 0; s < factor; ++s) {
                 auto& sample = fine_[k * factor + s];
                 sample = advance(sample);
                 if (faulty_) {
                     fault();
-                    faultAt[k] = true;
+                    guard.faultAt[k] = true;
                 }
             }
         }
@@ -123,13 +120,13 @@ void Predistorter::process(const double* in, double* out, std::size_t n)
         }
         oversampling_.down(fine_.data(), count, block_.data());
         for (std::size_t k = 0; k < count; ++k) {
-            if (faultAt[k])
+            if (guard.faultAt[k])
                 recovery_.fault();
             const double weight = recovery_.step();
             double mixed = block_[k];
             if (weight < 1.0)
                 mixed = weight * mixed + (1.0 - weight) * softlimit::apply(plain[k], levels[k].voltage);
-            if (faultAt[k])
+            if (guard.faultAt[k])
                 step_ = lastOut_ - mixed;
             mixed += step_;
             step_ *= release_;

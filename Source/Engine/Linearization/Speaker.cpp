@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Linearization/Cubic.h"
+#include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/Subnormals.h"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace excursion {
 namespace {
 
 constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
-constexpr double loudest = 1e6;       // V
 constexpr double followingTime = 0.005;  // s
 
 std::vector<double> valuesOf(const Model& model)
@@ -83,28 +83,25 @@ void Speaker::process(const double* in, double* out, std::size_t n)
     const auto factor = static_cast<std::size_t>(oversampling_.factor());
     while (n > 0) {
         const std::size_t count = std::min(n, Oversampling::longestBlock);
-        std::array<bool, Oversampling::longestBlock> faultAt;
-        for (std::size_t k = 0; k < count; ++k) {
-            faultAt[k] = !(std::abs(in[k]) < loudest);   // also for NaN
-            block_[k] = faultAt[k] ? 0.0 : in[k];
-        }
+        InputGuard guard;
+        guard.pass(in, count, block_.data());
         oversampling_.up(block_.data(), count, fine_.data());
         for (std::size_t k = 0; k < count; ++k) {
             share_ += smoothing_ * (shareTarget_ - share_);
-            faulty_ = faultAt[k];
+            faulty_ = guard.faultAt[k];
             for (std::size_t s = 0; s < factor; ++s) {
                 if (!faulty_)
                     fine_[k * factor + s] = advance(fine_[k * factor + s]);
                 if (faulty_) {
                     rest();
                     fine_[k * factor + s] = 0.0;
-                    faultAt[k] = true;
+                    guard.faultAt[k] = true;
                 }
             }
         }
         oversampling_.down(fine_.data(), count, block_.data());
         for (std::size_t k = 0; k < count; ++k) {
-            if (faultAt[k]) {
+            if (guard.faultAt[k]) {
                 recovery_.fault();
                 faults_.fetch_add(1, std::memory_order_relaxed);
             }
