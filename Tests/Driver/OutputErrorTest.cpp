@@ -81,7 +81,8 @@ OutputErrorOptions plain()
     OutputErrorOptions options;
     options.gradient = false;
     options.spectra = true;
-    options.substeps = options.gradientSubsteps = 4;
+    options.substeps = 16;
+    options.gradientSubsteps = 16;   // jets go by another method of integration, and must come as near to the truth
     return options;
 }
 

@@ -59,6 +59,8 @@ double largest(const std::vector<double>& a, const std::vector<double>& b)
     return result;
 }
 
+double peakIn(const std::vector<double>& a) { return largest(a, std::vector<double>(a.size(), 0.0)); }
+
 } // namespace
 
 TEST_CASE("A linear driver's steady state is its closed-form response", "[simulate]")
@@ -109,25 +111,42 @@ TEST_CASE("A linear driver's steady state is its closed-form response", "[simula
 
 TEST_CASE("Halving the step divides the error by sixteen, on numbers and on jets", "[simulate]")
 {
+    // The numbers' method leaves the laws' part alone to be approximated: its error shows at steps far longer than those of the jets.
     constexpr double sampleRate = 12000.0;
     const auto model = bent();
-    const auto u = burst(sampleRate, 0.25, 6.0, 1300.0);
-    std::vector<Trajectory<double>> runs(3);
-    for (std::size_t n = 0; n < runs.size(); ++n)
-        REQUIRE(integrate(model, values(model), Drive(u, sampleRate, 2 << n), 0, runs[n]));
-    for (const auto channel : {&Trajectory<double>::current, &Trajectory<double>::displacement, &Trajectory<double>::velocity, &Trajectory<double>::acceleration}) {
-        const double first = largest(runs[0].*channel, runs[1].*channel), second = largest(runs[1].*channel, runs[2].*channel);
+    const auto theta = values(model);
+    const auto u = burst(sampleRate, 0.25, 6.0, 1300.0), slow = burst(sampleRate / 2, 0.25, 6.0, 1300.0);
+    const auto check = [](double first, double second) {
         INFO("changes " << first << " and " << second);
         CHECK(first / second > 12.0);
         CHECK(first / second < 21.0);
+    };
+    std::vector<Trajectory<double>> numbers(3);
+    std::vector<Trajectory<Jet>> jets(3);
+    const auto smooth = withoutEffect(model, "damping-velocity");   // its law bends within a fiftieth of the visited range
+    for (std::size_t n = 0; n < 3; ++n) {
+        REQUIRE(integrate(smooth, values(smooth), Drive(slow, sampleRate / 2, 1 << n), 0, numbers[n]));
+        REQUIRE(integrate(model, std::vector<Jet>(theta.begin(), theta.end()), Drive(u, sampleRate, 2 << n), 0, jets[n]));
     }
-    const auto theta = values(model);
-    Trajectory<Jet> jets;
-    REQUIRE(integrate(model, std::vector<Jet>(theta.begin(), theta.end()), Drive(u, sampleRate, 2), 0, jets));
-    double difference = 0.0;
-    for (std::size_t n = 0; n < jets.displacement.size(); ++n)
-        difference = std::max(difference, std::abs(jets.displacement[n].a - runs[0].displacement[n]));
-    CHECK(difference < 1e-14);
+    // Displacement changes by no more than the resampled inputs differ by already, a ten-millionth.
+    CHECK(largest(numbers[0].displacement, numbers[1].displacement) < 3e-6 * peakIn(numbers[2].displacement));
+    for (const auto channel : {&Trajectory<double>::current, &Trajectory<double>::velocity, &Trajectory<double>::acceleration})
+        check(largest(numbers[0].*channel, numbers[1].*channel), largest(numbers[1].*channel, numbers[2].*channel));
+    const auto valuesIn = [](const std::vector<Jet>& run) {
+        std::vector<double> result;
+        for (const auto& jet : run)
+            result.push_back(jet.a);
+        return result;
+    };
+    for (const auto channel : {&Trajectory<Jet>::current, &Trajectory<Jet>::displacement, &Trajectory<Jet>::velocity, &Trajectory<Jet>::acceleration})
+        check(largest(valuesIn(jets[0].*channel), valuesIn(jets[1].*channel)), largest(valuesIn(jets[1].*channel), valuesIn(jets[2].*channel)));
+
+    // Two methods that share the physics alone come to the same motion.
+    Trajectory<double> number;
+    REQUIRE(integrate(model, theta, Drive(u, sampleRate, 2), 0, number));
+    const auto displacement = valuesIn(jets[2].displacement), acceleration = valuesIn(jets[2].acceleration);
+    CHECK(largest(number.displacement, displacement) < 1e-7 * peakIn(displacement));
+    CHECK(largest(number.acceleration, acceleration) < 1e-5 * peakIn(acceleration));
 }
 
 TEST_CASE("Energy in is energy lost and energy stored, at any time", "[simulate]")

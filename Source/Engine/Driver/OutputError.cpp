@@ -231,10 +231,9 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
                                     const Progress& progress)
 {
     const auto leadIn = settlingTime(model, record);
-    const int stable = stableSubsteps(model, record.sampleRate);
     OutputErrorOptions options = wanted;
-    options.substeps = std::max(wanted.substeps, stable);
-    options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
+    options.substeps = std::max(wanted.substeps, stableSubsteps(model, record.sampleRate));
+    options.gradientSubsteps = std::max(wanted.gradientSubsteps, stableJetSubsteps(model, record.sampleRate));
     const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
     std::vector<SectionFit> fits(sections.size());
     std::atomic<std::size_t> next {0};

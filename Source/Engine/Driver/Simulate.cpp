@@ -2,11 +2,13 @@
 #include "Engine/Driver/Simulate.h"
 
 #include "Engine/Driver/Dynamics.h"
+#include "Engine/Driver/ExponentialStep.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Resample.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +22,37 @@ Drive::Drive(std::span<const double> samples, double sampleRate, int substeps)
 {
 }
 
-template <class T>
-bool integrate(const Model& model, const std::vector<T>& parameters, const Drive& drive, std::size_t first,
-               Trajectory<T>& out, const std::vector<T>& start)
+std::array<double, 7> Drive::polynomial(std::size_t halfStep) const
+{
+    // Lagrange's polynomial through s = -1, -1/2, ..., 2, by the inverse of its Vandermonde matrix.
+    constexpr int count = 7;
+    static const auto inverse = [] {
+        Eigen::Matrix<double, count, count> vandermonde;
+        for (int row = 0; row < count; ++row)
+            for (int column = 0; column < count; ++column)
+                vandermonde(row, column) = std::pow(0.5 * (row - 2), column);
+        return vandermonde.inverse().eval();
+    }();
+    const auto last = static_cast<std::ptrdiff_t>(fine_.size()) - 1;
+    Eigen::Matrix<double, count, 1> value;
+    for (int k = 0; k < count; ++k) {
+        const auto n = static_cast<std::ptrdiff_t>(halfStep) + k - 2;
+        const auto inside = [&](std::ptrdiff_t at) { return fine_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))]; };
+        value[k] = n < 0 ? 2.0 * inside(0) - inside(-n) : n > last ? 2.0 * inside(last) - inside(2 * last - n) : inside(n);
+    }
+    std::array<double, count> result;
+    Eigen::Map<Eigen::Matrix<double, count, 1>>(result.data()).noalias() = inverse * value;
+    return result;
+}
+
+namespace {
+
+/// Runs along the drive. advance(z, halfStep) advances the state by the step that starts there and tells dv/dt at its start.
+template <class T, class Advance>
+bool follow(const Drive& drive, std::size_t first, std::vector<T> z, Trajectory<T>& out, Advance&& advance)
 {
     // Far beyond any loudspeaker: a runaway is recognized early instead of filling the record with infinities.
     constexpr double implausible = 1e3;   // A, m, m/s
-    Dynamics<T> dynamics(model, parameters);
-    auto z = start.empty() ? std::vector<T>(static_cast<std::size_t>(dynamics.order()), T(0.0)) : start;
     for (auto* channel : {&out.current, &out.displacement, &out.velocity, &out.acceleration}) {
         channel->clear();
         channel->reserve(drive.length() - first);
@@ -41,9 +66,9 @@ bool integrate(const Model& model, const std::vector<T>& parameters, const Drive
             out.velocity.push_back(z[2]);
         }
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
-            const T* rates = dynamics.step(z.data(), drive.at(half), drive.at(half + 1), drive.at(half + 2), drive.step());
+            const T acceleration = advance(z.data(), half);
             if (s == 0 && kept)
-                out.acceleration.push_back(rates[2]);
+                out.acceleration.push_back(acceleration);
         }
         for (int state = 0; state < 3; ++state)
             if (!(std::abs(valueOf(z[static_cast<std::size_t>(state)])) < implausible))
@@ -52,10 +77,34 @@ bool integrate(const Model& model, const std::vector<T>& parameters, const Drive
     return true;
 }
 
-template bool integrate(const Model&, const std::vector<double>&, const Drive&, std::size_t, Trajectory<double>&, const std::vector<double>&);
-template bool integrate(const Model&, const std::vector<Jet>&, const Drive&, std::size_t, Trajectory<Jet>&, const std::vector<Jet>&);
+} // namespace
+
+bool integrate(const Model& model, const std::vector<double>& parameters, const Drive& drive, std::size_t first,
+               Trajectory<double>& out, const std::vector<double>& start)
+{
+    Model moved = model;
+    setParameterVector(moved, Eigen::Map<const Eigen::VectorXd>(parameters.data(), static_cast<Eigen::Index>(parameters.size())));
+    ExponentialStep exponential(moved, drive.step());
+    return follow(drive, first, start.empty() ? std::vector<double>(static_cast<std::size_t>(exponential.order()), 0.0) : start, out,
+                  [&](double* z, std::size_t half) { return exponential.step(z, drive.polynomial(half)); });
+}
+
+bool integrate(const Model& model, const std::vector<Jet>& parameters, const Drive& drive, std::size_t first, Trajectory<Jet>& out,
+               const std::vector<Jet>& start)
+{
+    Dynamics<Jet> dynamics(model, parameters);
+    return follow(drive, first, start.empty() ? std::vector<Jet>(static_cast<std::size_t>(dynamics.order()), Jet(0.0)) : start, out,
+                  [&](Jet* z, std::size_t half) -> Jet {
+                      return dynamics.step(z, drive.at(half), drive.at(half + 1), drive.at(half + 2), drive.step())[2];
+                  });
+}
 
 int stableSubsteps(const Model& model, double sampleRate)
+{
+    return std::clamp(static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (2.0 * sampleRate))), 1, 64);
+}
+
+int stableJetSubsteps(const Model& model, double sampleRate)
 {
     const auto poles = linearize(model).A.eigenvalues();
     // |lambda h| <= 2 keeps well inside the method's stability region (2.78 on the negative real axis), with room for

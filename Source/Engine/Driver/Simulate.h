@@ -5,6 +5,7 @@
 #include "Engine/Measurement/Measurement.h"
 #include "Engine/Progress.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,10 @@ public:
     double step() const { return step_; }             ///< s
     double at(std::size_t halfStep) const { return halfStep < fine_.size() ? fine_[halfStep] : 0.0; }
 
+    /// Coefficients of the input on the step that starts there, u(s) = sum u_k s^k, 0 <= s <= 1: through the values at half steps from
+    /// one step before to one step after it; beyond the ends the record is reflected oddly, as by upsample().
+    std::array<double, 7> polynomial(std::size_t halfStep) const;
+
 private:
     std::size_t length_;
     int substeps_;
@@ -36,17 +41,19 @@ private:
     std::vector<double> fine_;   // two values a step
 };
 
-/// Integrates the model from rest, or from another state.
+/// Integrates the model from rest, or from another state: on numbers by ExponentialStep, on jets by the classical Runge-Kutta method.
 /// @param parameters  one a parameter of the model (double or Jet), in the order of parametersOf()
 /// @param first       the trajectory is kept from this sample on
 /// @param start       state z of Dynamics at the drive's first sample; empty: rest
 /// @returns false when the state leaves the finite numbers or any plausible range; the trajectory is then void
-template <class T>
-bool integrate(const Model&, const std::vector<T>& parameters, const Drive&, std::size_t first, Trajectory<T>& out,
-               const std::vector<T>& start = {});
+bool integrate(const Model&, const std::vector<double>& parameters, const Drive&, std::size_t first, Trajectory<double>& out,
+               const std::vector<double>& start = {});
+bool integrate(const Model&, const std::vector<Jet>& parameters, const Drive&, std::size_t first, Trajectory<Jet>& out,
+               const std::vector<Jet>& start = {});
 
-/// The fewest steps a sample for which the explicit method is stable and resolves the linear part's fastest pole.
+/// The fewest steps a sample with which integrate() is stable on numbers, and on jets.
 int stableSubsteps(const Model&, double sampleRate);
+int stableJetSubsteps(const Model&, double sampleRate);
 
 struct SimulationOptions {
     double tolerance = 1e-5;   ///< largest relative rms change of any channel when the step is halved

@@ -29,6 +29,13 @@ struct Cubic {
         return {{start, slopeAtStart, 0.5 * (end + before) - start, 0.5 * (end - before) - slopeAtStart}};
     }
 
+    /// The same on the part of the step that starts at s and is that long, with a new s from 0 to 1.
+    Cubic part(double s, double length) const
+    {
+        return {{at(s), length * (c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])), length * length * (c[2] + 3.0 * s * c[3]),
+                 length * length * length * c[3]}};
+    }
+
     double at(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
     double end() const { return c[0] + c[1] + c[2] + c[3]; }
 };

@@ -15,22 +15,14 @@ namespace {
 constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
 constexpr double followingTime = 0.005;  // s
 
-std::vector<double> valuesOf(const Model& model)
-{
-    const auto values = parameterVector(model);
-    return {values.begin(), values.end()};
-}
-
 } // namespace
 
 Speaker::Speaker(const Model& model, const RealTimeOptions& options)
-    : oversampling_((requireRunnable(model, options), options.oversampling)), model_(model), dynamics_(model_, valuesOf(model)),
-      reference_(model, options.sampleRate * options.oversampling),
-      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
+    : oversampling_((requireRunnable(model, options), options.oversampling)),
       substeps_(stableSubsteps(model, options.sampleRate * options.oversampling)),
-      step_(1.0 / (options.sampleRate * options.oversampling * substeps_)),
-      smoothing_(1.0 - std::exp(-1.0 / (followingTime * options.sampleRate))), state_(static_cast<std::size_t>(dynamics_.order()), 0.0),
-      rates_(state_)
+      motion_(model, 1.0 / (options.sampleRate * options.oversampling * substeps_)), reference_(model, options.sampleRate * options.oversampling),
+      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
+      smoothing_(1.0 - std::exp(-1.0 / (followingTime * options.sampleRate))), state_(static_cast<std::size_t>(motion_.order()), 0.0)
 {
 }
 
@@ -60,21 +52,19 @@ void Speaker::setLinearShareRemoved(double share)
 double Speaker::advance(double u)
 {
     const auto drive = Cubic::through(past_[2], past_[1], past_[0], u);
-    for (int s = 0; s < substeps_; ++s) {
-        const double from = static_cast<double>(s) / substeps_, to = static_cast<double>(s + 1) / substeps_;
-        dynamics_.step(state_.data(), drive.at(from), drive.at(0.5 * (from + to)), drive.at(to), step_);
-    }
+    for (int s = 0; s < substeps_; ++s)
+        motion_.step(state_.data(), drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
     past_ = {u, past_[0], past_[1]};
-    dynamics_.rates(state_.data(), u, rates_.data());
+    const double acceleration = motion_.acceleration(state_.data(), u);
     const double linear = reference_.step(u).a;
     if (!(std::abs(state_[0]) < implausibleState && std::abs(state_[1]) < implausibleState && std::abs(state_[2]) < implausibleState
-          && std::isfinite(rates_[2]) && std::isfinite(linear))) {
+          && std::isfinite(acceleration) && std::isfinite(linear))) {
         faulty_ = true;
         return 0.0;
     }
     peakCurrent_ = std::max(peakCurrent_, std::abs(state_[0]));
     peakDisplacement_ = std::max(peakDisplacement_, std::abs(state_[1]));
-    return rates_[2] - share_ * linear;
+    return acceleration - share_ * linear;
 }
 
 void Speaker::process(const double* in, double* out, std::size_t n)

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/Model.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace excursion {
+
+/// One step of a model's simulation by exponential time differencing (ETDRK4: Cox & Matthews 2002, J. Comput. Phys. 176). The
+/// equations of Dynamics are split,
+///     dz/dt = A z + B u + E N,
+/// into the linear part A, B of the base, the ladders and the relaxations, and what the laws add to a few rates: to di/dt, to dv/dt, and
+/// the rates of their own memories, should they have any. The linear part is exact for inputs that are polynomials on the step, however
+/// stiff it is; the laws' part is of fourth order. N depends on a few outputs only,
+///     y = (i, x, v, A_i z, A_v z, the laws' memories) = C z,
+/// so the stages within a step are found from y alone, and a step costs little more than one product of exp(A h) and z.
+///
+/// Thread: after construction nothing allocates, locks or throws.
+class ExponentialStep {
+public:
+    static constexpr int terms = 7;   ///< coefficients of an input polynomial
+
+    /// @param model  it need not outlive this
+    /// @param h      step, s
+    ExponentialStep(const Model& model, double h);
+    ExponentialStep(const ExponentialStep&) = delete;   // the laws point into the model
+
+    /// Length of the state z = (i, x, v, memories in order), as in Dynamics.
+    int order() const { return static_cast<int>(A_.rows()); }
+
+    /// Advances z by h, and tells dv/dt at the step's start, m/s^2.
+    /// @param u  coefficients of the input on the step, u(s) = sum u_k s^k, 0 <= s <= 1, V (or N); at most `terms`
+    double step(double* z, std::span<const double> u);
+
+    /// dv/dt at state z under input u, m/s^2.
+    double acceleration(const double* z, double u);
+
+    /// The largest eigenvalue of dN/d(i, v), in size, over what was visited (1/s): where h times it goes beyond 2, the step is too long
+    /// to be stable.
+    double fastestLaw();
+
+private:
+    struct Law {
+        const Component* component;
+        std::vector<double> coefficients;
+        Eigen::Index memory;   ///< where its memory starts among the laws' memories
+    };
+
+    double motion(double u) const { return electrical_ ? 0.0 : u / mass_; }   ///< m/s^2 that the input makes at once
+    void ask(double u, double* N);
+
+    const Model model_;
+    std::vector<Law> laws_;
+    bool electrical_;
+    double inductance_ = 0.0, mass_ = 0.0;    ///< of the linear part
+    Eigen::MatrixXd A_;
+    Eigen::MatrixXd linear_;                  ///< (z, u) -> (z at the end, y at the start, halfway, at the end) without the laws
+    Eigen::MatrixXd quadrature_;              ///< (N at the start, sum of both halfway, at the end) -> what they add to z
+    Eigen::MatrixXd stage_, later_;           ///< C Q and C exp(A h/2) Q with Q = int exp(A t) E dt over h/2
+    Eigen::VectorXd from_, run_, y_, sums_;
+    std::array<Eigen::VectorXd, 4> N_;
+};
+
+} // namespace excursion
