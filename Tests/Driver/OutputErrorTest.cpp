@@ -81,14 +81,13 @@ OutputErrorOptions plain()
     OutputErrorOptions options;
     options.gradient = false;
     options.spectra = true;
-    options.substeps = 16;
-    options.gradientSubsteps = 16;   // jets go by another method of integration, and must come as near to the truth
+    options.substeps = options.gradientSubsteps = 4;
     return options;
 }
 
 } // namespace
 
-TEST_CASE("Normal equations from jets are those from finite differences, by every parameter", "[output-error]")
+TEST_CASE("Normal equations are those from finite differences, by every parameter", "[output-error]")
 {
     const auto model = bent();
     const auto record = someRecord();
@@ -105,7 +104,7 @@ TEST_CASE("Normal equations from jets are those from finite differences, by ever
     const auto P = theta.size();
     std::vector<std::vector<std::vector<Complex>>> slope(static_cast<std::size_t>(P));   // [parameter][channel][line]
     for (Eigen::Index k = 0; k < P; ++k) {
-        const double step = 2e-5 * std::max(std::abs(theta[k]), 1e-4);
+        const double step = theta[k] != 0.0 ? 2e-5 * std::max(std::abs(theta[k]), 1e-4) : 2e-5;
         const auto moved = [&](double by) {
             auto there = model;
             auto changed = theta;

@@ -58,8 +58,6 @@ Record someRecord(std::size_t leadIn)
 TEST_CASE("A linear section starts in the state that it would reach after a long time", "[output-error]")
 {
     const auto model = creeping();
-    const auto theta = parameterVector(model);
-    const std::vector<double> parameters(theta.begin(), theta.end());
     const auto begin = GENERATE(std::size_t {0}, std::size_t {300});
     const auto record = someRecord(N / 4 + begin);
     const auto drive = record.drive(record.sections.front());
@@ -69,14 +67,13 @@ TEST_CASE("A linear section starts in the state that it would reach after a long
 
     // 200 periods are 12.8 s, more than twelve times as long as the slowest relaxation takes.
     const auto patient = someRecord(N / 4 + begin + 200 * N);
-    Trajectory<double> settled, started;
+    Trajectory settled, started;
     const auto longDrive = patient.drive(patient.sections.front());
-    REQUIRE(integrate(model, parameters, Drive(longDrive, sampleRate, 4), longDrive.size() - N, settled));
-    REQUIRE(integrate(model, parameters, Drive(drive, sampleRate, 4), drive.size() - N, started,
-                      {start[0].value.begin(), start[0].value.end()}));
+    REQUIRE(integrate(model, Drive(longDrive, sampleRate, 4), longDrive.size() - N, settled));
+    REQUIRE(integrate(model, Drive(drive, sampleRate, 4), drive.size() - N, started, start[0].value));
     double difference = 0.0, power = 0.0, fromRest = 0.0;
-    Trajectory<double> rested;
-    REQUIRE(integrate(model, parameters, Drive(drive, sampleRate, 4), drive.size() - N, rested));
+    Trajectory rested;
+    REQUIRE(integrate(model, Drive(drive, sampleRate, 4), drive.size() - N, rested));
     for (std::size_t n = 0; n < N; ++n) {
         difference += std::pow(started.displacement[n] - settled.displacement[n], 2);
         fromRest += std::pow(rested.displacement[n] - settled.displacement[n], 2);

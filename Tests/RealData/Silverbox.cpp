@@ -30,9 +30,8 @@ ImportOptions silverbox()
 
 std::vector<double> run(const Model& model, std::span<const double> input, double rate)
 {
-    const auto theta = parameterVector(model);
-    Trajectory<double> trajectory;
-    REQUIRE(integrate(model, std::vector<double>(theta.begin(), theta.end()), Drive(input, rate, 8), 0, trajectory));
+    Trajectory trajectory;
+    REQUIRE(integrate(model, Drive(input, rate, 8), 0, trajectory));
     return trajectory.displacement;
 }
 

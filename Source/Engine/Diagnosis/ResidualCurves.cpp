@@ -105,7 +105,6 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     const auto currentChannel = record.channelIndex(Quantity::current);
     const Repair repair(model);
     const double mass = model.baseParameter("m").value;
-    const auto theta = parameterVector(model);
     const int substeps = stableSubsteps(model, record.sampleRate);
     Motions motions;
     bool seesForce = false, seesVoltage = false;
@@ -134,9 +133,9 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
                 force[k] = mass * drives.acceleration;
             voltage[k] = drives.voltage;
         }
-        Trajectory<double> run;
+        Trajectory run;
         const auto drive = record.drive(section);
-        if (!integrate(model, {theta.begin(), theta.end()}, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
+        if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
             return {};
         const auto append = [](std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); };
         append(motions.x, run.displacement);

@@ -3,7 +3,6 @@
 
 #include "Engine/Driver/Model.h"
 
-#include <array>
 #include <vector>
 
 namespace excursion {
@@ -32,8 +31,6 @@ public:
             part.effect->prepare(*part.extent, parameters.data() + offset, coefficients_.data() + part.coefficients);
             offset += model.components[k].parameters.size();
         }
-        for (auto& stage : stages_)
-            stage.resize(static_cast<std::size_t>(order_));
     }
 
     int order() const { return order_; }
@@ -56,31 +53,6 @@ public:
         }
     }
 
-    /// One step of the classical fourth-order Runge-Kutta method.
-    /// @param z        state, advanced in place
-    /// @param u        input at the step's start, middle and end
-    /// @param h        s
-    /// @returns        the rates at the start of the step
-    const T* step(T* z, double u0, double u1, double u2, double h)
-    {
-        auto& [k1, k2, k3, k4, y] = stages_;
-        const auto n = static_cast<std::size_t>(order_);
-        const auto stage = [&](const std::vector<T>& slope, double fraction) {
-            for (std::size_t j = 0; j < n; ++j)
-                y[j] = z[j] + fraction * slope[j];
-        };
-        rates(z, T(u0), k1.data());
-        stage(k1, 0.5 * h);
-        rates(y.data(), T(u1), k2.data());
-        stage(k2, 0.5 * h);
-        rates(y.data(), T(u1), k3.data());
-        stage(k3, h);
-        rates(y.data(), T(u2), k4.data());
-        for (std::size_t j = 0; j < n; ++j)
-            z[j] += (h / 6.0) * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]);
-        return k1.data();
-    }
-
 private:
     struct Part {
         const Effect* effect;
@@ -93,7 +65,6 @@ private:
     int order_ = 3;
     std::vector<Part> parts_;
     std::vector<T> coefficients_;
-    std::array<std::vector<T>, 5> stages_;
 };
 
 } // namespace excursion

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/ExponentialStep.h"
 
+#include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/Linearize.h"
 
 #include <Eigen/Eigenvalues>
-#include <unsupported/Eigen/MatrixFunctions>
 
 #include <algorithm>
 #include <cmath>
@@ -30,35 +30,17 @@ std::vector<double> coefficientsOf(const Component& component)
     return coefficients;
 }
 
-/// exp(A h) and, column by column, phi_k(A h) b h for k = 1..count, phi_k(Z) = int_0^1 exp(Z (1 - s)) s^(k-1)/(k-1)! ds, both from
-/// one exponential of A bordered by b and a chain of integrators.
-struct Exponential {
-    Eigen::MatrixXd decay, phi;
-};
-
-Exponential exponential(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, double h, Eigen::Index count)
-{
-    const auto n = A.rows();
-    Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(n + count, n + count);
-    bordered.topLeftCorner(n, n) = A * h;
-    bordered.block(0, n, n, 1) = b * h;
-    bordered.block(n, n + 1, count - 1, count - 1).setIdentity();
-    const Eigen::MatrixXd solution = bordered.exp();
-    return {solution.topLeftCorner(n, n), solution.topRightCorner(n, count)};
-}
-
 } // namespace
 
 ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), electrical_(model.electrical())
 {
-    // Places of the linear part's states, and of the laws' memories, in z.
-    std::vector<Eigen::Index> linearPlace {0, 1, 2}, lawPlace;
+    linearPlace_ = {0, 1, 2};
     Eigen::Index n = 3;
     Balance<double> atRest;
     for (const auto& component : model_.components) {
         const Eigen::Index size = component.effect->memorySize(component.extent);
         auto coefficients = coefficientsOf(component);
-        auto& places = component.effect->linear() ? linearPlace : lawPlace;
+        auto& places = component.effect->linear() ? linearPlace_ : lawPlace_;
         if (component.effect->linear()) {
             const std::vector<double> memory(static_cast<std::size_t>(size), 0.0);
             std::vector<double> unused(memory);
@@ -75,12 +57,12 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     const auto part = linearize(linearPart(model));
     A_.setZero(n, n);
     Eigen::VectorXd B = Eigen::VectorXd::Zero(n);
-    for (std::size_t row = 0; row < linearPlace.size(); ++row) {
-        B[linearPlace[row]] = part.B[static_cast<Eigen::Index>(row)];
-        for (std::size_t column = 0; column < linearPlace.size(); ++column)
-            A_(linearPlace[row], linearPlace[column]) = part.A(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+    for (std::size_t row = 0; row < linearPlace_.size(); ++row) {
+        B[linearPlace_[row]] = part.B[static_cast<Eigen::Index>(row)];
+        for (std::size_t column = 0; column < linearPlace_.size(); ++column)
+            A_(linearPlace_[row], linearPlace_[column]) = part.A(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
     }
-    const auto memories = static_cast<Eigen::Index>(lawPlace.size());
+    const auto memories = static_cast<Eigen::Index>(lawPlace_.size());
     const auto outputs = motions + memories, laws = rates + memories;
     Eigen::MatrixXd C = Eigen::MatrixXd::Zero(outputs, n), E = Eigen::MatrixXd::Zero(n, laws);
     C.topLeftCorner(3, 3).setIdentity();
@@ -88,7 +70,7 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     C.row(4) = A_.row(2);
     E(0, 0) = E(2, 1) = 1.0;
     for (Eigen::Index k = 0; k < memories; ++k) {
-        const auto place = lawPlace[static_cast<std::size_t>(k)];
+        const auto place = lawPlace_[static_cast<std::size_t>(k)];
         C(motions + k, place) = E(place, rates + k) = 1.0;
     }
 
@@ -96,27 +78,26 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     linear_.setZero(n + 3 * outputs, n + terms);
     linear_.topLeftCorner(n, n) = whole.decay;
     linear_.block(n, 0, outputs, n) = C;
-    linear_.block(n + outputs, 0, outputs, n) = C * half.decay;
-    double factorial = 1.0;
-    for (int k = 0; k < terms; ++k) {
-        factorial *= std::max(k, 1);
-        linear_.col(n + k).head(n) = factorial * whole.phi.col(k);
-        linear_.col(n + k).segment(n + outputs, outputs) = factorial * std::pow(0.5, k) * (C * half.phi.col(k));
-    }
+    for (int k = 0; k < terms; ++k)
+        linear_.col(n + k).head(n) = std::tgamma(k + 1.0) * whole.phi.col(k);
     linear_.bottomRows(outputs) = C * linear_.topRows(n);
 
+    halfway_.resize(n, n + terms);
+    halfway_.leftCols(n) = half.decay;
+    for (int k = 0; k < terms; ++k)
+        halfway_.col(n + k) = std::tgamma(k + 1.0) * std::pow(0.5, k) * half.phi.col(k);
+    linear_.middleRows(n + outputs, outputs) = C * halfway_;
+
     quadrature_.resize(n, 3 * laws);
-    stage_.resize(outputs, laws);
-    later_.resize(outputs, laws);
+    Q_.resize(n, laws);
     for (Eigen::Index q = 0; q < laws; ++q) {
-        const auto phi = exponential(A_, E.col(q), h, 3).phi;
-        quadrature_.col(q) = phi.col(0) - 3.0 * phi.col(1) + 4.0 * phi.col(2);
-        quadrature_.col(laws + q) = 2.0 * phi.col(1) - 4.0 * phi.col(2);
-        quadrature_.col(2 * laws + q) = 4.0 * phi.col(2) - phi.col(1);
-        const Eigen::VectorXd Q = exponential(A_, E.col(q), 0.5 * h, 1).phi;
-        stage_.col(q) = C * Q;
-        later_.col(q) = C * (half.decay * Q);
+        const auto weights = quadrature(A_, E.col(q), h);
+        for (Eigen::Index point = 0; point < 3; ++point)
+            quadrature_.col(point * laws + q) = weights.col(point);
+        Q_.col(q) = exponential(A_, E.col(q), 0.5 * h, 1).phi;
     }
+    stage_ = C * Q_;
+    later_ = C * (half.decay * Q_);
     from_.setZero(n + terms);
     run_.setZero(linear_.rows());
     y_.setZero(outputs);

@@ -158,13 +158,12 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
             }
         }
     if (x == 0.0 || (i == 0.0 && model.electrical())) {
-        const auto theta = parameterVector(model);
         const int substeps = stableSubsteps(model, record.sampleRate);
         double simulatedX = 0.0, simulatedV = 0.0, simulatedI = 0.0;
         for (const auto& section : record.sections) {
-            Trajectory<double> run;
+            Trajectory run;
             const auto drive = record.drive(section);
-            if (!integrate(model, {theta.begin(), theta.end()}, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
+            if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
                 continue;
             simulatedX = std::max(simulatedX, peakOf(run.displacement));
             simulatedV = std::max(simulatedV, peakOf(run.velocity));

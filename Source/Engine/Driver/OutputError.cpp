@@ -21,8 +21,7 @@ namespace {
 using Spectrum = std::vector<std::complex<double>>;
 
 /// The trajectory's record that a channel observes; pressure is made of acceleration.
-template <class T>
-const std::vector<T>& observed(const Trajectory<T>& run, Quantity quantity)
+const std::vector<double>& observed(const Trajectory& run, Quantity quantity)
 {
     switch (quantity) {
     case Quantity::current: return run.current;
@@ -55,13 +54,12 @@ public:
     SectionFit run()
     {
         SectionFit fit;
-        const auto theta = parameterVector(model_);
         const auto channels = record_.channels.size();
         const auto lines = static_cast<Eigen::Index>(last_ - first_ + 1);
         const auto columns = static_cast<Eigen::Index>(active_.size());
 
-        Trajectory<double> trajectory;
-        fit.finite = integrate(model_, {theta.begin(), theta.end()}, *drive_, start_, trajectory, {from_.value.begin(), from_.value.end()});
+        Trajectory trajectory;
+        fit.finite = integrate(model_, *drive_, start_, trajectory, from_.value);
         if (!fit.finite)
             return fit;
         fit.channels.resize(channels);
@@ -76,7 +74,7 @@ public:
         }
         if (options_.gradient && columns > 0) {
             std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(2 * lines, columns));
-            if (!sensitivities(theta, predicted, J)) {
+            if (!sensitivities(predicted, J)) {
                 fit.finite = false;
                 return fit;
             }
@@ -129,10 +127,9 @@ private:
         }
     }
 
-    bool sensitivities(const Eigen::VectorXd& theta, const std::vector<Spectrum>& predicted,
-                       std::vector<Eigen::MatrixXd>& J) const
+    bool sensitivities(const std::vector<Spectrum>& predicted, std::vector<Eigen::MatrixXd>& J) const
     {
-        const auto dynamicCount = theta.size() - static_cast<Eigen::Index>(model_.path.size());
+        const auto dynamicCount = static_cast<Eigen::Index>(parametersOf(model_).size() - model_.path.size());
         std::vector<std::size_t> dynamic;   // columns whose parameter acts through the equations of motion
         for (std::size_t j = 0; j < active_.size(); ++j)
             if (active_[j] < dynamicCount)
@@ -140,29 +137,23 @@ private:
             else
                 pathSensitivity(active_[j] - dynamicCount, j, predicted, J);
 
+        // As many parameters at once as their records leave room for.
+        constexpr std::size_t room = 1 << 23;   // numbers
+        const auto together = std::clamp<std::size_t>(room / (section_.window * record_.channels.size()), 1, std::max<std::size_t>(dynamic.size(), 1));
         std::vector<double> samples(section_.window);
-        for (std::size_t block = 0; block < dynamic.size(); block += jetWidth) {
-            std::vector<Jet> parameters(theta.begin(), theta.end());
-            const auto count = std::min<std::size_t>(jetWidth, dynamic.size() - block);
-            for (std::size_t b = 0; b < count; ++b) {
-                const auto index = static_cast<std::size_t>(active_[dynamic[block + b]]);
-                parameters[index] = Jet(parameters[index].a, static_cast<int>(b));
-            }
-            std::vector<Jet> from(from_.value.begin(), from_.value.end());
-            for (std::size_t state = 0; state < from.size(); ++state)
-                for (std::size_t b = 0; b < count; ++b)
-                    from[state].v[static_cast<Eigen::Index>(b)] = from_.gradient(static_cast<Eigen::Index>(state), active_[dynamic[block + b]]);
-            Trajectory<Jet> run;
-            if (!integrate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, run, from))
+        for (std::size_t block = 0; block < dynamic.size(); block += together) {
+            std::vector<Eigen::Index> parameters;
+            for (std::size_t b = block; b < std::min(block + together, dynamic.size()); ++b)
+                parameters.push_back(active_[dynamic[b]]);
+            std::vector<Eigen::MatrixXd> slopes;
+            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, record_.channels, from_, slopes))
                 return false;
-            for (std::size_t c = 0; c < record_.channels.size(); ++c) {
-                const auto& jets = observed(run, record_.channels[c]);
-                for (std::size_t b = 0; b < count; ++b) {
+            for (std::size_t c = 0; c < record_.channels.size(); ++c)
+                for (std::size_t b = 0; b < parameters.size(); ++b) {
                     for (std::size_t n = 0; n < samples.size(); ++n)
-                        samples[n] = jets[n].v[static_cast<Eigen::Index>(b)];
+                        samples[n] = slopes[c](static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(n));
                     fill(c, spectrumOf(samples, record_.channels[c]), J[c].col(static_cast<Eigen::Index>(dynamic[block + b])));
                 }
-            }
         }
         return true;
     }
@@ -231,9 +222,10 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
                                     const Progress& progress)
 {
     const auto leadIn = settlingTime(model, record);
+    const int stable = stableSubsteps(model, record.sampleRate);
     OutputErrorOptions options = wanted;
-    options.substeps = std::max(wanted.substeps, stableSubsteps(model, record.sampleRate));
-    options.gradientSubsteps = std::max(wanted.gradientSubsteps, stableJetSubsteps(model, record.sampleRate));
+    options.substeps = std::max(wanted.substeps, stable);
+    options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
     const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
     std::vector<SectionFit> fits(sections.size());
     std::atomic<std::size_t> next {0};

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Simulate.h"
 
-#include "Engine/Driver/Dynamics.h"
 #include "Engine/Driver/ExponentialStep.h"
-#include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/SensitivityStep.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Resample.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -47,12 +45,20 @@ std::array<double, 7> Drive::polynomial(std::size_t halfStep) const
 
 namespace {
 
-/// Runs along the drive. advance(z, halfStep) advances the state by the step that starts there and tells dv/dt at its start.
-template <class T, class Advance>
-bool follow(const Drive& drive, std::size_t first, std::vector<T> z, Trajectory<T>& out, Advance&& advance)
+// Far beyond any loudspeaker: a runaway is recognized early instead of filling the record with infinities.
+constexpr double implausible = 1e3;   // A, m, m/s
+
+bool isPlausible(const Eigen::VectorXd& z)
 {
-    // Far beyond any loudspeaker: a runaway is recognized early instead of filling the record with infinities.
-    constexpr double implausible = 1e3;   // A, m, m/s
+    return std::abs(z[0]) < implausible && std::abs(z[1]) < implausible && std::abs(z[2]) < implausible;
+}
+
+} // namespace
+
+bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start)
+{
+    ExponentialStep motion(model, drive.step());
+    Eigen::VectorXd z = start.size() > 0 ? start : Eigen::VectorXd::Zero(motion.order());
     for (auto* channel : {&out.current, &out.displacement, &out.velocity, &out.acceleration}) {
         channel->clear();
         channel->reserve(drive.length() - first);
@@ -66,51 +72,57 @@ bool follow(const Drive& drive, std::size_t first, std::vector<T> z, Trajectory<
             out.velocity.push_back(z[2]);
         }
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
-            const T acceleration = advance(z.data(), half);
+            const double acceleration = motion.step(z.data(), drive.polynomial(half));
             if (s == 0 && kept)
                 out.acceleration.push_back(acceleration);
         }
-        for (int state = 0; state < 3; ++state)
-            if (!(std::abs(valueOf(z[static_cast<std::size_t>(state)])) < implausible))
-                return false;
+        if (!isPlausible(z))
+            return false;
     }
     return true;
 }
 
-} // namespace
-
-bool integrate(const Model& model, const std::vector<double>& parameters, const Drive& drive, std::size_t first,
-               Trajectory<double>& out, const std::vector<double>& start)
+bool differentiate(const Model& model, std::span<const Eigen::Index> active, const Drive& drive, std::size_t first,
+                   const std::vector<Quantity>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
 {
-    Model moved = model;
-    setParameterVector(moved, Eigen::Map<const Eigen::VectorXd>(parameters.data(), static_cast<Eigen::Index>(parameters.size())));
-    ExponentialStep exponential(moved, drive.step());
-    return follow(drive, first, start.empty() ? std::vector<double>(static_cast<std::size_t>(exponential.order()), 0.0) : start, out,
-                  [&](double* z, std::size_t half) { return exponential.step(z, drive.polynomial(half)); });
-}
-
-bool integrate(const Model& model, const std::vector<Jet>& parameters, const Drive& drive, std::size_t first, Trajectory<Jet>& out,
-               const std::vector<Jet>& start)
-{
-    Dynamics<Jet> dynamics(model, parameters);
-    return follow(drive, first, start.empty() ? std::vector<Jet>(static_cast<std::size_t>(dynamics.order()), Jet(0.0)) : start, out,
-                  [&](Jet* z, std::size_t half) -> Jet {
-                      return dynamics.step(z, drive.at(half), drive.at(half + 1), drive.at(half + 2), drive.step())[2];
-                  });
+    SensitivityStep motion(model, drive.step(), active);
+    if (start.value.size() > 0) {
+        Eigen::MatrixXd slopes(static_cast<Eigen::Index>(active.size()), start.value.size());
+        for (std::size_t k = 0; k < active.size(); ++k)
+            slopes.row(static_cast<Eigen::Index>(k)) = start.gradient.col(active[k]).transpose();
+        motion.begin(start.value, slopes);
+    }
+    const auto place = [](Quantity quantity) -> Eigen::Index {
+        switch (quantity) {
+        case Quantity::current: return 0;
+        case Quantity::displacement: return 1;
+        case Quantity::velocity: return 2;
+        default: return -1;   // no state: acceleration
+        }
+    };
+    out.assign(observed.size(), Eigen::MatrixXd(static_cast<Eigen::Index>(active.size()), static_cast<Eigen::Index>(drive.length() - first)));
+    std::size_t half = 0;
+    for (std::size_t n = 0; n < drive.length(); ++n) {
+        const auto column = static_cast<Eigen::Index>(n - first);
+        const bool kept = n >= first;
+        for (std::size_t q = 0; kept && q < observed.size(); ++q)
+            if (const auto state = place(observed[q]); state >= 0)
+                out[q].col(column) = motion.slopes().col(state);
+        for (int s = 0; s < drive.substeps(); ++s, half += 2) {
+            motion.step(drive.polynomial(half));
+            for (std::size_t q = 0; kept && s == 0 && q < observed.size(); ++q)
+                if (place(observed[q]) < 0)
+                    out[q].col(column) = motion.accelerationSlopes();
+        }
+        if (!isPlausible(motion.state()))
+            return false;
+    }
+    return true;
 }
 
 int stableSubsteps(const Model& model, double sampleRate)
 {
     return std::clamp(static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (2.0 * sampleRate))), 1, 64);
-}
-
-int stableJetSubsteps(const Model& model, double sampleRate)
-{
-    const auto poles = linearize(model).A.eigenvalues();
-    // |lambda h| <= 2 keeps well inside the method's stability region (2.78 on the negative real axis), with room for
-    // an inductance that falls with position.
-    const double fastest = poles.cwiseAbs().maxCoeff();
-    return std::clamp(static_cast<int>(std::ceil(fastest / (2.0 * sampleRate))), 1, 64);
 }
 
 bool SimulationOptions::isValid(std::string* reason) const
@@ -127,12 +139,6 @@ bool SimulationOptions::isValid(std::string* reason) const
 }
 
 namespace {
-
-std::vector<double> values(const Model& model)
-{
-    const auto vector = parameterVector(model);
-    return {vector.begin(), vector.end()};
-}
 
 /// After the first quarter, where an input that starts at once has made the states jump.
 double relativeChange(const std::vector<double>& coarse, const std::vector<double>& fine)
@@ -158,13 +164,12 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
     const auto begin = std::min(centre > stretch / 2 ? centre - stretch / 2 : 0, input.size() - stretch);
     const auto part = input.subspan(begin, stretch);
 
-    const auto parameters = values(model);
     SimulationSummary summary;
     summary.substeps = stableSubsteps(model, sampleRate);
-    Trajectory<double> coarse, fine;
-    bool have = integrate(model, parameters, Drive(part, sampleRate, summary.substeps), 0, coarse);
+    Trajectory coarse, fine;
+    bool have = integrate(model, Drive(part, sampleRate, summary.substeps), 0, coarse);
     while (summary.substeps <= options.maximumSubsteps) {
-        const bool refined = integrate(model, parameters, Drive(part, sampleRate, 2 * summary.substeps), 0, fine);
+        const bool refined = integrate(model, Drive(part, sampleRate, 2 * summary.substeps), 0, fine);
         if (have && refined) {
             summary.accuracy = std::max(relativeChange(coarse.displacement, fine.displacement),
                                         relativeChange(coarse.acceleration, fine.acceleration));
@@ -207,8 +212,8 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
     if (summary)
         *summary = chosen;
     progress.at(0.2, "simulating");
-    Trajectory<double> run;
-    if (!integrate(model, values(model), Drive(input, sampleRate, chosen.substeps), 0, run))
+    Trajectory run;
+    if (!integrate(model, Drive(input, sampleRate, chosen.substeps), 0, run))
         throw Error(Error::Kind::numerical, "The simulated driver ran away: at this level the model is driven far beyond the "
                                             "range in which it was measured; lower --full-scale.");
     progress.at(0.95, "radiating");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Driver/Model.h"
+#include "Engine/Driver/StartState.h"
 #include "Engine/Measurement/Measurement.h"
 #include "Engine/Progress.h"
 
@@ -12,9 +13,8 @@
 namespace excursion {
 
 /// What the driver does, sample by sample. Every vector has one value a sample, or is empty.
-template <class T>
 struct Trajectory {
-    std::vector<T> current, displacement, velocity, acceleration;   ///< A, m, m/s, m/s^2
+    std::vector<double> current, displacement, velocity, acceleration;   ///< A, m, m/s, m/s^2
 };
 
 /// A voltage (or force) record, upsampled so that Runge-Kutta steps find the band-limited input between the samples.
@@ -41,19 +41,22 @@ private:
     std::vector<double> fine_;   // two values a step
 };
 
-/// Integrates the model from rest, or from another state: on numbers by ExponentialStep, on jets by the classical Runge-Kutta method.
-/// @param parameters  one a parameter of the model (double or Jet), in the order of parametersOf()
-/// @param first       the trajectory is kept from this sample on
-/// @param start       state z of Dynamics at the drive's first sample; empty: rest
+/// Integrates the model from rest, or from another state (ExponentialStep).
+/// @param first  the trajectory is kept from this sample on
+/// @param start  state z of Dynamics at the drive's first sample; empty: rest
 /// @returns false when the state leaves the finite numbers or any plausible range; the trajectory is then void
-bool integrate(const Model&, const std::vector<double>& parameters, const Drive&, std::size_t first, Trajectory<double>& out,
-               const std::vector<double>& start = {});
-bool integrate(const Model&, const std::vector<Jet>& parameters, const Drive&, std::size_t first, Trajectory<Jet>& out,
-               const std::vector<Jet>& start = {});
+bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, const Eigen::VectorXd& start = {});
 
-/// The fewest steps a sample with which integrate() is stable on numbers, and on jets.
+/// Derivatives of the trajectory by parameters of the model (SensitivityStep).
+/// @param active    the parameters, in the order of parametersOf()
+/// @param observed  current, displacement, velocity or acceleration; pressure counts as the latter
+/// @param start     state at the drive's first sample and its derivatives by all parameters; empty: rest
+/// @param out       one matrix an observed quantity, parameters x samples
+bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, std::size_t first,
+                   const std::vector<Quantity>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
+
+/// The fewest steps a sample with which both are stable.
 int stableSubsteps(const Model&, double sampleRate);
-int stableJetSubsteps(const Model&, double sampleRate);
 
 struct SimulationOptions {
     double tolerance = 1e-5;   ///< largest relative rms change of any channel when the step is halved

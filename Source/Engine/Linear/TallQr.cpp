@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linear/TallQr.h"
 
-#include "Engine/Linear/Dispatch.h"
+#include "Engine/Dispatch.h"
 
 #include <algorithm>
 #include <cmath>

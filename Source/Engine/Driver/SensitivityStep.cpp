@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/SensitivityStep.h"
+
+#include "Engine/Driver/Exponential.h"
+#include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/TallProduct.h"
+
+#include <algorithm>
+
+namespace excursion {
+namespace {
+
+constexpr Eigen::Index rates = 2, motions = 5;   // as in ExponentialStep
+
+std::vector<Jet> prepared(const Component& component, const std::vector<Jet>& parameters)
+{
+    std::vector<Jet> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
+    component.effect->prepare(component.extent, parameters.data(), coefficients.data());
+    return coefficients;
+}
+
+std::vector<Jet> constants(const Component& component)
+{
+    std::vector<Jet> parameters;
+    for (const auto& p : component.parameters)
+        parameters.emplace_back(p.value);
+    return parameters;
+}
+
+} // namespace
+
+SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const Eigen::Index> active)
+    : motion_(model, h), count_(static_cast<Eigen::Index>(active.size()))
+{
+    const auto n = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();
+    dInductance_.setZero(count_);
+    dMass_.setZero(count_);
+    memoryFrom_ = padded(count_);
+    addLinear(model, active);
+    Eigen::Index first = 0;
+    std::size_t law = 0;
+    for (const auto& component : model.components) {
+        const auto size = static_cast<Eigen::Index>(component.parameters.size());
+        std::vector<Eigen::Index> columns(component.parameters.size(), none);
+        for (Eigen::Index c = 0; c < count_; ++c)
+            if (active[static_cast<std::size_t>(c)] >= first && active[static_cast<std::size_t>(c)] < first + size)
+                columns[static_cast<std::size_t>(active[static_cast<std::size_t>(c)] - first)] = c;
+        if (!component.effect->linear())
+            addLaw(law++, columns);
+        first += size;
+    }
+
+    carry_ = motion_.linear_.leftCols(n).transpose();
+    const auto memories = static_cast<Eigen::Index>(std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
+    for (auto& weights : memoryQuadrature_)
+        weights.resize(memories, n);
+    memoryStage_.resize(memories, outputs);
+    memoryLater_.resize(memories, outputs);
+    const Eigen::MatrixXd C = motion_.linear_.block(n, 0, outputs, n), decay = motion_.halfway_.leftCols(n);
+    for (Eigen::Index state = 0; state < n; ++state)
+        if (const auto k = place_[static_cast<std::size_t>(state)]; k != none) {
+            const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, state);
+            const auto weights = quadrature(motion_.A_, unit, h);
+            for (Eigen::Index point = 0; point < 3; ++point)
+                memoryQuadrature_[static_cast<std::size_t>(point)].row(k) = weights.col(point).transpose();
+            const Eigen::VectorXd Q = exponential(motion_.A_, unit, 0.5 * h, 1).phi;
+            memoryStage_.row(k) = (C * Q).transpose();
+            memoryLater_.row(k) = (C * (decay * Q)).transpose();
+        }
+    stageWeights_ = motion_.stage_.transpose();
+    laterWeights_ = motion_.later_.transpose();
+    quadratureWeights_ = motion_.quadrature_.transpose();
+    const auto rows = padded(count_);
+    for (auto* instant : {&start_, &halfway_, &end_}) {
+        instant->Ny.setZero(outputs, laws);
+        instant->Ntheta.setZero(rows, laws);
+        instant->memory.setZero(rows, memories);
+    }
+    for (auto& K : stage_)
+        K.setZero(rows, laws);
+    middle_.setZero(n);
+    y_.setZero(outputs);
+    accelerationSlopes_.setZero(count_);
+    twice_.setZero(rows, memories);
+    run_.setZero(rows, carry_.cols());
+    Y_.setZero(rows, outputs);
+    K_.setZero(rows, 3 * laws);
+    begin(Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(count_, n));
+}
+
+void SensitivityStep::addLinear(const Model& model, std::span<const Eigen::Index> active)
+{
+    Model part = model;
+    std::erase_if(part.components, [](const Component& c) { return !c.effect->linear(); });
+    const auto linear = linearize(part, true);
+    const auto n = linear.A.rows();
+    place_.assign(static_cast<std::size_t>(motion_.A_.rows()), none);
+    Eigen::Index memories = 0, first = 0, firstInPart = 0;
+    for (const auto& component : model.components) {
+        const auto size = static_cast<Eigen::Index>(component.parameters.size());
+        if (component.effect->linear()) {
+            for (Eigen::Index c = 0; c < count_; ++c) {
+                const auto own = active[static_cast<std::size_t>(c)] - first;
+                if (own < 0 || own >= size)
+                    continue;
+                linearParameters_.push_back(c);
+                const auto k = static_cast<std::size_t>(firstInPart + own);
+                for (Eigen::Index row = 0; row < n; ++row)
+                    for (Eigen::Index column = 0; column <= n; ++column)
+                        if (const double value = column < n ? linear.dA[k](row, column) : linear.dB[k][row]; value != 0.0) {
+                            const auto place = motion_.linearPlace_[static_cast<std::size_t>(row)];
+                            entries_.push_back({c, place, column < n ? motion_.linearPlace_[static_cast<std::size_t>(column)] : motion_.A_.rows(), value});
+                            if (row < 3)
+                                continue;
+                            if (place_[static_cast<std::size_t>(place)] == none)
+                                place_[static_cast<std::size_t>(place)] = memories++;
+                            memoryFrom_ = std::min(memoryFrom_, c / tallBlock * tallBlock);
+                            memoryTo_ = std::max(memoryTo_, padded(c + 1));
+                        }
+                auto parameters = constants(component);
+                parameters[static_cast<std::size_t>(own)].v[0] = 1.0;
+                const auto coefficients = prepared(component, parameters);
+                std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)), unused(memory);
+                Balance<Jet> atRest;
+                component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)}, memory.data(),
+                                             unused.data(), atRest);
+                dInductance_[c] = atRest.inductance.v[0];
+                dMass_[c] = atRest.mass.v[0];
+            }
+            firstInPart += size;
+        }
+        first += size;
+    }
+}
+
+void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& columns)
+{
+    const auto& component = *motion_.laws_[law].component;
+    const int memories = component.effect->memorySize(component.extent);
+    struct Direction {
+        int output = none;
+        std::size_t own = 0;   // parameter of the law
+        Eigen::Index column = none;
+    };
+    std::vector<Direction> directions;
+    for (int q = 0; q < 3; ++q)
+        directions.push_back({q, 0, none});
+    for (int k = 0; k < memories; ++k)
+        directions.push_back({static_cast<int>(motions + motion_.laws_[law].memory) + k, 0, none});
+    for (std::size_t p = 0; p < columns.size(); ++p)
+        if (columns[p] != none)
+            directions.push_back({none, p, columns[p]});
+    for (std::size_t first = 0; first < directions.size(); first += jetWidth) {
+        Chunk chunk;
+        chunk.law = law;
+        chunk.output.fill(none);
+        chunk.parameter.fill(none);
+        auto parameters = constants(component);
+        for (std::size_t lane = 0; lane < jetWidth && first + lane < directions.size(); ++lane) {
+            const auto& direction = directions[first + lane];
+            chunk.output[lane] = direction.output;
+            chunk.parameter[lane] = static_cast<int>(direction.column);
+            if (direction.column != none)
+                parameters[direction.own].v[static_cast<Eigen::Index>(lane)] = 1.0;
+        }
+        chunk.coefficients = prepared(component, parameters);
+        chunk.memory.resize(static_cast<std::size_t>(memories));
+        chunk.rate.resize(static_cast<std::size_t>(memories));
+        chunks_.push_back(std::move(chunk));
+    }
+}
+
+/// The laws' derivatives at a state, and what the linear part's parameters change there.
+void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
+{
+    y_.head(3) = z.head(3);
+    y_[3] = motion_.A_.row(0) * z;
+    y_[4] = motion_.A_.row(2) * z;
+    for (std::size_t k = 0; k < motion_.lawPlace_.size(); ++k)
+        y_[motions + static_cast<Eigen::Index>(k)] = z[motion_.lawPlace_[k]];
+
+    Balance<double> sum;
+    std::size_t counted = motion_.laws_.size();   // the law whose values have been added last
+    for (auto& chunk : chunks_) {
+        const auto& law = motion_.laws_[chunk.law];
+        Jet motion[3] {Jet(y_[0]), Jet(y_[1]), Jet(y_[2])};
+        for (std::size_t k = 0; k < chunk.memory.size(); ++k)
+            chunk.memory[k] = Jet(y_[motions + law.memory + static_cast<Eigen::Index>(k)]);
+        for (std::size_t lane = 0; lane < jetWidth; ++lane)
+            if (const int q = chunk.output[lane]; q != none)
+                (q < 3 ? motion[q] : chunk.memory[static_cast<std::size_t>(q - motions - law.memory)]).v[static_cast<Eigen::Index>(lane)] = 1.0;
+        chunk.sum = {};
+        law.component->effect->contribute(law.component->extent, chunk.coefficients.data(), {motion[0], motion[1], motion[2]},
+                                          chunk.memory.data(), chunk.rate.data(), chunk.sum);
+        if (counted != chunk.law) {
+            sum.inductance += chunk.sum.inductance.a;
+            sum.fluxSlope += chunk.sum.fluxSlope.a;
+            sum.drop += chunk.sum.drop.a;
+            sum.force += chunk.sum.force.a;
+            sum.mass += chunk.sum.mass.a;
+            counted = chunk.law;
+        }
+    }
+    // Rates g of the linear part and f of the whole.
+    const double L0 = motion_.inductance_, m0 = motion_.mass_, m = m0 + sum.mass, v = y_[2];
+    const double L = motion_.electrical_ ? L0 + sum.inductance : 1.0;
+    const double gi = motion_.electrical_ ? y_[3] + u / L0 : 0.0, gv = y_[4] + motion_.motion(u);
+    const double fi = motion_.electrical_ ? (L0 * gi - sum.drop - sum.fluxSlope * v) / L : 0.0, fv = (m0 * gv + sum.force) / m;
+
+    at.Ny.setZero();
+    at.Ntheta.setZero();
+    at.memory.setZero();
+    for (const auto& chunk : chunks_)
+        for (std::size_t lane = 0; lane < jetWidth; ++lane) {
+            if (chunk.output[lane] == none && chunk.parameter[lane] == none)
+                break;
+            const auto k = static_cast<Eigen::Index>(lane);
+            auto row = chunk.output[lane] != none ? at.Ny.row(chunk.output[lane]) : at.Ntheta.row(chunk.parameter[lane]);
+            if (motion_.electrical_)
+                row[0] -= (chunk.sum.drop.v[k] + chunk.sum.fluxSlope.v[k] * v + fi * chunk.sum.inductance.v[k]) / L;
+            row[1] += (chunk.sum.force.v[k] - fv * chunk.sum.mass.v[k]) / m;
+            for (std::size_t j = 0; j < chunk.rate.size(); ++j)
+                row[rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] += chunk.rate[j].v[k];
+        }
+    if (motion_.electrical_) {
+        at.Ny(2, 0) -= sum.fluxSlope / L;
+        at.Ny(3, 0) += L0 / L - 1.0;
+    }
+    at.Ny(4, 1) += m0 / m - 1.0;
+
+    // By a parameter of the linear part: f_i = (L0 g_i - ...)/L, f_v = (m0 g_v + ...)/m.
+    for (const auto& entry : entries_) {
+        const double rate = entry.value * (entry.column < z.size() ? z[entry.column] : u);
+        if (entry.row == 0)
+            at.Ntheta(entry.parameter, 0) += L0 / L * rate;
+        else if (entry.row == 2)
+            at.Ntheta(entry.parameter, 1) += m0 / m * rate;
+        else if (entry.row > 2)
+            at.memory(entry.parameter, place_[static_cast<std::size_t>(entry.row)]) += rate;
+    }
+    for (const auto c : linearParameters_) {
+        at.Ntheta(c, 0) += (gi - fi) * dInductance_[c] / L;
+        at.Ntheta(c, 1) += (gv - fv) * dMass_[c] / m;
+    }
+}
+
+void SensitivityStep::begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S)
+{
+    z_ = z;
+    S_.setZero(padded(count_), z.size());
+    S_.topRows(count_) = S;
+    fresh_ = true;
+}
+
+void SensitivityStep::step(std::span<const double> u)
+{
+    const auto n = z_.size(), outputs = y_.size(), laws = motion_.N_[0].size(), memories = memoryStage_.rows();
+    double middle = 0.0, end = 0.0;
+    for (std::size_t k = u.size(); k-- > 0;) {
+        middle = 0.5 * middle + u[k];
+        end += u[k];
+    }
+    if (fresh_)
+        look(z_, u[0], start_);
+    fresh_ = false;
+    acceleration_ = motion_.step(z_.data(), u);
+    middle_.noalias() = motion_.halfway_ * motion_.from_;
+    middle_.noalias() += motion_.Q_ * motion_.N_[2];
+    look(middle_, middle, halfway_);
+    look(z_, end, end_);
+
+    const auto add = [this](const double* X, Eigen::Index inner, const Eigen::MatrixXd& W, double* Y) {
+        addTallProduct(X, S_.rows(), inner, W.data(), W.cols(), Y, 0, S_.rows());
+    };
+    run_.setZero();
+    add(S_.data(), n, carry_, run_.data());
+    auto atEnd = run_.leftCols(n), now = run_.middleCols(n, outputs), half = run_.middleCols(n + outputs, outputs), later = run_.rightCols(outputs);
+    if (memories > 0) {
+        const auto addMemory = [&](const Eigen::MatrixXd& memory, const double* W, Eigen::Index columns, double* Y) {
+            addTallProduct(memory.data(), S_.rows(), memories, W, columns, Y, memoryFrom_, memoryTo_);
+        };
+        twice_ = 2.0 * halfway_.memory;
+        addMemory(halfway_.memory, memoryStage_.data(), outputs, half.data());
+        addMemory(start_.memory, memoryQuadrature_[0].data(), n, atEnd.data());
+        addMemory(twice_, memoryQuadrature_[1].data(), n, atEnd.data());
+        addMemory(end_.memory, memoryQuadrature_[2].data(), n, atEnd.data());
+        addMemory(start_.memory, memoryLater_.data(), outputs, later.data());
+        twice_ -= start_.memory;
+        addMemory(twice_, memoryStage_.data(), outputs, later.data());
+    }
+    // The stages of ExponentialStep, for the derivatives.
+    auto& [K1, K2, K3, K4] = stage_;
+    K1 = start_.Ntheta;
+    add(now.data(), outputs, start_.Ny, K1.data());
+    accelerationSlopes_ = now.col(4).head(count_) + K1.col(1).head(count_);
+    Y_ = half;
+    add(K1.data(), laws, stageWeights_, Y_.data());
+    K2 = halfway_.Ntheta;
+    add(Y_.data(), outputs, halfway_.Ny, K2.data());
+    Y_ = half;
+    add(K2.data(), laws, stageWeights_, Y_.data());
+    K3 = halfway_.Ntheta;
+    add(Y_.data(), outputs, halfway_.Ny, K3.data());
+    Y_ = later;
+    add(K1.data(), laws, laterWeights_, Y_.data());
+    K_.leftCols(laws) = 2.0 * K3 - K1;
+    add(K_.data(), laws, stageWeights_, Y_.data());
+    K4 = end_.Ntheta;
+    add(Y_.data(), outputs, end_.Ny, K4.data());
+    K_.leftCols(laws) = K1;
+    K_.middleCols(laws, laws) = K2 + K3;
+    K_.rightCols(laws) = K4;
+    S_ = atEnd;
+    add(K_.data(), 3 * laws, quadratureWeights_, S_.data());
+    std::swap(start_, end_);
+}
+
+} // namespace excursion

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/ExponentialStep.h"
+
+#include <span>
+#include <vector>
+
+namespace excursion {
+
+/// ExponentialStep together with the derivatives S = dz/dtheta of the state by parameters of the model, which obey
+///     dS/dt = A S + E (N_y C S + N_theta) + (dA/dtheta) z + (dB/dtheta) u
+/// with the same A: the same exponentials serve them, all parameters at once. The derivatives of the laws, N_y and N_theta, come from
+/// the same physics run on jets, at the start, the middle and the end of a step.
+class SensitivityStep {
+public:
+    /// @param active  the parameters to differentiate by, in the order of parametersOf(); those of the path move no state
+    SensitivityStep(const Model&, double h, std::span<const Eigen::Index> active);
+
+    int order() const { return motion_.order(); }
+
+    /// Starts at state z with derivatives S (parameters x states).
+    void begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S);
+
+    /// One step; see ExponentialStep.
+    void step(std::span<const double> u);
+
+    const Eigen::VectorXd& state() const { return z_; }   ///< at the latest step's end
+    auto slopes() const { return S_.topRows(count_); }   ///< parameters x states, at the latest step's end
+    double acceleration() const { return acceleration_; } ///< m/s^2, at the latest step's start
+    const Eigen::VectorXd& accelerationSlopes() const { return accelerationSlopes_; }   ///< at the latest step's start, by parameter
+
+private:
+    static constexpr int none = -1;
+
+    /// Up to jetWidth directions in which one law is differentiated at once: motions and memories (places in y), or parameters.
+    struct Chunk {
+        std::size_t law;
+        std::vector<Jet> coefficients;
+        std::array<int, jetWidth> output, parameter;   ///< place in y, or column in S, of each direction; or none
+        Balance<Jet> sum;
+        std::vector<Jet> memory, rate;
+    };
+    /// What drives S at one instant.
+    struct Instant {
+        Eigen::MatrixXd Ny;       ///< y x laws
+        Eigen::MatrixXd Ntheta;   ///< parameters x laws
+        Eigen::MatrixXd memory;   ///< parameters x the linear part's memories that parameters act upon
+    };
+    /// dA or dB by an active parameter, where it is not zero.
+    struct Entry {
+        Eigen::Index parameter, row, column;   ///< the column after A's last is B
+        double value;
+    };
+
+    void addLaw(std::size_t law, const std::vector<Eigen::Index>& columns);
+    void addLinear(const Model&, std::span<const Eigen::Index> active);
+    void look(const Eigen::VectorXd& z, double u, Instant&);
+
+    ExponentialStep motion_;
+    Eigen::Index count_;
+    std::vector<Chunk> chunks_;
+    std::vector<Entry> entries_;
+    std::vector<Eigen::Index> place_;                ///< by state: its column in Instant::memory, or none
+    Eigen::VectorXd dInductance_, dMass_;            ///< of the linear part, by parameter
+    std::vector<Eigen::Index> linearParameters_;     ///< columns of S whose parameters belong to the linear part
+    Eigen::MatrixXd carry_;                          ///< S -> (S at the end, C S now, halfway and at the end) without drive
+    Eigen::MatrixXd stageWeights_, laterWeights_, quadratureWeights_;   ///< those of ExponentialStep, transposed
+    std::array<Eigen::MatrixXd, 3> memoryQuadrature_;
+    Eigen::MatrixXd memoryStage_, memoryLater_;
+    Eigen::Index memoryFrom_ = 0, memoryTo_ = 0;     ///< rows of S whose parameters act upon memories
+    Eigen::VectorXd z_, middle_, y_, accelerationSlopes_;
+    Eigen::MatrixXd S_, run_, Y_, K_, twice_;   ///< rows, one a parameter, are padded
+    std::array<Eigen::MatrixXd, 4> stage_;
+    Instant start_, halfway_, end_;
+    double acceleration_ = 0.0;
+    bool fresh_ = true;
+};
+
+} // namespace excursion
