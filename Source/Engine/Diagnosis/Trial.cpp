@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Trial.h"
 
+#include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/OutputError.h"
 
 #include <algorithm>
@@ -67,6 +68,11 @@ FitSummary tryFit(Model& model, const Record& record, const std::vector<std::siz
             break;
         }
     }
+    // A linear effect shows in the frequency response alone, and a search there costs next to nothing; in time it would creep along
+    // the curved valley in which relaxations trade off against the stiffness.
+    if (Model candidate = model; candidate.components.back().effect->linear() && fitNewestByResponse(candidate, linearResponsesOf(record)).usable)
+        if (const double cost = costOf(candidate, record, sections, chosen); cost < lowest)
+            best = std::move(candidate);
     model = std::move(best);
     return fit(model, record, sections, chosen, progress);
 }

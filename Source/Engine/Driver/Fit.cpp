@@ -241,13 +241,6 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     return summary;
 }
 
-Model startModel(const Record& record)
-{
-    // The quietest level is nearest to linear; all levels together speak when it is drowned in noise.
-    auto targets = responsesOf(record, record.levels.empty() ? -1 : 0);
-    if (targets.size() < record.channels.size())
-        targets = responsesOf(record, -1);
-    return startModel(targets, record.electrical, record.driver);
-}
+Model startModel(const Record& record) { return startModel(linearResponsesOf(record), record.electrical, record.driver); }
 
 } // namespace excursion

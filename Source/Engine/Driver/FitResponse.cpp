@@ -162,12 +162,24 @@ LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std:
     Extent extent;
     extent.lowFrequency = targets.front().frequency.front();
     extent.highFrequency = targets.front().frequency.back();
+    Model best = withEffect(model, effect, extent);
+    const auto summary = fitNewestByResponse(best, targets);
+    if (summary.usable)
+        model = std::move(best);
+    return summary;
+}
+
+LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
+{
     constexpr int pointsPerOctave = 16;   // enough to tell one start from another
     const auto thin = thinned(targets, pointsPerOctave);
-    Model best = withEffect(model, effect, extent);
+    Model best = model;
     double lowest = std::numeric_limits<double>::infinity();
-    for (std::size_t start = 0; start < effect.starts(extent).size(); ++start) {
-        auto trial = withEffect(model, effect, extent, start);
+    const auto& newest = model.components.back();
+    for (const auto& start : newest.effect->starts(newest.extent)) {
+        auto trial = model;
+        for (std::size_t k = 0; k < start.size(); ++k)
+            trial.components.back().parameters[k].value = start[k];
         const auto run = fitResponse(trial, thin, {30, 1e-5});
         if (run.usable && run.finalCost < lowest) {
             lowest = run.finalCost;

@@ -26,6 +26,9 @@ struct ResponseTarget {
 ///     G = sum Y conj(U) / sum |U|^2,   deviation from the part of Y that this leaves (noise, distortion, curvature).
 std::vector<ResponseTarget> responsesOf(const Record&, int level, int pointsPerOctave = 12);
 
+/// Those that come nearest to a linear driver's: of the quietest level, or of all levels where that one is drowned in noise.
+std::vector<ResponseTarget> linearResponsesOf(const Record&);
+
 /// Targets of a take that is a frequency response only: the impedance from voltage and current, the other quantities per unit of
 /// input, on a logarithmic grid. The deviation of an impedance is its magnitude, that of any other response the curve's rms, four times
 /// that for a motion, which is measured at one point of the cone; divided by the root of the octaves that a point stands for, so
@@ -51,6 +54,9 @@ LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, cons
 /// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points. The model is left as it was
 /// when the fit is not usable.
 LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTarget>&);
+
+/// The same for a linear effect that the model has already, as its newest: its present values do not count.
+LeastSquaresSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 
 /// Whether a fit is sure that an effect is there: one of its strengths exceeds four standard errors, and no parameter of its shape was
 /// driven to a bound, where it would stand for something else.

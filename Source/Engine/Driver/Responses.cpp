@@ -171,6 +171,14 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
     return targets;
 }
 
+std::vector<ResponseTarget> linearResponsesOf(const Record& record)
+{
+    auto targets = responsesOf(record, record.levels.empty() ? -1 : 0);
+    if (targets.size() < record.channels.size())
+        targets = responsesOf(record, -1);
+    return targets;
+}
+
 ResponseTarget thinned(const ResponseTarget& dense, int pointsPerOctave)
 {
     ResponseTarget thin;
