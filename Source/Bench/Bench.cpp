@@ -5,6 +5,7 @@
 #include "Bench/Run.h"
 #include "Bench/Stimulus.h"
 #include "Engine/Error.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,14 +30,6 @@ void check(const BenchSetup& setup)
 }
 
 Channel channelOf(Quantity quantity) { return {quantity, std::string(siUnit(quantity)), 1.0, {}}; }
-
-double rmsOf(std::span<const double> samples)
-{
-    double square = 0.0;
-    for (const double value : samples)
-        square += value * value;
-    return std::sqrt(square / static_cast<double>(std::max<std::size_t>(1, samples.size())));
-}
 
 } // namespace
 

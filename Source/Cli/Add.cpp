@@ -19,7 +19,7 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct AddArguments {
     std::string take, model, effect, out;
 };
 
@@ -74,7 +74,7 @@ void print(const Added& added, const Effect& effect, Terminal& terminal)
     }
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const AddArguments& options, Terminal& terminal)
 {
     const auto& effect = effectNamed(options.effect);
     requireFilePlace(options.out);
@@ -106,7 +106,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addAdd(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<AddArguments>();
     auto* verb = app.add_subcommand("add", "Put an effect into a model and refit everything")->group(step::diagnose);
     verb->add_option("TAKE", o->take, "the take that the model was fitted to")->required();
     verb->add_option("EFFECT", o->effect, "the effect, such as stiffness; excursion effects lists them")->required();

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct BlaArguments {
     std::string take, output, out;
     int level = -1;
     int segment = 8192;
@@ -174,7 +174,7 @@ void print(const Found& found, const std::string& title, Terminal& terminal)
         terminal.say(line);
 }
 
-void write(const Found& found, const Measurement& take, int level, const Options& options)
+void write(const Found& found, const Measurement& take, int level, const BlaArguments& options)
 {
     const auto extension = extensionOf(options.out);
     if (extension == ".json")
@@ -191,7 +191,7 @@ void write(const Found& found, const Measurement& take, int level, const Options
 }
 
 /// Said before the work, not after it.
-void checkExtension(const Options& options)
+void checkExtension(const BlaArguments& options)
 {
     const auto extension = extensionOf(options.out);
     if (options.out.empty() || extension == ".csv" || extension == ".frd" || extension == ".zma" || extension == ".json")
@@ -199,7 +199,7 @@ void checkExtension(const Options& options)
     throw Error(Error::Kind::usage, "The file \"" + options.out + "\" should end in .csv, .frd, .zma or .json.");
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const BlaArguments& options, Terminal& terminal)
 {
     checkExtension(options);
     auto take = readMeasurement(options.take);
@@ -246,7 +246,7 @@ void run(const Options& options, Terminal& terminal)
 void addBla(CLI::App& app, Terminal& terminal)
 {
     auto* verb = app.add_subcommand("bla", "Frequency response, with its noise and its odd and even distortion")->group(step::look);
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<BlaArguments>();
     verb->add_option("TAKE", options->take, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);

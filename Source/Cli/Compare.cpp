@@ -21,7 +21,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-struct Options {
+struct CompareArguments {
     std::string take, model;
 };
 
@@ -137,7 +137,7 @@ void printResiduals(const Comparison& comparison, Terminal& terminal)
     terminal.table({"residual", "range", "least", "half", "rest", "half", "most", "scatter", "unit"}, rows);
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const CompareArguments& options, Terminal& terminal)
 {
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
@@ -162,7 +162,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addCompare(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<CompareArguments>();
     auto* verb = app.add_subcommand("compare", "Where a model and a take part, by how much, and in which way")->group(step::fit);
     verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");

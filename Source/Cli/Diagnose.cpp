@@ -17,7 +17,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-struct Options {
+struct DiagnoseArguments {
     std::string take, model;
 };
 
@@ -80,7 +80,7 @@ void print(const Diagnosis& diagnosis, Terminal& terminal)
         terminal.say(wrapped("next     " + diagnosis.measureNext, 9));
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const DiagnoseArguments& options, Terminal& terminal)
 {
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
@@ -97,7 +97,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addDiagnose(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<DiagnoseArguments>();
     auto* verb = app.add_subcommand("diagnose", "Name the physical effect that a model is missing")->group(step::diagnose);
     verb->add_option("TAKE", o->take, "the take that the model was fitted to")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");

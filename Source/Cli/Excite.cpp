@@ -5,6 +5,7 @@
 #include "Engine/Error.h"
 #include "Engine/Measurement/ExcitationPlan.h"
 #include "Engine/Measurement/TakeFile.h"
+#include "Engine/Signal/Level.h"
 
 #include <nlohmann/json.hpp>
 
@@ -15,22 +16,14 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct ExciteArguments {
     ExcitationPlanOptions plan;
     std::vector<double> band {20.0, 20000.0};
     double fullScale = 0.0;   ///< V; 0: chosen
     std::string grid = "odd-random", shape = "pink", out;
 };
 
-double peakOf(const std::vector<double>& samples)
-{
-    double peak = 0.0;
-    for (const double u : samples)
-        peak = std::max(peak, std::abs(u));
-    return peak;
-}
-
-void run(Options options, Terminal& terminal)
+void run(ExciteArguments options, Terminal& terminal)
 {
     auto& plan = options.plan;
     plan.multisine.grid = gridNamed(options.grid).value();     // CLI11 let only known names pass
@@ -78,7 +71,7 @@ void run(Options options, Terminal& terminal)
 
 void addExcite(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ExciteArguments>();
     auto* verb = app.add_subcommand("excite", "Write the multisine to play, and its plan")->group(step::measure);
     verb->add_option("--out", o->out, "folder for excitation.wav and plan.json")->required()->type_name("DIR");
     auto& m = o->plan.multisine;

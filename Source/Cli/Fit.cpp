@@ -17,12 +17,12 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct FitArguments {
     std::string take, out;
     std::vector<std::string> effects;
 };
 
-void run(const Options& options, Terminal& terminal)
+void run(const FitArguments& options, Terminal& terminal)
 {
     for (const auto& id : options.effects)
         effectNamed(id);   // a misspelt name is told before any work
@@ -67,7 +67,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addFit(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<FitArguments>();
     auto* verb = app.add_subcommand("fit", "Fit a model to a take: the linear base, and the effects that you name")->group(step::fit);
     verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
     verb->add_option("--effects", o->effects, "effects to put in, separated by commas; excursion effects lists them")->delimiter(',')->type_name("EFFECT");

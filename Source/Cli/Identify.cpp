@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct IdentifyArguments {
     ResponseChoice response;
     std::string validation, out;
     std::vector<int> orders;
@@ -86,7 +86,7 @@ void print(const OrderSweep& sweep, Terminal& terminal)
     terminal.table({"order", "error dB", "weighted dB", "MDL", "validation dB", "stable", "from"}, rows);
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const IdentifyArguments& options, Terminal& terminal)
 {
     if (!options.out.empty())
         requireFilePlace(options.out);
@@ -144,7 +144,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addIdentify(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<IdentifyArguments>();
     auto* verb = app.add_subcommand("identify", "Identify a linear state-space model of a frequency response, of a given or of the best order")
                      ->group(step::fit);
     verb->add_option("TAKE", o->response.path, "a take, a .csv, .zma or .frd, or the .json of excursion bla")->required();

@@ -18,7 +18,7 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct ImportArguments {
     std::string file, out, name;
     std::vector<std::string> map;
     double rate = 0.0;
@@ -33,7 +33,7 @@ bool endsIn(const std::filesystem::path& path, const std::string& extension)
     return text == extension;
 }
 
-ImportOptions importOptions(const Options& options)
+ImportOptions importOptions(const ImportArguments& options)
 {
     ImportOptions result;
     for (const auto& mapping : options.map)
@@ -75,7 +75,7 @@ void importSpectra(const Spectra& spectra, const std::string& out, Terminal& ter
                        {"frequencies", spectra.frequency.size()}});
 }
 
-Take read(const Options& options)
+Take read(const ImportArguments& options)
 {
     if (endsIn(options.file, ".mat"))
         return importMat(options.file, importOptions(options));
@@ -86,7 +86,7 @@ Take read(const Options& options)
     return readTake(options.file);
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const ImportArguments& options, Terminal& terminal)
 {
     auto take = read(options);
     if (auto* spectra = std::get_if<Spectra>(&take))
@@ -105,7 +105,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addImport(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ImportArguments>();
     auto* verb = app.add_subcommand("import", "Turn a CSV, MAT, ZMA or FRD file into a take, or a take into a CSV")->group(step::measure);
     verb->add_option("FILE", o->file, ".csv, .mat, .zma, .frd, or a take")->required();
     verb->add_option("--out", o->out, "folder of the new take, or a .csv")->required()->type_name("PLACE");

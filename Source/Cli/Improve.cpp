@@ -21,7 +21,7 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct ImproveArguments {
     std::string take, out;
     std::vector<std::string> with;
 };
@@ -43,7 +43,7 @@ void writeFolder(const LadderFile& file, const std::filesystem::path& folder)
     }
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const ImproveArguments& options, Terminal& terminal)
 {
     for (const auto& id : options.with)
         effectNamed(id);   // a misspelt name is told before any work
@@ -69,7 +69,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addImprove(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ImproveArguments>();
     auto* verb = app.add_subcommand("improve", "Diagnose, add and refit until nothing is missing; keep the ladder")->group(step::diagnose);
     verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
     verb->add_option("--with", o->with, "effects that the first model has already, separated by commas")->delimiter(',')->type_name("EFFECT");

@@ -26,7 +26,7 @@ namespace {
 using Eigen::Index;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct PnlssArguments {
     ResponseChoice response;
     std::string model, out, played, mask = "full";
     int order = 0, degree = 3, iterations = 50;
@@ -97,7 +97,7 @@ TermMask maskNamed(const std::string& wanted)
     throw Error(Error::Kind::usage, "There is no mask \"" + wanted + "\".");
 }
 
-Pnlss startFor(const Options& options, const Measurement& take, int level)
+Pnlss startFor(const PnlssArguments& options, const Measurement& take, int level)
 {
     auto choice = options.response;
     choice.level = level;
@@ -111,7 +111,7 @@ Pnlss startFor(const Options& options, const Measurement& take, int level)
     return start;
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const PnlssArguments& options, Terminal& terminal)
 {
     if (options.model.empty() == (options.order == 0))
         throw Error(Error::Kind::usage, "Give either --order, to fit a model, or --model, to judge one that was kept.");
@@ -198,7 +198,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addPnlss(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<PnlssArguments>();
     auto* verb = app.add_subcommand("pnlss", "Fit a polynomial state-space model to a take: it knows no physics, and explains what it can")
                      ->group(step::fit);
     std::vector<std::string> masks;

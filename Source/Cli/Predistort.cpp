@@ -9,6 +9,7 @@
 #include "Engine/Linearization/Predistorter.h"
 #include "Engine/Measurement/DraftFile.h"
 #include "Engine/Measurement/WavFile.h"
+#include "Engine/Signal/Level.h"
 #include "Report/Engineering.h"
 
 #include <nlohmann/json.hpp>
@@ -23,21 +24,13 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct PredistortArguments {
     std::string model, input, out;
     double fullScale = 0.0;   ///< V or N
     std::optional<double> displacementLimit, voltageLimit;   ///< m, V or N
     double amount = 1.0;
     int oversampling = 2;
 };
-
-double peakOf(const std::vector<double>& samples)
-{
-    double peak = 0.0;
-    for (const double s : samples)
-        peak = std::max(peak, std::abs(s));
-    return peak;
-}
 
 Wav readPlayable(const std::string& file)
 {
@@ -49,7 +42,7 @@ Wav readPlayable(const std::string& file)
     return wav;
 }
 
-LinearizationControls controlsFrom(const Options& options, const Model& model)
+LinearizationControls controlsFrom(const PredistortArguments& options, const Model& model)
 {
     LinearizationControls controls;
     controls.amount = options.amount;
@@ -80,7 +73,7 @@ void bend(std::vector<double>& samples, Predistorter& predistorter, double fullS
 /// Beyond how much of a limit it counts as limiting: less is rounding.
 constexpr double noticed = 1e-6;
 
-void run(const Options& options, Terminal& terminal)
+void run(const PredistortArguments& options, Terminal& terminal)
 {
     for (const auto& [name, value] : {std::pair {"--full-scale", options.fullScale}, {"--limit-x", options.displacementLimit.value_or(1.0)},
                                       {"--limit-u", options.voltageLimit.value_or(1.0)}})
@@ -149,7 +142,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addPredistort(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<PredistortArguments>();
     auto* verb = app.add_subcommand("predistort", "Bends a WAV so that the loudspeaker plays it as if it were linear")->group(step::use);
     verb->add_option("MODEL", o->model, "the model, a .json")->required();
     verb->add_option("IN.wav", o->input, "what is to be played; each of its channels is predistorted by itself")->required();

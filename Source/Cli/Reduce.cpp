@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct ReduceArguments {
     std::string model, out;
     ResponseChoice response;
     int order = -1;
@@ -29,7 +29,7 @@ struct Options {
     bool settled = false;
 };
 
-void balance(const Options& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+void balance(const ReduceArguments& options, NamedStateSpace& named, Json& document, Terminal& terminal)
 {
     if (options.order < 0)
         throw Error(Error::Kind::usage, "Give the --order to reduce the model to, or a --response to prune it by.");
@@ -43,7 +43,7 @@ void balance(const Options& options, NamedStateSpace& named, Json& document, Ter
                  + significant(bound, 3) + " at any frequency.");
 }
 
-void pruneBy(const Options& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+void pruneBy(const ReduceArguments& options, NamedStateSpace& named, Json& document, Terminal& terminal)
 {
     if (named.model.inputs() != 1 || named.model.outputs() != 1)
         throw Error(Error::Kind::data, "Only models with one input and one output are pruned by a response.");
@@ -74,7 +74,7 @@ void pruneBy(const Options& options, NamedStateSpace& named, Json& document, Ter
     terminal.say("Ended: " + result.reason + ".");
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const ReduceArguments& options, Terminal& terminal)
 {
     requireFilePlace(options.out);
     auto named = readStateSpace(options.model);
@@ -95,7 +95,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addReduce(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ReduceArguments>();
     auto* verb = app.add_subcommand("reduce", "A smaller linear model in place of a large one, with a bound or with the error that it has")
                      ->group(step::fit);
     verb->add_option("MODEL", o->model, "the model, as identify wrote it")->required();

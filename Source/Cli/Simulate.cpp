@@ -8,6 +8,7 @@
 #include "Engine/Error.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Measurement/WavFile.h"
+#include "Engine/Signal/Level.h"
 #include "Report/Engineering.h"
 
 #include <nlohmann/json.hpp>
@@ -20,7 +21,7 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct SimulateArguments {
     std::string model, input, out;
     double fullScale = 0.0;   ///< V or N; 0: not given
     SimulationOptions simulation;
@@ -33,7 +34,7 @@ struct Played {
     std::optional<Excitation> excitation;
 };
 
-Played fromWav(const Options& options, const Model& model)
+Played fromWav(const SimulateArguments& options, const Model& model)
 {
     if (options.fullScale == 0.0)
         throw Error(Error::Kind::usage, std::string("A WAV has no unit: say with --full-scale how many ")
@@ -55,7 +56,7 @@ Played fromWav(const Options& options, const Model& model)
     return played;
 }
 
-Played fromTake(const Options& options, const Model& model)
+Played fromTake(const SimulateArguments& options, const Model& model)
 {
     if (options.fullScale != 0.0)
         throw Error(Error::Kind::usage, "--full-scale is for a WAV; a take has its own.");
@@ -74,22 +75,6 @@ bool isWav(const std::string& path)
     return extension == ".wav";
 }
 
-double peakOf(const std::vector<double>& samples)
-{
-    double peak = 0.0;
-    for (const double s : samples)
-        peak = std::max(peak, std::abs(s));
-    return peak;
-}
-
-double rmsOf(const std::vector<double>& samples)
-{
-    double power = 0.0;
-    for (const double s : samples)
-        power += s * s;
-    return std::sqrt(power / static_cast<double>(std::max<std::size_t>(samples.size(), 1)));
-}
-
 /// How far the model is driven beyond what it was measured at; empty where all of it was.
 std::string beyond(const Model& model, const Measurement& take)
 {
@@ -105,7 +90,7 @@ std::string beyond(const Model& model, const Measurement& take)
          + " mm: beyond that its laws are a guess.";
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const SimulateArguments& options, Terminal& terminal)
 {
     std::string reason;
     if (!options.simulation.isValid(&reason))
@@ -150,7 +135,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addSimulate(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<SimulateArguments>();
     auto* verb = app.add_subcommand("simulate", "What the loudspeaker will do: every channel of the model, as a take")->group(step::use);
     verb->add_option("MODEL", o->model, "the model, a .json")->required();
     verb->add_option("IN", o->input, "what is played: a .wav of one channel, or a take or plan, whose voltage is played")->required();

@@ -18,7 +18,7 @@
 namespace excursion::cli {
 namespace {
 
-struct Options {
+struct VirtualArguments {
     std::uint64_t seed = 1;
     std::vector<std::string> hidden, channels;
     std::string driver, out, truth;
@@ -62,7 +62,7 @@ std::vector<Quantity> channelsOf(const std::vector<std::string>& names)
     return channels;
 }
 
-bench::DrawOptions drawOptions(const Options& options)
+bench::DrawOptions drawOptions(const VirtualArguments& options)
 {
     bench::DrawOptions draw;
     if (!options.driver.empty())
@@ -82,7 +82,7 @@ bench::DrawOptions drawOptions(const Options& options)
     return draw;
 }
 
-void run(const Options& options, Terminal& terminal)
+void run(const VirtualArguments& options, Terminal& terminal)
 {
     requireFolderPlace(options.out);
     if (!options.truth.empty())
@@ -117,7 +117,7 @@ void run(const Options& options, Terminal& terminal)
 
 void addVirtual(CLI::App& app, Terminal& terminal)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<VirtualArguments>();
     auto* verb = app.add_subcommand("virtual", "A take of a virtual loudspeaker with something hidden in it")->group(step::measure);
     verb->add_option("--seed", options->seed, "what is drawn, noise included")->required();
     auto* hidden = verb->add_option("--hidden", options->hidden,

@@ -97,7 +97,7 @@ TEST_CASE("Two hidden effects are added one after the other", "[improve][slow]")
     requireAtTheNoise(ladder.rungs.back().comparison);
 }
 
-TEST_CASE("The current alone tells a stiffening suspension", "[improve]")
+TEST_CASE("The current alone tells a stiffening suspension", "[improve][slow]")
 {
     const auto ladder = improve(take({{"stiffness", 0.3}}, {Quantity::current}));
     CHECK(added(ladder) == std::vector<std::string> {"stiffness"});
@@ -129,7 +129,7 @@ TEST_CASE("A faulty take is not improved", "[improve]")
     CHECK(ladder.problems.front().channel == fault.channel);
 }
 
-TEST_CASE("Effects that are given are in the first model and are not added again", "[improve]")
+TEST_CASE("Effects that are given are in the first model and are not added again", "[improve][slow]")
 {
     ImproveOptions options;
     options.with = {"stiffness"};

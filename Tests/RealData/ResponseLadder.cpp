@@ -54,7 +54,7 @@ double plainError(const Model& model, const Spectra& take, double highest)
 
 } // namespace
 
-TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else")
+TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow]")
 {
     const auto folder = dataFolder("novak");
     if (folder.empty())
@@ -78,7 +78,7 @@ TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else")
     CHECK_THAT(ladder.sentence, Catch::Contains("The velocity counts up to"));
 }
 
-TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its motor")
+TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its motor", "[slow]")
 {
     const auto folder = dataFolder("seas-l16rnx");
     if (folder.empty())
@@ -107,7 +107,7 @@ TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its 
     CHECK(resonance[2] == Approx(30.7).margin(1.0));
 }
 
-TEST_CASE("A designer's impedance files end in a sane verdict")
+TEST_CASE("A designer's impedance files end in a sane verdict", "[slow]")
 {
     const auto folder = dataFolder("impedance");
     if (folder.empty())

@@ -6,6 +6,7 @@
 #include "Engine/Driver/OutputError.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +14,6 @@
 
 namespace excursion {
 namespace {
-
-double peakOf(const std::vector<double>& samples)
-{
-    double peak = 0.0;
-    for (const double s : samples)
-        peak = std::max(peak, std::abs(s));
-    return peak;
-}
 
 /// Peak of a channel's window, integrated `integrations` times (negative: differentiated), without its mean.
 double measuredPeak(const Record& record, const Section& section, std::size_t channel, int integrations)

@@ -4,6 +4,7 @@
 #include "Engine/Driver/ExponentialStep.h"
 #include "Engine/Driver/SensitivityStep.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 #include "Engine/Signal/Resample.h"
 
 #include <Eigen/LU>
@@ -224,9 +225,7 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
     result.driver.coneArea = model.path[0].value;
     result.driver.microphoneDistance = model.microphoneDistance;
     const auto add = [&result](Quantity quantity, std::vector<double> samples) {
-        double peak = 0.0;
-        for (const double s : samples)
-            peak = std::max(peak, std::abs(s));
+        const double peak = peakOf(samples);
         result.channels.push_back({quantity, std::string(siUnit(quantity)), peak > 0.0 ? 1.25 * peak : 1.0, std::move(samples)});
     };
     std::vector<double> copy(input.begin(), input.end());

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace excursion {
+
+/// The largest magnitude in a record, 0 of an empty one.
+inline double peakOf(std::span<const double> samples)
+{
+    double peak = 0.0;
+    for (const double s : samples)
+        peak = std::max(peak, std::abs(s));
+    return peak;
+}
+
+/// Root of the mean square of a record, 0 of an empty one.
+inline double rmsOf(std::span<const double> samples)
+{
+    double power = 0.0;
+    for (const double s : samples)
+        power += s * s;
+    return samples.empty() ? 0.0 : std::sqrt(power / static_cast<double>(samples.size()));
+}
+
+} // namespace excursion
