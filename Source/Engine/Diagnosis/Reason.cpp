@@ -65,8 +65,8 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
         if (analogue && unit.front() == 'm')
             unit.front() = 'V';
         const double end = curve.argument.back() * (metres ? 1e3 : 1.0);
-        return curve.info.name + " comes out " + number(low, "%+.0f") + " % at " + number(-end, "%.3g") + " and "
-               + number(high, "%+.0f") + " % at " + number(end, "%+.3g") + " " + unit;
+        return curve.info.name + " comes out " + number(std::round(low) + 0.0, "%+.0f") + " % at " + number(-end, "%.3g") + " and "
+               + number(std::round(high) + 0.0, "%+.0f") + " % at " + number(end, "%+.3g") + " " + unit;
     }
     if (const auto* component = model.find(effect.id())) {
         std::string text;
