@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/TallProduct.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -75,12 +76,12 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     }
 
     const auto whole = exponential(A_, B, h, terms), half = exponential(A_, B, 0.5 * h, terms);
-    linear_.setZero(n + 3 * outputs, n + terms);
+    linear_.setZero(padded(n + 3 * outputs), n + terms);
     linear_.topLeftCorner(n, n) = whole.decay;
     linear_.block(n, 0, outputs, n) = C;
     for (int k = 0; k < terms; ++k)
         linear_.col(n + k).head(n) = std::tgamma(k + 1.0) * whole.phi.col(k);
-    linear_.bottomRows(outputs) = C * linear_.topRows(n);
+    linear_.middleRows(n + 2 * outputs, outputs) = C * linear_.topRows(n);
 
     halfway_.resize(n, n + terms);
     halfway_.leftCols(n) = half.decay;
@@ -138,8 +139,9 @@ double ExponentialStep::step(double* z, std::span<const double> u)
     from_.head(n) = Eigen::Map<const Eigen::VectorXd>(z, n);
     for (std::size_t k = 0; k < terms; ++k)
         from_[n + static_cast<Eigen::Index>(k)] = k < u.size() ? u[k] : 0.0;
-    run_.noalias() = linear_ * from_;
-    const auto atStart = run_.segment(n, outputs), halfway = run_.segment(n + outputs, outputs), atEnd = run_.tail(outputs);
+    run_.setZero();
+    addTallProduct(linear_.data(), linear_.rows(), linear_.cols(), from_.data(), 1, run_.data(), 0, linear_.rows());
+    const auto atStart = run_.segment(n, outputs), halfway = run_.segment(n + outputs, outputs), atEnd = run_.segment(n + 2 * outputs, outputs);
 
     auto& [N1, N2, N3, N4] = N_;
     y_ = atStart;

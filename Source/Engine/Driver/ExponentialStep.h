@@ -62,7 +62,7 @@ private:
     double inductance_ = 0.0, mass_ = 0.0;    ///< of the linear part
     std::vector<Eigen::Index> linearPlace_, lawPlace_;   ///< of the linear part's states, and of the laws' memories, in z
     Eigen::MatrixXd A_;
-    Eigen::MatrixXd linear_;                  ///< (z, u) -> (z at the end, y at the start, halfway, at the end) without the laws
+    Eigen::MatrixXd linear_;                  ///< (z, u) -> (z at the end, y at the start, halfway, at the end) without the laws; rows padded
     Eigen::MatrixXd halfway_;                 ///< (z, u) -> z halfway without the laws
     Eigen::MatrixXd quadrature_;              ///< (N at the start, sum of both halfway, at the end) -> what they add to z
     Eigen::MatrixXd Q_, stage_, later_;       ///< Q = int exp(A t) E dt over h/2, C Q and C exp(A h/2) Q

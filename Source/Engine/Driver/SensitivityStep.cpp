@@ -50,7 +50,7 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
         first += size;
     }
 
-    carry_ = motion_.linear_.leftCols(n).transpose();
+    carry_ = motion_.linear_.topLeftCorner(n + 3 * outputs, n).transpose();
     const auto memories = static_cast<Eigen::Index>(std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
     for (auto& weights : memoryQuadrature_)
         weights.resize(memories, n);

@@ -6,39 +6,39 @@
 namespace excursion {
 namespace {
 
-/// `width` columns of a block of rows: their sums stay in registers.
-template <int width>
-[[gnu::always_inline]] inline void addColumns(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W, double* Y)
+/// `width` columns of 4 `fours` rows: their sums stay in registers, and are enough to hide the latency of a sum.
+template <int width, int fours>
+[[gnu::always_inline]] inline void addBlock(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W, double* Y)
 {
-    const auto four = [](const double* at) { return reinterpret_cast<const Four*>(at); };
-    Four low[width], high[width];
-    for (int j = 0; j < width; ++j) {
-        low[j] = four(Y + j * rows)[0];
-        high[j] = four(Y + j * rows)[1];
-    }
-    for (Eigen::Index r = 0; r < inner; ++r) {
-        const Four a = four(X + r * rows)[0], b = four(X + r * rows)[1];
-        for (int j = 0; j < width; ++j) {
-            low[j] += W[j * inner + r] * a;
-            high[j] += W[j * inner + r] * b;
+    Four sum[width][fours];
+    for (int j = 0; j < width; ++j)
+        for (int p = 0; p < fours; ++p)
+            sum[j][p] = reinterpret_cast<const Four*>(Y + j * rows)[p];
+    for (Eigen::Index r = 0; r < inner; ++r)
+        for (int p = 0; p < fours; ++p) {
+            const Four x = reinterpret_cast<const Four*>(X + r * rows)[p];
+            for (int j = 0; j < width; ++j)
+                sum[j][p] += W[j * inner + r] * x;
         }
-    }
-    for (int j = 0; j < width; ++j) {
-        reinterpret_cast<Four*>(Y + j * rows)[0] = low[j];
-        reinterpret_cast<Four*>(Y + j * rows)[1] = high[j];
-    }
+    for (int j = 0; j < width; ++j)
+        for (int p = 0; p < fours; ++p)
+            reinterpret_cast<Four*>(Y + j * rows)[p] = sum[j][p];
 }
 
 EXCURSION_DISPATCH void add(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W, Eigen::Index columns, double* Y,
                             Eigen::Index from, Eigen::Index to)
 {
     constexpr int width = 4;
-    for (Eigen::Index p = from; p < to; p += tallBlock) {
-        Eigen::Index j = 0;
-        for (; j + width <= columns; j += width)
-            addColumns<width>(X + p, rows, inner, W + j * inner, Y + j * rows + p);
-        for (; j < columns; ++j)
-            addColumns<1>(X + p, rows, inner, W + j * inner, Y + j * rows + p);
+    Eigen::Index j = 0;
+    for (; j + width <= columns; j += width)
+        for (Eigen::Index p = from; p < to; p += tallBlock)
+            addBlock<width, 2>(X + p, rows, inner, W + j * inner, Y + j * rows + p);
+    for (; j < columns; ++j) {
+        Eigen::Index p = from;
+        for (; p + 3 * tallBlock <= to; p += 3 * tallBlock)
+            addBlock<1, 6>(X + p, rows, inner, W + j * inner, Y + j * rows + p);
+        for (; p < to; p += tallBlock)
+            addBlock<1, 2>(X + p, rows, inner, W + j * inner, Y + j * rows + p);
     }
 }
 
