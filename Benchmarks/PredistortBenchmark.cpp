@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What share of one core a channel in real time takes, with every effect of the catalogue, in blocks of 64. Target of the
 // predistorter at 48 kHz, oversampling 2: 3 %.
-#include "Everything.h"
+#include "Linearization/Drivers.h"
 
 #include "Engine/Linearization/Predistorter.h"
 #include "Engine/Linearization/Speaker.h"

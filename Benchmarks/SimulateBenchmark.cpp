@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How many seconds of loudspeaker a second of one core simulates, with every effect of the catalogue. Target: 20.
-#include "Everything.h"
+#include "Linearization/Drivers.h"
 
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Signal/Multisine.h"

@@ -56,15 +56,6 @@ inline Model everything()
     return model;
 }
 
-/// The model without what is not linear.
-inline Model linearPart(Model model)
-{
-    for (const auto& id : model.effectIds())
-        if (!effectNamed(id).linear())
-            model = withoutEffect(model, id);
-    return model;
-}
-
 /// Two tones under a bell: starts and ends in silence and is far from half the sample rate.
 inline std::vector<double> burst(double sampleRate, double seconds, double amplitude)
 {

@@ -32,7 +32,7 @@ struct ScoreResult {
 };
 
 /// Score (Lagrange multiplier) test of every applicable effect of the catalogue that the model lacks: all are put in at zero strength,
-/// one run on jets gives the sensitivities to every strength besides those to the model's own parameters, and
+/// one run (differentiate) gives the sensitivities to every strength besides those to the model's own parameters, and
 ///     d = argmin |r + J d|^2   over the model's parameters and the effect's strengths
 /// predicts the residual r + J d. Levels, channels and sections all count, weighted by their noise.
 ScoreResult score(const Model&, const Record&, const ScoreOptions&, const Progress& = {});

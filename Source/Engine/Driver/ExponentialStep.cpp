@@ -13,15 +13,6 @@
 namespace excursion {
 namespace {
 
-constexpr Eigen::Index rates = 2;     // di/dt and dv/dt lead N
-constexpr Eigen::Index motions = 5;   // i, x, v, A_i z and A_v z lead y
-
-Model linearPart(Model model)
-{
-    std::erase_if(model.components, [](const Component& c) { return !c.effect->linear(); });
-    return model;
-}
-
 std::vector<double> coefficientsOf(const Component& component)
 {
     std::vector<double> parameters, coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
@@ -98,7 +89,7 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
         Q_.col(q) = exponential(A_, E.col(q), 0.5 * h, 1).phi;
     }
     stage_ = C * Q_;
-    later_ = C * (half.decay * Q_);
+    last_ = C * (half.decay * Q_);
     from_.setZero(n + terms);
     run_.setZero(linear_.rows());
     y_.setZero(outputs);
@@ -121,6 +112,16 @@ void ExponentialStep::ask(double u, double* N)
     N[1] = (force + sum.force) / (mass_ + sum.mass) - y_[4] - motion(u);
 }
 
+std::pair<double, double> ExponentialStep::later(std::span<const double> u)
+{
+    double middle = 0.0, end = 0.0;
+    for (std::size_t k = u.size(); k-- > 0;) {
+        middle = 0.5 * middle + u[k];
+        end += u[k];
+    }
+    return {middle, end};
+}
+
 double ExponentialStep::acceleration(const double* z, double u)
 {
     y_.noalias() = linear_.block(order(), 0, y_.size(), order()) * Eigen::Map<const Eigen::VectorXd>(z, order());
@@ -131,11 +132,7 @@ double ExponentialStep::acceleration(const double* z, double u)
 double ExponentialStep::step(double* z, std::span<const double> u)
 {
     const auto n = A_.rows(), outputs = y_.size(), laws = N_[0].size();
-    double middle = 0.0, end = 0.0;
-    for (std::size_t k = u.size(); k-- > 0;) {
-        middle = 0.5 * middle + u[k];
-        end += u[k];
-    }
+    const auto [middle, end] = later(u);
     from_.head(n) = Eigen::Map<const Eigen::VectorXd>(z, n);
     for (std::size_t k = 0; k < terms; ++k)
         from_[n + static_cast<Eigen::Index>(k)] = k < u.size() ? u[k] : 0.0;
@@ -151,7 +148,7 @@ double ExponentialStep::step(double* z, std::span<const double> u)
     y_ = halfway + stage_.lazyProduct(N2);
     ask(middle, N3.data());
     sums_.head(laws) = 2.0 * N3 - N1;
-    y_ = atEnd + later_.lazyProduct(N1) + stage_.lazyProduct(sums_.head(laws));
+    y_ = atEnd + last_.lazyProduct(N1) + stage_.lazyProduct(sums_.head(laws));
     ask(end, N4.data());
     sums_.head(laws) = N1;
     sums_.segment(laws, laws) = N2 + N3;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace excursion {
@@ -47,12 +48,17 @@ public:
 private:
     friend class SensitivityStep;
 
+    static constexpr Eigen::Index rates = 2;     // di/dt and dv/dt lead N
+    static constexpr Eigen::Index motions = 5;   // i, x, v, A_i z and A_v z lead y
+
     struct Law {
         const Component* component;
         std::vector<double> coefficients;
         Eigen::Index memory;   ///< where its memory starts among the laws' memories
     };
 
+    /// The input halfway and at the end of the step.
+    static std::pair<double, double> later(std::span<const double> u);
     double motion(double u) const { return electrical_ ? 0.0 : u / mass_; }   ///< m/s^2 that the input makes at once
     void ask(double u, double* N);
 
@@ -65,7 +71,7 @@ private:
     Eigen::MatrixXd linear_;                  ///< (z, u) -> (z at the end, y at the start, halfway, at the end) without the laws; rows padded
     Eigen::MatrixXd halfway_;                 ///< (z, u) -> z halfway without the laws
     Eigen::MatrixXd quadrature_;              ///< (N at the start, sum of both halfway, at the end) -> what they add to z
-    Eigen::MatrixXd Q_, stage_, later_;       ///< Q = int exp(A t) E dt over h/2, C Q and C exp(A h/2) Q
+    Eigen::MatrixXd Q_, stage_, last_;       ///< Q = int exp(A t) E dt over h/2, C Q and C exp(A h/2) Q
     Eigen::VectorXd from_, run_, y_, sums_;
     std::array<Eigen::VectorXd, 4> N_;
 };

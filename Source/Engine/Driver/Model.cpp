@@ -106,6 +106,12 @@ Model withoutEffect(Model model, std::string_view effectId)
     return model;
 }
 
+Model linearPart(Model model)
+{
+    std::erase_if(model.components, [](const Component& c) { return !c.effect->linear(); });
+    return model;
+}
+
 Model withDegree(Model model, std::size_t component, int degree)
 {
     auto& c = model.components.at(component);

@@ -48,6 +48,8 @@ Model makeModel(std::string_view baseId);
 /// The model with that effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
 Model withoutEffect(Model, std::string_view effectId);
+/// The base and those effects that are linear.
+Model linearPart(Model);
 /// The model with the law of that component expanded to another degree; coefficients that are new are zero.
 Model withDegree(Model, std::size_t component, int degree);
 

@@ -15,7 +15,4 @@ using Jet = ceres::Jet<double, jetWidth>;
 /// tells how force and flux go on along a given motion, which is what an inversion needs.
 using Tangent = ceres::Jet<double, 2>;
 
-inline double valueOf(double number) { return number; }
-inline double valueOf(const Jet& number) { return number.a; }
-
 } // namespace excursion

@@ -49,8 +49,8 @@ struct OutputErrorOptions {
 /// 110 dB, and relaxations (creep) by 60 dB as far as they answer to the band, f > 0.3 of its low edge; at most four periods.
 std::size_t settlingTime(const Model&, const Record&);
 
-/// Simulates the model on the sections and compares (output error). Sensitivities come from the same physics run
-/// on jets. Sections run in parallel; the result does not depend on the number of threads.
+/// Simulates the model on the sections and compares (output error). Sections run in parallel; the result does not depend on the number of
+/// threads.
 /// @param sections  indices into record.sections
 /// @param active    indices of the parameters to differentiate by, in the order of parametersOf(); N and g follow it
 std::vector<SectionFit> outputError(const Model&, const Record&, const std::vector<std::size_t>& sections,

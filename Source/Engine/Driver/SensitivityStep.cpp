@@ -10,8 +10,6 @@
 namespace excursion {
 namespace {
 
-constexpr Eigen::Index rates = 2, motions = 5;   // as in ExponentialStep
-
 std::vector<Jet> prepared(const Component& component, const std::vector<Jet>& parameters)
 {
     std::vector<Jet> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
@@ -27,6 +25,22 @@ std::vector<Jet> constants(const Component& component)
     return parameters;
 }
 
+/// By component and parameter: its place among the active ones, or -1.
+std::vector<std::vector<Eigen::Index>> columnsByComponent(const Model& model, std::span<const Eigen::Index> active)
+{
+    std::vector<std::vector<Eigen::Index>> columns;
+    Eigen::Index first = 0;
+    for (const auto& component : model.components) {
+        auto& own = columns.emplace_back(component.parameters.size(), -1);
+        const auto size = static_cast<Eigen::Index>(own.size());
+        for (std::size_t c = 0; c < active.size(); ++c)
+            if (active[c] >= first && active[c] < first + size)
+                own[static_cast<std::size_t>(active[c] - first)] = static_cast<Eigen::Index>(c);
+        first += size;
+    }
+    return columns;
+}
+
 } // namespace
 
 SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const Eigen::Index> active)
@@ -36,19 +50,12 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
     dInductance_.setZero(count_);
     dMass_.setZero(count_);
     memoryFrom_ = padded(count_);
-    addLinear(model, active);
-    Eigen::Index first = 0;
+    const auto columns = columnsByComponent(model, active);
+    addLinear(model, columns);
     std::size_t law = 0;
-    for (const auto& component : model.components) {
-        const auto size = static_cast<Eigen::Index>(component.parameters.size());
-        std::vector<Eigen::Index> columns(component.parameters.size(), none);
-        for (Eigen::Index c = 0; c < count_; ++c)
-            if (active[static_cast<std::size_t>(c)] >= first && active[static_cast<std::size_t>(c)] < first + size)
-                columns[static_cast<std::size_t>(active[static_cast<std::size_t>(c)] - first)] = c;
-        if (!component.effect->linear())
-            addLaw(law++, columns);
-        first += size;
-    }
+    for (std::size_t n = 0; n < model.components.size(); ++n)
+        if (!model.components[n].effect->linear())
+            addLaw(law++, columns[n]);
 
     carry_ = motion_.linear_.topLeftCorner(n + 3 * outputs, n).transpose();
     const auto memories = static_cast<Eigen::Index>(std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
@@ -68,7 +75,7 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
             memoryLater_.row(k) = (C * (decay * Q)).transpose();
         }
     stageWeights_ = motion_.stage_.transpose();
-    laterWeights_ = motion_.later_.transpose();
+    laterWeights_ = motion_.last_.transpose();
     quadratureWeights_ = motion_.quadrature_.transpose();
     const auto rows = padded(count_);
     for (auto* instant : {&start_, &halfway_, &end_}) {
@@ -88,48 +95,44 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
     begin(Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(count_, n));
 }
 
-void SensitivityStep::addLinear(const Model& model, std::span<const Eigen::Index> active)
+void SensitivityStep::addLinear(const Model& model, const std::vector<std::vector<Eigen::Index>>& columnsByComponent)
 {
-    Model part = model;
-    std::erase_if(part.components, [](const Component& c) { return !c.effect->linear(); });
-    const auto linear = linearize(part, true);
+    const auto linear = linearize(linearPart(model), true);
     const auto n = linear.A.rows();
     place_.assign(static_cast<std::size_t>(motion_.A_.rows()), none);
-    Eigen::Index memories = 0, first = 0, firstInPart = 0;
-    for (const auto& component : model.components) {
-        const auto size = static_cast<Eigen::Index>(component.parameters.size());
-        if (component.effect->linear()) {
-            for (Eigen::Index c = 0; c < count_; ++c) {
-                const auto own = active[static_cast<std::size_t>(c)] - first;
-                if (own < 0 || own >= size)
-                    continue;
-                linearParameters_.push_back(c);
-                const auto k = static_cast<std::size_t>(firstInPart + own);
-                for (Eigen::Index row = 0; row < n; ++row)
-                    for (Eigen::Index column = 0; column <= n; ++column)
-                        if (const double value = column < n ? linear.dA[k](row, column) : linear.dB[k][row]; value != 0.0) {
-                            const auto place = motion_.linearPlace_[static_cast<std::size_t>(row)];
-                            entries_.push_back({c, place, column < n ? motion_.linearPlace_[static_cast<std::size_t>(column)] : motion_.A_.rows(), value});
-                            if (row < 3)
-                                continue;
-                            if (place_[static_cast<std::size_t>(place)] == none)
-                                place_[static_cast<std::size_t>(place)] = memories++;
-                            memoryFrom_ = std::min(memoryFrom_, c / tallBlock * tallBlock);
-                            memoryTo_ = std::max(memoryTo_, padded(c + 1));
-                        }
-                auto parameters = constants(component);
-                parameters[static_cast<std::size_t>(own)].v[0] = 1.0;
-                const auto coefficients = prepared(component, parameters);
-                std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)), unused(memory);
-                Balance<Jet> atRest;
-                component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)}, memory.data(),
-                                             unused.data(), atRest);
-                dInductance_[c] = atRest.inductance.v[0];
-                dMass_[c] = atRest.mass.v[0];
-            }
-            firstInPart += size;
+    Eigen::Index memories = 0;
+    std::size_t k = 0;   // parameter of the linear part
+    for (std::size_t place = 0; place < model.components.size(); ++place) {
+        const auto& component = model.components[place];
+        if (!component.effect->linear())
+            continue;
+        for (std::size_t own = 0; own < component.parameters.size(); ++own, ++k) {
+            const auto c = columnsByComponent[place][own];
+            if (c == none)
+                continue;
+            linearParameters_.push_back(c);
+            for (Eigen::Index row = 0; row < n; ++row)
+                for (Eigen::Index column = 0; column <= n; ++column)
+                    if (const double value = column < n ? linear.dA[k](row, column) : linear.dB[k][row]; value != 0.0) {
+                        const auto state = motion_.linearPlace_[static_cast<std::size_t>(row)];
+                        entries_.push_back({c, state, column < n ? motion_.linearPlace_[static_cast<std::size_t>(column)] : motion_.A_.rows(), value});
+                        if (row < 3)
+                            continue;
+                        if (place_[static_cast<std::size_t>(state)] == none)
+                            place_[static_cast<std::size_t>(state)] = memories++;
+                        memoryFrom_ = std::min(memoryFrom_, c / tallBlock * tallBlock);
+                        memoryTo_ = std::max(memoryTo_, padded(c + 1));
+                    }
+            auto parameters = constants(component);
+            parameters[own].v[0] = 1.0;
+            const auto coefficients = prepared(component, parameters);
+            std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)), unused(memory);
+            Balance<Jet> atRest;
+            component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)}, memory.data(),
+                                         unused.data(), atRest);
+            dInductance_[c] = atRest.inductance.v[0];
+            dMass_[c] = atRest.mass.v[0];
         }
-        first += size;
     }
 }
 
@@ -146,7 +149,7 @@ void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& c
     for (int q = 0; q < 3; ++q)
         directions.push_back({q, 0, none});
     for (int k = 0; k < memories; ++k)
-        directions.push_back({static_cast<int>(motions + motion_.laws_[law].memory) + k, 0, none});
+        directions.push_back({static_cast<int>(ExponentialStep::motions + motion_.laws_[law].memory) + k, 0, none});
     for (std::size_t p = 0; p < columns.size(); ++p)
         if (columns[p] != none)
             directions.push_back({none, p, columns[p]});
@@ -177,7 +180,7 @@ void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
     y_[3] = motion_.A_.row(0) * z;
     y_[4] = motion_.A_.row(2) * z;
     for (std::size_t k = 0; k < motion_.lawPlace_.size(); ++k)
-        y_[motions + static_cast<Eigen::Index>(k)] = z[motion_.lawPlace_[k]];
+        y_[ExponentialStep::motions + static_cast<Eigen::Index>(k)] = z[motion_.lawPlace_[k]];
 
     Balance<double> sum;
     std::size_t counted = motion_.laws_.size();   // the law whose values have been added last
@@ -185,10 +188,10 @@ void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
         const auto& law = motion_.laws_[chunk.law];
         Jet motion[3] {Jet(y_[0]), Jet(y_[1]), Jet(y_[2])};
         for (std::size_t k = 0; k < chunk.memory.size(); ++k)
-            chunk.memory[k] = Jet(y_[motions + law.memory + static_cast<Eigen::Index>(k)]);
+            chunk.memory[k] = Jet(y_[ExponentialStep::motions + law.memory + static_cast<Eigen::Index>(k)]);
         for (std::size_t lane = 0; lane < jetWidth; ++lane)
             if (const int q = chunk.output[lane]; q != none)
-                (q < 3 ? motion[q] : chunk.memory[static_cast<std::size_t>(q - motions - law.memory)]).v[static_cast<Eigen::Index>(lane)] = 1.0;
+                (q < 3 ? motion[q] : chunk.memory[static_cast<std::size_t>(q - ExponentialStep::motions - law.memory)]).v[static_cast<Eigen::Index>(lane)] = 1.0;
         chunk.sum = {};
         law.component->effect->contribute(law.component->extent, chunk.coefficients.data(), {motion[0], motion[1], motion[2]},
                                           chunk.memory.data(), chunk.rate.data(), chunk.sum);
@@ -220,7 +223,7 @@ void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
                 row[0] -= (chunk.sum.drop.v[k] + chunk.sum.fluxSlope.v[k] * v + fi * chunk.sum.inductance.v[k]) / L;
             row[1] += (chunk.sum.force.v[k] - fv * chunk.sum.mass.v[k]) / m;
             for (std::size_t j = 0; j < chunk.rate.size(); ++j)
-                row[rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] += chunk.rate[j].v[k];
+                row[ExponentialStep::rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] += chunk.rate[j].v[k];
         }
     if (motion_.electrical_) {
         at.Ny(2, 0) -= sum.fluxSlope / L;
@@ -255,15 +258,11 @@ void SensitivityStep::begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S)
 void SensitivityStep::step(std::span<const double> u)
 {
     const auto n = z_.size(), outputs = y_.size(), laws = motion_.N_[0].size(), memories = memoryStage_.rows();
-    double middle = 0.0, end = 0.0;
-    for (std::size_t k = u.size(); k-- > 0;) {
-        middle = 0.5 * middle + u[k];
-        end += u[k];
-    }
+    const auto [middle, end] = ExponentialStep::later(u);
     if (fresh_)
         look(z_, u[0], start_);
     fresh_ = false;
-    acceleration_ = motion_.step(z_.data(), u);
+    motion_.step(z_.data(), u);
     middle_.noalias() = motion_.halfway_ * motion_.from_;
     middle_.noalias() += motion_.Q_ * motion_.N_[2];
     look(middle_, middle, halfway_);

@@ -27,7 +27,6 @@ public:
 
     const Eigen::VectorXd& state() const { return z_; }   ///< at the latest step's end
     auto slopes() const { return S_.topRows(count_); }   ///< parameters x states, at the latest step's end
-    double acceleration() const { return acceleration_; } ///< m/s^2, at the latest step's start
     const Eigen::VectorXd& accelerationSlopes() const { return accelerationSlopes_; }   ///< at the latest step's start, by parameter
 
 private:
@@ -53,8 +52,9 @@ private:
         double value;
     };
 
+    /// @param columns  by parameter of a component: its column in S, or none
     void addLaw(std::size_t law, const std::vector<Eigen::Index>& columns);
-    void addLinear(const Model&, std::span<const Eigen::Index> active);
+    void addLinear(const Model&, const std::vector<std::vector<Eigen::Index>>& columnsByComponent);
     void look(const Eigen::VectorXd& z, double u, Instant&);
 
     ExponentialStep motion_;
@@ -73,7 +73,6 @@ private:
     Eigen::MatrixXd S_, run_, Y_, K_, twice_;   ///< rows, one a parameter, are padded
     std::array<Eigen::MatrixXd, 4> stage_;
     Instant start_, halfway_, end_;
-    double acceleration_ = 0.0;
     bool fresh_ = true;
 };
 
