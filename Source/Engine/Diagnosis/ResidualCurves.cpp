@@ -4,6 +4,7 @@
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
+#include "Engine/Driver/StartState.h"
 #include "Engine/Signal/Fft.h"
 
 #include <Eigen/LU>
@@ -106,6 +107,8 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     const Repair repair(model);
     const double mass = model.baseParameter("m").value;
     const int substeps = stableSubsteps(model, record.sampleRate);
+    const auto leadIn = settlingTime(model, record);
+    const auto from = startStates(model, record, sections, leadIn, false);
     Motions motions;
     bool seesForce = false, seesVoltage = false;
     for (std::size_t n = 0; n < sections.size(); ++n) {
@@ -134,8 +137,8 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
             voltage[k] = drives.voltage;
         }
         Trajectory run;
-        const auto drive = record.drive(section);
-        if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
+        const auto drive = record.drive(section, leadIn);
+        if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run, from[n].value))
             return {};
         const auto append = [](std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); };
         append(motions.x, run.displacement);
