@@ -6,7 +6,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/ComparisonFile.h"
-#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/ModelFile.h"

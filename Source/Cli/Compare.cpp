@@ -8,7 +8,7 @@
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Driver/ModelFile.h"
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
 
 #include <nlohmann/json.hpp>
 

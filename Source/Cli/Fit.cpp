@@ -5,7 +5,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
-#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/ModelFile.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Diagnosis/Improve.h"
+#include "Engine/Diagnosis/Ladder.h"
 
 #include <string>
 #include <vector>

@@ -4,7 +4,7 @@
 #include "Cli/Terminal.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Document/JsonText.h"
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "Engine/Measurement/DraftFile.h"
 #include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
 
 #include <nlohmann/json.hpp>
 

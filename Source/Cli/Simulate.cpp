@@ -9,7 +9,7 @@
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
 
 #include <nlohmann/json.hpp>
 

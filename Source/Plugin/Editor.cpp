@@ -1,135 +1,121 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Editor.h"
 
-#include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
 #include "Plugin/Look.h"
 
-#include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace excursion::plugin {
+namespace {
 
-Editor::Editor(Processor& processor) : AudioProcessorEditor(processor), processor_(processor)
+/// Whether a file says that it is a model.
+bool holdsModel(const juce::File& file)
 {
-    name_.setFont(juce::Font(20.0f));
-    for (auto* label : {&name_, &status_})
-        addAndMakeVisible(label);
-    drivers_.setTextWhenNothingSelected("Factory drivers");
-    for (std::size_t k = 0; k < factoryDrivers().size(); ++k)
-        drivers_.addItem(factoryDrivers()[k].title, static_cast<int>(k) + 1);
-    drivers_.onChange = [this] {
-        if (const int k = drivers_.getSelectedItemIndex(); k >= 0) {
-            const auto& factory = factoryDrivers()[static_cast<std::size_t>(k)];
-            use(modelFromText(factory.text, factory.title), "the factory");
-        }
-    };
-    recipes_.setTextWhenNothingSelected("Recipes");
-    for (std::size_t k = 0; k < factoryRecipes().size(); ++k)
-        recipes_.addItem(factoryRecipes()[k].title, static_cast<int>(k) + 1);
-    recipes_.onChange = [this] {
-        if (const int k = recipes_.getSelectedItemIndex(); k >= 0) {
-            const auto& factory = factoryRecipes()[static_cast<std::size_t>(k)];
-            const auto recipe = recipeFromText(factory.text, factory.title);
-            processor_.parameters().set(recipe);
-            tell(recipe.words, false);
-        }
-    };
-    mode_.addItemList(processor.parameters().mode().choices, 1);
-    modeAttachment_ = std::make_unique<juce::ComboBoxParameterAttachment>(processor.parameters().mode(), mode_);
-    load_.onClick = [this] { choose(); };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {&drivers_, &recipes_, &mode_, &load_, &excursion_, &voltage_})
-        addAndMakeVisible(component);
-    for (auto* parameter : processor.parameters().numbers()) {
-        Dial dial {std::make_unique<juce::Label>(), std::make_unique<juce::Slider>(juce::Slider::LinearHorizontal, juce::Slider::TextBoxRight), nullptr};
-        dial.title->setText(parameter->getName(40), juce::dontSendNotification);
-        dial.slider->setTextValueSuffix(" " + parameter->getLabel());
-        dial.attachment = std::make_unique<juce::SliderParameterAttachment>(*parameter, *dial.slider);
-        addAndMakeVisible(*dial.title);
-        addAndMakeVisible(*dial.slider);
-        dials_.push_back(std::move(dial));
+    if (!file.hasFileExtension("json") || file.getSize() > (1 << 26))
+        return false;
+    const auto document = nlohmann::json::parse(file.loadFileAsString().toStdString(), nullptr, false);
+    return !document.is_object() || (document.value("format", "") != "excursion-measurement" && document.value("format", "") != "excursion-plan");
+}
+
+} // namespace
+
+Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
+    : AudioProcessorEditor(processor), owner_(processor), measure_(*this, devices != nullptr ? devices : standaloneDevices())
+{
+    for (std::size_t k = 0; k < tabs_.size(); ++k) {
+        tabs_[k].setClickingTogglesState(false);
+        tabs_[k].setConnectedEdges((k > 0 ? juce::Button::ConnectedOnLeft : 0) | (k + 1 < tabs_.size() ? juce::Button::ConnectedOnRight : 0));
+        tabs_[k].setColour(juce::TextButton::buttonOnColourId, look::accent.darker(0.6f));
+        tabs_[k].onClick = [this, k] { go(static_cast<PageName>(k)); };
+        addAndMakeVisible(tabs_[k]);
+        addChildComponent(pages_[k]);
     }
-    for (auto* parameter : processor.parameters().effects()) {
-        Switch one {std::make_unique<juce::ToggleButton>(parameter->getName(80)), nullptr};
-        one.attachment = std::make_unique<juce::ButtonParameterAttachment>(*parameter, *one.button);
-        addAndMakeVisible(*one.button);
-        switches_.push_back(std::move(one));
-    }
-    show(processor.model());
-    tell("Drop a model (model.json) here, or choose a factory driver.", false);
+    cancel_.onClick = [this] {
+        owner_.session().cancel();
+        if (auto* measuring = measure_.measuring())
+            measuring->cancel();
+    };
+    addAndMakeVisible(status_);
+    addChildComponent(progress_);
+    addChildComponent(cancel_);
+    tell("Open, draw or measure a loudspeaker; or load a model on the last page.", false);
+    go(owner_.session().findings() ? PageName::diagnose : PageName::measure);
     setResizable(true, true);
-    setResizeLimits(820, 560, 2400, 1800);
-    setSize(960, 640);
+    setResizeLimits(1000, 680, 2600, 1900);
+    setSize(1180, 760);
+    update();
     startTimerHz(20);
 }
 
 Editor::~Editor() { stopTimer(); }
 
-void Editor::tell(const juce::String& words, bool trouble)
+void Editor::go(PageName name)
 {
-    status_.setColour(juce::Label::textColourId, trouble ? look::warning : look::dim);
-    status_.setText(words, juce::dontSendNotification);
+    page_ = static_cast<std::size_t>(name);
+    for (std::size_t k = 0; k < pages_.size(); ++k) {
+        pages_[k]->setVisible(k == page_);
+        tabs_[k].setToggleState(k == page_, juce::dontSendNotification);
+    }
+    resized();
 }
 
-void Editor::show(const Model& model)
+void Editor::tell(const juce::String& text, bool trouble)
 {
-    shown_ = juce::String::fromUTF8(model.name.c_str());
-    name_.setText(shown_.isEmpty() ? "A model without a name" : shown_, juce::dontSendNotification);
-    plots_.clear();
-    for (auto& law : laws(model)) {
-        plots_.push_back(std::make_unique<LawPlot>());
-        plots_.back()->show(std::move(law));
-        addAndMakeVisible(*plots_.back());
-    }
-    for (std::size_t k = 0; k < switches_.size(); ++k)
-        switches_[k].button->setEnabled(model.has(catalogue()[k]->id()));
-    resized();
+    status_.setColour(juce::Label::textColourId, trouble ? look::warning : look::dim);
+    status_.setText(text, juce::dontSendNotification);
 }
 
 void Editor::use(const Model& model, const juce::String& from)
 {
     try {
-        processor_.setModel(model);
-        show(model);
+        owner_.setModel(model);
         tell("The model is from " + from + ".", false);
     } catch (const Error& error) {
-        tell(juce::String::fromUTF8(error.what()), true);
+        tell(words(error.what()), true);
     }
 }
 
 void Editor::load(const juce::File& file)
 {
+    if (!holdsModel(file)) {
+        owner_.session().open(file.getFullPathName().toStdString());
+        go(PageName::measure);
+        return;
+    }
     try {
         use(readModel(file.getFullPathName().toStdString()), file.getFileName());
+        go(PageName::linearize);
     } catch (const Error& error) {
-        tell(juce::String::fromUTF8(error.what()), true);
+        tell(words(error.what()), true);
     }
-}
-
-void Editor::choose()
-{
-    chooser_ = std::make_unique<juce::FileChooser>("Load a model", juce::File(), "*.json");
-    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles, [this](const juce::FileChooser& chosen) {
-        if (chosen.getResult() != juce::File())
-            load(chosen.getResult());
-    });
 }
 
 void Editor::filesDropped(const juce::StringArray& files, int, int) { load(juce::File(files[0])); }
 
-void Editor::timerCallback()
+void Editor::update()
 {
-    const auto model = processor_.model();
-    if (juce::String::fromUTF8(model.name.c_str()) != shown_)
-        show(model);   // a host has restored another state
-    const auto meters = processor_.take();
-    const double range = measuredDisplacement(model), reach = std::isfinite(range) ? meters.displacement / range : 0.0;
-    excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm, " + juce::String(100.0 * reach, 0) + " % of what was measured",
-                    meters.displacementExcess > 1e-3);
-    voltage_.show(meters.voltage / processor_.parameters().recipe().voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageExcess > 1e-3);
-    if (meters.faults > faults_)
-        tell("Something was not finite: the engine has started anew.", true);
-    faults_ = meters.faults;
+    const auto status = owner_.session().status();
+    fraction_ = status.fraction;
+    progress_.setVisible(status.busy);
+    cancel_.setVisible(status.busy);
+    if (status.words != said_) {
+        said_ = status.words;
+        tell(words(said_), status.trouble);
+    }
+    if (status.version != seen_) {
+        seen_ = status.version;
+        if (const auto findings = owner_.session().findings())
+            for (auto* page : pages_)
+                page->show(*findings);
+    }
+    // A host may have restored another state.
+    if (auto text = toJson(owner_.model()).dump(); text != shown_) {
+        shown_ = std::move(text);
+        linearize_.showModel(owner_.model());
+    }
+    pages_[page_]->tick();
 }
 
 void Editor::paint(juce::Graphics& g) { g.fillAll(look::background); }
@@ -137,38 +123,19 @@ void Editor::paint(juce::Graphics& g) { g.fillAll(look::background); }
 void Editor::resized()
 {
     auto area = getLocalBounds().reduced(14);
-    auto head = area.removeFromTop(30);
-    load_.setBounds(head.removeFromRight(140));
-    head.removeFromRight(8);
-    drivers_.setBounds(head.removeFromRight(220));
-    head.removeFromRight(8);
-    recipes_.setBounds(head.removeFromRight(210));
-    name_.setBounds(head);
-    area.removeFromTop(8);
-    status_.setBounds(area.removeFromBottom(26));
-    auto left = area.removeFromLeft(juce::jmax(380, area.getWidth() * 2 / 5));
-    area.removeFromLeft(12);
-    mode_.setBounds(left.removeFromTop(30));
-    left.removeFromTop(8);
-    for (auto& dial : dials_) {
-        auto row = left.removeFromTop(28);
-        dial.title->setBounds(row.removeFromLeft(130));
-        dial.slider->setBounds(row);
-    }
-    left.removeFromTop(8);
-    for (auto& one : switches_)
-        one.button->setBounds(left.removeFromTop(24));
-    left.removeFromTop(12);
-    excursion_.setBounds(left.removeFromTop(32));
-    left.removeFromTop(6);
-    voltage_.setBounds(left.removeFromTop(32));
-    const int rows = juce::jmax(1, (static_cast<int>(plots_.size()) + 1) / 2), height = area.getHeight() / rows;
-    for (std::size_t k = 0; k < plots_.size(); ++k) {
-        const bool first = k % 2 == 0;
-        const juce::Rectangle<int> cell(area.getX() + (first ? 0 : area.getWidth() / 2), area.getY() + static_cast<int>(k / 2) * height,
-                                        area.getWidth() / 2, height);
-        plots_[k]->setBounds(cell.reduced(2));
-    }
+    auto head = area.removeFromTop(32);
+    for (auto& tab : tabs_)
+        tab.setBounds(head.removeFromLeft(130));
+    area.removeFromTop(12);
+    auto foot = area.removeFromBottom(26);
+    cancel_.setBounds(foot.removeFromRight(80));
+    foot.removeFromRight(8);
+    progress_.setBounds(foot.removeFromRight(180).reduced(0, 3));
+    foot.removeFromRight(8);
+    status_.setBounds(foot);
+    area.removeFromBottom(8);
+    for (auto* page : pages_)
+        page->setBounds(area);
 }
 
 } // namespace excursion::plugin

@@ -1,25 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Plugin/LawPlot.h"
-#include "Plugin/Meter.h"
-#include "Plugin/Processor.h"
+#include "Plugin/ComparePage.h"
+#include "Plugin/DiagnosePage.h"
+#include "Plugin/LinearizePage.h"
+#include "Plugin/MeasurePage.h"
 
-#include <memory>
-#include <vector>
+#include <array>
 
 namespace excursion::plugin {
 
-/// The window: the model with its laws (dropped as a file, chosen, or a factory driver), what is done with it, its effects as switches, and
-/// the meters of the protection.
-class Editor : public juce::AudioProcessorEditor, public juce::FileDragAndDropTarget, private juce::Timer {
+/// The window: four pages, from the measurement to the linearization, and a status line with the progress of what is under way. A take or a
+/// model is taken wherever it is dropped.
+class Editor : public juce::AudioProcessorEditor, public juce::FileDragAndDropTarget, public Window, private juce::Timer {
 public:
-    explicit Editor(Processor&);
+    /// @param devices  for measuring; null: those of the app, none within a host
+    explicit Editor(Processor&, juce::AudioDeviceManager* devices = nullptr);
     ~Editor() override;
 
-    /// As if the file had been dropped. A file that cannot be used is told in the status line, and changes nothing.
+    /// As if the file had been dropped: a model is loaded, anything else is opened as a take. What cannot be used is told in the status line, and
+    /// changes nothing.
     void load(const juce::File&);
     const juce::String status() const { return status_.getText(); }
+
+    void update();   ///< what the timer does
+    MeasurePage& measure() { return measure_; }
+    DiagnosePage& diagnose() { return diagnose_; }
+
+    Processor& processor() override { return owner_; }
+    void go(PageName) override;
+    void use(const Model&, const juce::String& from) override;
+    void tell(const juce::String&, bool trouble) override;
 
     void paint(juce::Graphics&) override;
     void resized() override;
@@ -27,34 +38,23 @@ public:
     void filesDropped(const juce::StringArray&, int, int) override;
 
 private:
-    struct Dial {
-        std::unique_ptr<juce::Label> title;
-        std::unique_ptr<juce::Slider> slider;
-        std::unique_ptr<juce::SliderParameterAttachment> attachment;
-    };
-    struct Switch {
-        std::unique_ptr<juce::ToggleButton> button;
-        std::unique_ptr<juce::ButtonParameterAttachment> attachment;
-    };
+    void timerCallback() override { update(); }
 
-    void timerCallback() override;
-    void use(const Model&, const juce::String& from);
-    void show(const Model&);
-    void choose();
-    void tell(const juce::String&, bool trouble);
-
-    Processor& processor_;
-    juce::Label name_, status_;
-    juce::ComboBox drivers_, recipes_, mode_;
-    juce::TextButton load_ {"Load a model..."};
-    std::unique_ptr<juce::ComboBoxParameterAttachment> modeAttachment_;
-    std::vector<Dial> dials_;
-    std::vector<Switch> switches_;
-    std::vector<std::unique_ptr<LawPlot>> plots_;
-    Meter excursion_ {"Excursion"}, voltage_ {"Voltage"};
-    std::unique_ptr<juce::FileChooser> chooser_;
-    juce::String shown_;   ///< the model that the plots are of
-    int faults_ = 0;
+    Processor& owner_;
+    juce::Label status_;
+    std::array<juce::TextButton, 4> tabs_ {juce::TextButton {"Measure"}, juce::TextButton {"Compare"}, juce::TextButton {"Diagnose"}, juce::TextButton {"Linearize"}};
+    double fraction_ = 0.0;
+    juce::ProgressBar progress_ {fraction_};
+    juce::TextButton cancel_ {"Cancel"};
+    MeasurePage measure_;
+    ComparePage compare_ {*this};
+    DiagnosePage diagnose_ {*this};
+    LinearizePage linearize_ {*this};
+    const std::array<Page*, 4> pages_ {&measure_, &compare_, &diagnose_, &linearize_};
+    std::size_t page_ = 0;
+    std::uint64_t seen_ = 0;          ///< version of the findings that the pages show
+    std::string said_;                ///< of the session's status
+    std::string shown_;               ///< the model that the last page shows
 };
 
 } // namespace excursion::plugin

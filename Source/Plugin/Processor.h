@@ -5,6 +5,7 @@
 #include "Engine/Linearization/Peak.h"
 #include "Plugin/Juce.h"
 #include "Plugin/Parameters.h"
+#include "Plugin/Session.h"
 #include "Plugin/State.h"
 
 #include <array>
@@ -28,6 +29,9 @@ public:
     ~Processor() override;
 
     Parameters& parameters() { return parameters_; }
+
+    /// The work on a take; it goes on while no window is open.
+    Session& session() { return session_; }
 
     /// Any thread but the audio thread. Throws Error for a model that cannot be run; then the one before stays.
     void setModel(const Model&);
@@ -85,6 +89,7 @@ private:
     std::atomic<int> faults_ {0};
     std::condition_variable_any wake_;
     std::jthread worker_;
+    Session session_;
 };
 
 } // namespace excursion::plugin

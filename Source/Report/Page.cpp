@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Report/Page.h"
 
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
+#include "Report/Draw.h"
 #include "Report/Style.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Report/Plot.h"
+#include "Plots/Plot.h"
 
 #include <optional>
 #include <string>

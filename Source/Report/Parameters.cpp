@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
+#include "Plots/Words.h"
 #include "Report/Sections.h"
 
 #include <cmath>

@@ -1,52 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Report/Engineering.h"
+#include "Plots/Plots.h"
+#include "Plots/Words.h"
 #include "Report/Sections.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace excursion {
-namespace {
-
-const ResidualCurve* match(const Comparison& comparison, const ResidualCurve& like)
-{
-    for (const auto& curve : comparison.residuals)
-        if (curve.residual == like.residual && curve.against == like.against)
-            return &curve;
-    return nullptr;
-}
-
-Series series(const ResidualCurve& curve, const char* title, Role role, double across, double up)
-{
-    Series s {title, role, scaled(curve.argument, across), scaled(curve.mean, up), {}, {}, Series::Shape::line, 0};
-    for (std::size_t k = 0; k < curve.scatter.size() && k < curve.mean.size(); ++k) {
-        s.lower.push_back((curve.mean[k] - curve.scatter[k]) * up);
-        s.upper.push_back((curve.mean[k] + curve.scatter[k]) * up);
-    }
-    return s;
-}
-
-std::vector<Plot> plotsOf(const Comparison& before, const Comparison* after)
-{
-    std::vector<Plot> plots;
-    for (const auto& curve : before.residuals) {
-        if (curve.argument.empty())
-            continue;
-        const auto across = displayUnit(largest(curve.argument), curve.againstUnit);
-        const auto up = displayUnit(std::max(largest(curve.mean), largest(curve.scatter)), curve.unit);
-        Plot plot;
-        plot.title = "Missing " + curve.residual + " against " + curve.against;
-        plot.x = {curve.against, across.unit, false, 0.0, 0.0, {}};
-        plot.y = {curve.residual, up.unit, false, 0.0, 0.0, {}};
-        plot.series.push_back(series(curve, after ? "before" : "left", Role::before, across.factor, up.factor));
-        if (const auto* now = after ? match(*after, curve) : nullptr)
-            plot.series.push_back(series(*now, "after", Role::after, across.factor, up.factor));
-        plots.push_back(std::move(plot));
-    }
-    return plots;
-}
-
-} // namespace
 
 void addResiduals(Page& page, const LadderFile& file)
 {
@@ -58,10 +17,10 @@ void addResiduals(Page& page, const LadderFile& file)
     const std::string how = "The line is the mean of what the model's force and voltage balance lacks at the loudest level, the shade its "
                             "scatter: a missing law shows as a curve, and lies flat once it is found.";
     if (rungs.size() == 1)
-        page.figures(plotsOf(rungs.front().comparison, nullptr), 3, how);
+        page.figures(residualPlots(rungs.front().comparison, nullptr), 3, how);
     for (std::size_t k = 1; k < rungs.size(); ++k) {
         page.subsection("Rung " + rungTitle(file.ladder, k));
-        page.figures(plotsOf(rungs[k - 1].comparison, &rungs[k].comparison), 3, how);
+        page.figures(residualPlots(rungs[k - 1].comparison, &rungs[k].comparison), 3, how);
     }
 }
 

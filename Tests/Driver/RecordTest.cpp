@@ -18,10 +18,10 @@ namespace {
 constexpr int N = 1024, settle = 1, periods = 4, realizations = 3;
 constexpr double sampleRate = 8000.0;
 
-/// Odd lines 3 .. 401 at random phases; the current is the voltage over 4 ohm, two samples later.
+/// Odd lines 3 .. last at random phases; the current is the voltage over 4 ohm, two samples later.
 /// @param faint   the realization that is only 0.7 times as loud
 /// @param noise   rms of white noise on the current, in A, and of a tenth of it on the voltage, in V
-Measurement take(int faint, double noise)
+Measurement take(int faint, double noise, int last = 401)
 {
     Measurement result;
     result.sampleRate = sampleRate;
@@ -32,10 +32,10 @@ Measurement take(int faint, double noise)
     e.realizations = realizations;
     e.levels = {1.0, 3.0};
     e.grid = "odd";
-    for (int k = 3; k <= 401; k += 2)
+    for (int k = 3; k <= last; k += 2)
         e.lines.push_back(k);
     e.bandLow = 3 * sampleRate / N;
-    e.bandHigh = 401 * sampleRate / N;
+    e.bandHigh = last * sampleRate / N;
     std::mt19937_64 random(11);
     std::normal_distribution<double> normal;
     std::vector<std::vector<double>> multisines;
@@ -87,6 +87,32 @@ TEST_CASE("A periodic take becomes one averaged period a level and realization",
         for (std::size_t k = 0; k < truth.size(); ++k)
             difference = std::max(difference, std::abs(section.measured[0][k] - truth[k]));
         CHECK(difference < 1e-10);
+    }
+}
+
+TEST_CASE("Samples that no compared line needs are left out", "[record]")
+{
+    const auto measured = take(1, 1e-4, 81);
+    const auto record = makeRecord(measured);
+    CHECK(record.sampleRate == sampleRate / 2.0);
+    CHECK(record.leadIn == N / 2);
+    CHECK(record.highFrequency == Approx(2.0 * record.bandHigh));
+    // The whole record is what a distortion product at half the sample rate would have asked for.
+    const auto whole = [&] {
+        auto loud = measured;
+        loud.excitation->lines.push_back(401);
+        return makeRecord(loud);
+    }();
+    REQUIRE(whole.sampleRate == sampleRate);
+    const auto &section = record.sections[4], &full = whole.sections[4];
+    REQUIRE(section.window == N / 2);
+    CHECK(record.frequency(section, 81) == Approx(whole.frequency(full, 81)));
+    for (std::size_t n = 0; n < section.window; ++n)
+        CHECK(section.input[n] == Approx(full.input[2 * n]).margin(1e-4));   // but for the noise that was played above the band
+    for (std::size_t k = 1; k < 160; ++k) {
+        CHECK(std::abs(2.0 * section.measured[0][k] - full.measured[0][k]) < 1e-10);
+        CHECK(2.0 * section.deviation[0][k] == Approx(full.deviation[0][k]));
+        CHECK(4.0 * section.inputVariance[k] == Approx(full.inputVariance[k]));
     }
 }
 

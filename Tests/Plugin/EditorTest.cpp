@@ -14,25 +14,6 @@ using namespace excursion;
 using plugin::Editor;
 using plugin::Processor;
 
-TEST_CASE("The window is drawn, with a picture kept to look at", "[plugin]")
-{
-    Processor processor;
-    processor.prepareToPlay(48000.0, 512);
-    Editor editor(processor);
-    const auto picture = editor.createComponentSnapshot(editor.getLocalBounds());
-    REQUIRE(picture.getWidth() == editor.getWidth());
-    int colours = 0;   // something is drawn: not all of one colour
-    for (int x = 0; x < picture.getWidth(); x += 5)
-        for (int y = 0; y < picture.getHeight(); y += 5)
-            colours += picture.getPixelAt(x, y) != picture.getPixelAt(0, 0) ? 1 : 0;
-    CHECK(colours > 1000);
-    const juce::File file(juce::String(EXCURSION_SCREENSHOTS) + "/linearize.png");
-    file.getParentDirectory().createDirectory();
-    file.deleteFile();
-    juce::FileOutputStream stream(file);
-    CHECK(juce::PNGImageFormat().writeImageToStream(picture, stream));
-}
-
 TEST_CASE("A model is loaded from a file, and what is none is told and changes nothing", "[plugin]")
 {
     const auto folder = std::filesystem::temp_directory_path() / "excursion plugin \u00e4";

@@ -3,7 +3,9 @@
 
 #include "Engine/Error.h"
 #include "Engine/Measurement/TextFile.h"
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
+#include "Plots/Words.h"
+#include "Report/Draw.h"
 #include "Report/Gnuplot.h"
 #include "Report/Report.h"
 #include "Report/Sections.h"

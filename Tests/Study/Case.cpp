@@ -2,6 +2,7 @@
 #include "Study/Case.h"
 
 #include "Bench/Draw.h"
+#include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
 
 #include <chrono>

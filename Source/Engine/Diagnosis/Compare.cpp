@@ -6,6 +6,8 @@
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/OutputError.h"
+#include "Engine/Error.h"
+#include "Engine/Signal/Fft.h"
 
 #include <algorithm>
 #include <cmath>
@@ -162,6 +164,34 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
     if (options.spectra)
         result.residuals = residualCurves(model, record, sections, fits);
     progress.at(1.0, "compared");
+    return result;
+}
+
+std::vector<Waveform> waveforms(const Model& model, const Record& record, int level)
+{
+    std::vector<Waveform> result;
+    for (const auto n : validationSections(record)) {
+        const auto& section = record.sections[n];
+        if (std::max(0, section.level) != level)
+            continue;
+        OutputErrorOptions run;
+        run.gradient = false;
+        run.spectra = true;
+        run.substeps = substepsFor(model, record);
+        const auto fit = outputError(model, record, {n}, {}, run).front();
+        if (!fit.finite)
+            throw Error(Error::Kind::numerical, "The model runs away when it is simulated on this take; fit it to the take first.");
+        const auto [first, last] = record.lineRange(section);
+        const auto inTime = [&, first = first, last = last](std::vector<std::complex<double>> lines) {
+            for (std::size_t k = 0; k < lines.size(); ++k)
+                if (k < first || k > last)
+                    lines[k] = 0.0;
+            return inverseFft(lines, section.window);
+        };
+        for (std::size_t c = 0; c < record.channels.size(); ++c)
+            result.push_back({record.channels[c], record.units[c], record.sampleRate, inTime(section.measured[c]), inTime(fit.predicted[c])});
+        break;
+    }
     return result;
 }
 

@@ -73,6 +73,18 @@ struct CompareOptions {
 /// Throws Error (numerical) when the simulation runs away.
 Comparison compare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
 
+/// A channel against time, as measured and as the model plays it, over the window that is compared; the unit is the channel's.
+struct Waveform {
+    Quantity quantity = Quantity::current;
+    std::string unit;
+    double sampleRate = 0.0;   ///< Hz
+    std::vector<double> measured, model;
+};
+
+/// The first validation section of that level, one waveform a channel. Lines that are not compared are left out of both.
+/// Throws Error (numerical) when the simulation runs away.
+std::vector<Waveform> waveforms(const Model&, const Record&, int level);
+
 /// Compares the linear part of a model with a take that is a frequency response only; one level, no noise, spectra filled
 /// with the magnitudes of the responses.
 Comparison compare(const Model&, const Spectra&);

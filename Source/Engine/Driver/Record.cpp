@@ -16,6 +16,9 @@ namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
 
+constexpr double trustedBand = 0.42;      // of the sample rate: near its half converters and interpolation are not to be trusted
+constexpr double distortionBand = 2.0;    // times the band: distortion products lie above it, too
+
 double power(const Spectrum& spectrum)
 {
     double sum = 0.0;
@@ -119,7 +122,34 @@ int quietestRealization(const Measurement& take)
     return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
 }
 
-void addPeriodicSections(const Measurement& take, const RecordOptions& options, Record& record)
+/// The section sampled at the rate divided by `factor`: the same lines, without those above the new half of the sample rate.
+void thinOut(Section& section, std::size_t factor)
+{
+    const double share = 1.0 / static_cast<double>(factor);
+    const std::size_t length = section.window / factor, lines = length / 2 + 1;
+    auto input = fft(section.input);
+    input.resize(lines);
+    input.back() = 0.0;
+    for (auto& value : input)
+        value *= share;
+    section.input = inverseFft(input, length);
+    section.window = length;
+    for (auto& measured : section.measured) {
+        measured.resize(lines);
+        for (auto& value : measured)
+            value *= share;
+    }
+    for (auto& deviation : section.deviation) {
+        deviation.resize(lines);
+        for (auto& value : deviation)
+            value *= share;
+    }
+    section.inputVariance.resize(std::min(lines, section.inputVariance.size()));
+    for (auto& variance : section.inputVariance)
+        variance *= share * share;
+}
+
+void addPeriodicSections(const Measurement& take, const RecordOptions& options, std::size_t factor, Record& record)
 {
     const auto& e = *take.excitation;
     record.levels = e.levels;
@@ -150,10 +180,12 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
                 section.measured.push_back(fft(averagePeriod(take, *take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
             }
+            if (factor > 1)
+                thinOut(section, factor);
             record.sections.push_back(std::move(section));
         }
     }
-    record.leadIn = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(std::max(1, e.settlePeriods));
+    record.leadIn = static_cast<std::size_t>(e.period) / factor * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
 
 void addAperiodicSections(const Measurement& take, const RecordOptions& options, Record& record)
@@ -272,7 +304,7 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
         return makeRecord(completed, options);
     }
     record.bandLow = 0.0;
-    record.bandHigh = 0.42 * take.sampleRate;
+    record.bandHigh = trustedBand * take.sampleRate;
     if (periodic) {
         periodicExcitation(take);   // checks the structure against the length
         const double resolution = take.sampleRate / take.excitation->period;
@@ -280,14 +312,19 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
             record.bandLow = resolution * take.excitation->lines.front();
             record.bandHigh = resolution * take.excitation->lines.back();
         }
-        addPeriodicSections(take, options, record);
+        // Above the distortion's band there is nothing to compare, and fewer samples are simulated sooner.
+        std::size_t factor = 1;
+        while (static_cast<std::size_t>(take.excitation->period) % (2 * factor) == 0
+               && distortionBand * record.bandHigh <= trustedBand * take.sampleRate / static_cast<double>(2 * factor))
+            factor *= 2;
+        record.sampleRate = take.sampleRate / static_cast<double>(factor);
+        addPeriodicSections(take, options, factor, record);
     } else {
         addAperiodicSections(take, options, record);
     }
     if (record.bandLow <= 0.0)
         record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
-    // Distortion products lie above the band, too; near half the sample rate converters and interpolation are not to be trusted.
-    record.highFrequency = std::min(0.42 * take.sampleRate, 2.0 * record.bandHigh);
+    record.highFrequency = std::min(trustedBand * record.sampleRate, distortionBand * record.bandHigh);
     return record;
 }
 

@@ -24,10 +24,10 @@ struct Section {
     std::vector<int> excited;                                  ///< excited lines, when known
 };
 
-/// A take made ready for fit and comparison. Periods are averaged, their scatter is the noise; without periods the
-/// record is cut into windows and the noise is not known.
+/// A take made ready for fit and comparison. Periods are averaged, their scatter is the noise, and lines beyond those that are compared
+/// are left out together with the samples that they needed; without periods the record is cut into windows and the noise is not known.
 struct Record {
-    double sampleRate = 0.0;
+    double sampleRate = 0.0;             ///< Hz; the take's, or that divided by a power of two
     bool electrical = true;              ///< driven by a voltage; false: by a force
     std::vector<Quantity> channels;      ///< outputs
     std::vector<std::string> units;      ///< of the outputs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Report/Plot.h"
+#include "Report/Draw.h"
 
 #include "Engine/Error.h"
 #include "Report/Gnuplot.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Report/Engineering.h"
+#include "Plots/Engineering.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What several sections say or compute alike.
+#include "Plots/Words.h"
+
 #include "Engine/Driver/Catalogue.h"
-#include "Report/Sections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,11 +28,6 @@ std::string capitalized(std::string_view text)
     if (!result.empty() && result[0] >= 'a' && result[0] <= 'z')
         result[0] = static_cast<char>(result[0] - 'a' + 'A');
     return result;
-}
-
-int columnsFor(std::size_t pictures)
-{
-    return pictures == 1 ? 1 : pictures % 3 == 0 ? 3 : 2;
 }
 
 std::vector<double> scaled(const std::vector<double>& values, double factor)

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/FitEffects.h"
+
+#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/OutputError.h"
+#include "Engine/Error.h"
+
+#include <algorithm>
+
+namespace excursion {
+namespace {
+
+/// Refuses unknown names and repeated ones before any work.
+void requireOnce(const std::vector<std::string>& effects)
+{
+    for (const auto& id : effects)
+        if (effectNamed(id); std::count(effects.begin(), effects.end(), id) > 1)
+            throw Error(Error::Kind::usage, "The effect \"" + id + "\" is named twice.");
+}
+
+} // namespace
+
+Model fitEffects(Record& record, const std::vector<std::string>& effects, const FitOptions& options, FitSummary* summary,
+                 const Progress& progress)
+{
+    requireOnce(effects);
+    for (const auto& id : effects)
+        if (effectNamed(id).electrical() && !record.electrical)
+            throw Error(Error::Kind::usage, "The take drives the cone by a force and shows no coil, so \"" + id + "\" cannot be part of its model.");
+    progress.at(0.0, "finding start values");
+    Model model = startModel(record);
+    adapt(record, model);
+    const double step = 0.8 / (static_cast<double>(effects.size()) + 1.0);
+    FitOptions quick = options;
+    quick.search = {12, 1e-3};
+    auto last = fit(model, record, effects.empty() ? estimationSections(record) : trialSections(record, 2),
+                    effects.empty() ? options : quick, progress.part(0.0, step));
+    double done = step;
+    for (const auto& id : effects) {
+        tryEffect(model, record, effectNamed(id), options, progress.part(done, done + step));
+        done += step;
+    }
+    if (!effects.empty())
+        last = refine(model, record, options, progress.part(0.8, 1.0));
+    if (!last.usable)
+        throw Error(Error::Kind::numerical, "The fit failed: " + last.reason + ".");
+    if (summary)
+        *summary = last;
+    return model;
+}
+
+Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects, FitSummary* summary)
+{
+    requireOnce(effects);
+    const auto targets = responsesOf(spectra);
+    Model model = startModel(targets, spectra.find(Quantity::voltage) != nullptr, spectra.driver);
+    for (const auto& id : effects) {
+        const auto& effect = effectNamed(id);
+        if (!effect.linear())
+            throw Error(Error::Kind::usage, "A frequency response cannot show the nonlinear effect \"" + id + "\"; measure a take at several levels.");
+        if (!addByResponse(model, effect, targets).usable)
+            throw Error(Error::Kind::numerical, "The effect \"" + id + "\" could not be fitted to the frequency response.");
+    }
+    const auto run = fitResponse(model, targets, {80, 1e-9});
+    if (summary)
+        static_cast<LeastSquaresSummary&>(*summary) = run;
+    return model;
+}
+
+} // namespace excursion

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/Improvement.h"
+
+#include "Engine/Diagnosis/FitEffects.h"
+#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/FitResponse.h"
+#include "Engine/Error.h"
+#include "Engine/Measurement/FindExcitation.h"
+
+#include <algorithm>
+
+namespace excursion {
+namespace {
+
+Model first(Record& record, const ImproveOptions& options, FitSummary& summary, const Progress& progress)
+{
+    return fitEffects(record, options.with, options.diagnose.fit, &summary, progress);
+}
+
+Model first(const Spectra& spectra, const ImproveOptions& options, FitSummary& summary, const Progress&)
+{
+    return fitEffects(spectra, options.with, &summary);
+}
+
+void tryOne(Model& model, const Record& record, const Effect& effect, const FitOptions& options, const Progress& progress)
+{
+    tryEffect(model, record, effect, options, progress);
+}
+
+void tryOne(Model& model, const Spectra& spectra, const Effect& effect, const FitOptions&, const Progress&)
+{
+    if (!addByResponse(model, effect, responsesOf(spectra)).usable)
+        throw Error(Error::Kind::numerical, "The effect \"" + effect.id() + "\" could not be fitted to the frequency response.");
+}
+
+FitSummary settle(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
+{
+    return refine(model, record, options, progress);
+}
+
+FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const Progress&)
+{
+    FitSummary summary;
+    static_cast<LeastSquaresSummary&>(summary) = fitResponse(model, responsesOf(spectra), {80, 1e-9});
+    return summary;
+}
+
+bool canShow(const Effect& effect, const Record& record) { return record.electrical || !effect.electrical(); }
+bool canShow(const Effect& effect, const Spectra& spectra)
+{
+    return effect.linear() && (spectra.find(Quantity::voltage) != nullptr || !effect.electrical());
+}
+
+} // namespace
+
+Improvement::Improvement(const Take& take, const ImproveOptions& options, const Progress& progress) : options_(options)
+{
+    if (const auto* spectra = std::get_if<Spectra>(&take)) {
+        data_ = *spectra;
+        return;
+    }
+    Measurement measurement = std::get<Measurement>(take);
+    progress.at(0.0, "checking the take");
+    completeExcitation(measurement);
+    report_ = check(measurement);
+    ladder_.problems = report_.problems;
+    if (report_.fitForUse()) {
+        data_ = makeRecord(measurement);
+    } else {
+        ladder_.verdict = Verdict::badMeasurement;
+        ladder_.sentence = report_.verdict();
+    }
+}
+
+void Improvement::begin(const Progress& progress)
+{
+    if (!report_.fitForUse())
+        throw Error(Error::Kind::data, "The take is not fit for use: " + report_.verdict());
+    Rung rung;
+    auto data = data_;   // is adapted to the model; should the work be cancelled, nothing has happened
+    rung.model = std::visit([&](auto& d) { return first(d, options_, rung.fit, progress.part(0.0, 0.4)); }, data);
+    data_ = std::move(data);
+    ladder_.rungs.clear();
+    push(std::move(rung), progress.part(0.4, 1.0));
+}
+
+void Improvement::add(const std::string& id, const Progress& progress)
+{
+    const auto& effect = effectNamed(id);
+    const auto& last = ladder_.rungs.back();
+    if (last.model.has(id))
+        throw Error(Error::Kind::data, "The model already has the effect \"" + id + "\".");
+    if (!std::visit([&](const auto& d) { return canShow(effect, d); }, data_))
+        throw Error(Error::Kind::data, "This take cannot show the effect \"" + id + "\".");
+    Rung rung;
+    rung.added = id;
+    rung.model = last.model;
+    const auto& ranking = last.diagnosis.ranking;
+    const auto ranked = std::find_if(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == id; });
+    if (ranked != ranking.end())
+        rung.predictedErrorDb = ranked->predictedErrorDb;
+    if (ranked != ranking.end() && !ranked->model.components.empty())
+        rung.model = ranked->model;
+    else
+        std::visit([&](const auto& d) { tryOne(rung.model, d, effect, options_.diagnose.fit, progress.part(0.0, 0.25)); }, data_);
+    rung.fit = std::visit([&](const auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data_);
+    push(std::move(rung), progress.part(0.5, 1.0));
+}
+
+/// Compares and diagnoses the rung's model.
+void Improvement::push(Rung rung, const Progress& progress)
+{
+    rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
+    rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, progress); }, data_);
+    rung.diagnosis.problems = report_.problems;
+    ladder_.rungs.push_back(std::move(rung));
+    const auto& diagnosis = ladder_.rungs.back().diagnosis;
+    ladder_.verdict = diagnosis.verdict;
+    ladder_.sentence = diagnosis.sentence;
+    if (options_.finished)
+        options_.finished(ladder_.rungs.back());
+}
+
+void Improvement::undo()
+{
+    if (ladder_.rungs.size() < 2)
+        return;
+    ladder_.rungs.pop_back();
+    ladder_.verdict = ladder_.rungs.back().diagnosis.verdict;
+    ladder_.sentence = ladder_.rungs.back().diagnosis.sentence;
+}
+
+std::vector<Waveform> Improvement::waveforms(int level) const
+{
+    const auto* record = std::get_if<Record>(&data_);
+    if (!record || ladder_.rungs.empty())
+        return {};
+    return excursion::waveforms(ladder_.model(), *record, level);
+}
+
+} // namespace excursion

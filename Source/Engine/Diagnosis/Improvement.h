@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/Ladder.h"
+#include "Engine/Measurement/TakeCheck.h"
+
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace excursion {
+
+struct ImproveOptions {
+    DiagnoseOptions diagnose;
+    std::vector<std::string> with;   ///< effects that the first model has already
+    int maximumRungs = 8;
+    std::function<void(const Rung&)> finished;   ///< called with each rung once its diagnosis is known; may be empty
+};
+
+/// A take and the ladder that grows on it a rung at a time: what `improve` climbs by itself, and a person by hand. Long work reports and
+/// may be cancelled; the ladder then is what it was before.
+class Improvement {
+public:
+    /// Checks the take and makes it ready. Throws Error (data) when it has no channel to compare.
+    explicit Improvement(const Take&, const ImproveOptions& = {}, const Progress& = {});
+
+    const CheckReport& report() const { return report_; }   ///< empty for a frequency response
+    const Ladder& ladder() const { return ladder_; }
+
+    /// The first rung: the base, with the effects asked for in ImproveOptions::with. Not for a take that is unfit for use.
+    void begin(const Progress& = {});
+
+    /// Another rung: the effect is put into the last model, everything is refitted. Throws Error (data) when the model has the effect
+    /// already or can't have it.
+    void add(const std::string& effect, const Progress& = {});
+
+    /// Takes the last rung back, unless it is the first.
+    void undo();
+
+    /// A validation section of a level under the last model, in time: a period, or a window of an aperiodic take. Empty for a frequency
+    /// response.
+    std::vector<Waveform> waveforms(int level) const;
+
+private:
+    void push(Rung, const Progress&);
+
+    ImproveOptions options_;
+    std::variant<Record, Spectra> data_;
+    CheckReport report_;
+    Ladder ladder_;
+};
+
+} // namespace excursion

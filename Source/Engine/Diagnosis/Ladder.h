@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/Compare.h"
+#include "Engine/Diagnosis/Diagnose.h"
+#include "Engine/Driver/Fit.h"
+#include "Engine/Driver/Model.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// One step of the ladder: an effect was added (none at the first), everything was refitted.
+struct Rung {
+    std::string added;                              ///< effect id; empty at the start
+    std::map<Quantity, double> predictedErrorDb;    ///< by the diagnosis that proposed it
+    Comparison comparison;                          ///< after the fit, on validation data
+    Diagnosis diagnosis;                            ///< of this rung's model: what to add next, or why to stop
+    Model model;
+    FitSummary fit;
+};
+
+struct Ladder {
+    Verdict verdict = Verdict::unknownEffect;
+    std::string sentence;
+    std::vector<Rung> rungs;
+    std::vector<Problem> problems;
+    std::vector<std::string> withdrawn;   ///< effects that were tried and taken back, as what they left was as large as what they explained
+
+    const Model& model() const { return rungs.back().model; }
+};
+
+} // namespace excursion

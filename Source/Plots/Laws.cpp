@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plots/Engineering.h"
+#include "Plots/Plots.h"
+#include "Plots/Words.h"
+
+namespace excursion {
+
+std::vector<Plot> lawPlots(const Model& model)
+{
+    std::vector<Plot> plots;
+    for (const auto& law : laws(model)) {
+        const auto across = displayUnit(largest(law.argument), law.info.argumentUnit);
+        const auto up = displayUnit(largest(law.value), law.info.unit);
+        Plot plot;
+        plot.title = effectTitle(law.effectId);
+        plot.x = {law.info.argument, across.unit, false, 0.0, 0.0, {}};
+        plot.y = {law.info.name, up.unit, false, 0.0, 0.0, {}};
+        Series curve {law.info.name, Role::model, scaled(law.argument, across.factor), scaled(law.value, up.factor), {}, {}, Series::Shape::line, 0};
+        for (std::size_t k = 0; k < law.value.size(); ++k) {
+            curve.lower.push_back((law.value[k] - law.halfWidth[k]) * up.factor);
+            curve.upper.push_back((law.value[k] + law.halfWidth[k]) * up.factor);
+        }
+        const double base = model.baseParameter(law.info.base).value * up.factor;
+        plot.series = {{law.info.base + " at rest", Role::reference, {curve.x.front(), curve.x.back()}, {base, base}, {}, {}, Series::Shape::line, 0},
+                       std::move(curve)};
+        plots.push_back(std::move(plot));
+    }
+    return plots;
+}
+
+} // namespace excursion

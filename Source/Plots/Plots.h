@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/Ladder.h"
+#include "Engine/Driver/FitResponse.h"
+#include "Plots/Plot.h"
+
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// The pictures of a diagnosis, as descriptions that the report draws and the window draws.
+
+/// Measured, model, error and noise of a channel against frequency, dB.
+Plot spectrumPlot(const ErrorSpectrum&, const std::string& unit);
+
+/// What the balances of force and voltage lack against motion; `after` may be null.
+std::vector<Plot> residualPlots(const Comparison& before, const Comparison* after);
+
+/// Bl(x), K(x), ... with their 95 % bands.
+std::vector<Plot> lawPlots(const Model&);
+
+/// How a channel's error fell from rung to rung.
+Plot fallPlot(const Ladder&, Quantity);
+
+/// Measured frequency responses with those of the first and the last model.
+std::vector<Plot> responsePlots(const Ladder&, const std::vector<ResponseTarget>&);
+
+} // namespace excursion

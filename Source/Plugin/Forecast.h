@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Linearization/PredictedDistortion.h"
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace excursion::plugin {
+
+/// Keeps a prediction of the distortion up to date on a thread of its own; only the latest question is answered. Not for the audio
+/// thread.
+class Forecast {
+public:
+    Forecast();
+    ~Forecast();
+
+    /// Nothing happens when the question is the one that was asked last.
+    void ask(const Model&, const LinearizationControls&, double volts);
+
+    /// The answer, once.
+    std::optional<PredictedDistortion> take();
+
+private:
+    struct Question {
+        Model model;
+        LinearizationControls controls;
+        double volts = 0.0;
+    };
+    void run(const std::stop_token&);
+
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::optional<Question> open_;
+    std::string last_;   ///< what was asked last, as text
+    std::optional<PredictedDistortion> answer_;
+    std::jthread thread_;
+};
+
+} // namespace excursion::plugin

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/LinearizePage.h"
+
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/ModelFile.h"
+#include "Engine/Error.h"
+#include "Plots/Engineering.h"
+#include "Plots/Plots.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion::plugin {
+
+LinearizePage::LinearizePage(Window& window) : Page(window), processor_(window.processor())
+{
+    name_.setFont(juce::Font(20.0f));
+    for (auto* label : {&name_, &forecastWords_})
+        addAndMakeVisible(label);
+    drivers_.setTextWhenNothingSelected("Factory drivers");
+    for (std::size_t k = 0; k < factoryDrivers().size(); ++k)
+        drivers_.addItem(factoryDrivers()[k].title, static_cast<int>(k) + 1);
+    drivers_.onChange = [this] {
+        if (const int k = drivers_.getSelectedItemIndex(); k >= 0) {
+            const auto& factory = factoryDrivers()[static_cast<std::size_t>(k)];
+            window_.use(modelFromText(factory.text, factory.title), "the factory");
+        }
+    };
+    recipes_.setTextWhenNothingSelected("Recipes");
+    for (std::size_t k = 0; k < factoryRecipes().size(); ++k)
+        recipes_.addItem(factoryRecipes()[k].title, static_cast<int>(k) + 1);
+    recipes_.onChange = [this] {
+        if (const int k = recipes_.getSelectedItemIndex(); k >= 0) {
+            const auto& factory = factoryRecipes()[static_cast<std::size_t>(k)];
+            const auto recipe = recipeFromText(factory.text, factory.title);
+            processor_.parameters().set(recipe);
+            window_.tell(words(recipe.words), false);
+        }
+    };
+    mode_.addItemList(processor_.parameters().mode().choices, 1);
+    modeAttachment_ = std::make_unique<juce::ComboBoxParameterAttachment>(processor_.parameters().mode(), mode_);
+    load_.onClick = [this] { choose(); };
+    for (juce::Component* component : std::initializer_list<juce::Component*> {&drivers_, &recipes_, &mode_, &load_, &excursion_, &voltage_, &distortion_})
+        addAndMakeVisible(component);
+    for (auto* parameter : processor_.parameters().numbers()) {
+        Dial dial {std::make_unique<juce::Label>(), std::make_unique<juce::Slider>(juce::Slider::LinearHorizontal, juce::Slider::TextBoxRight), nullptr};
+        dial.title->setText(parameter->getName(40), juce::dontSendNotification);
+        dial.slider->setTextValueSuffix(" " + parameter->getLabel());
+        dial.attachment = std::make_unique<juce::SliderParameterAttachment>(*parameter, *dial.slider);
+        addAndMakeVisible(*dial.title);
+        addAndMakeVisible(*dial.slider);
+        dials_.push_back(std::move(dial));
+    }
+    for (auto* parameter : processor_.parameters().effects()) {
+        Switch one {std::make_unique<juce::ToggleButton>(parameter->getName(80)), nullptr};
+        one.attachment = std::make_unique<juce::ButtonParameterAttachment>(*parameter, *one.button);
+        addAndMakeVisible(*one.button);
+        switches_.push_back(std::move(one));
+    }
+    showModel(processor_.model());
+}
+
+void LinearizePage::showModel(const Model& model)
+{
+    name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name), juce::dontSendNotification);
+    laws_.clear();
+    for (auto& plot : lawPlots(model)) {
+        laws_.push_back(std::make_unique<PlotView>());
+        plot.key = false;
+        laws_.back()->show(std::move(plot));
+        addAndMakeVisible(*laws_.back());
+    }
+    for (std::size_t k = 0; k < switches_.size(); ++k)
+        switches_[k].button->setEnabled(model.has(catalogue()[k]->id()));
+    resized();
+}
+
+void LinearizePage::choose()
+{
+    chooser_ = std::make_unique<juce::FileChooser>("Load a model", juce::File(), "*.json");
+    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles, [this](const juce::FileChooser& chosen) {
+        if (chosen.getResult() == juce::File())
+            return;
+        try {
+            window_.use(readModel(chosen.getResult().getFullPathName().toStdString()), chosen.getResult().getFileName());
+        } catch (const Error& error) {
+            window_.tell(words(error.what()), true);
+        }
+    });
+}
+
+/// What is to be expected at 0 dBFS, with the effects that are switched on.
+void LinearizePage::showForecast()
+{
+    const auto recipe = processor_.parameters().recipe();
+    const auto model = withoutOff(processor_.model(), recipe);
+    forecast_.ask(model, controlsOf(recipe, model), recipe.fullScale);
+    const auto answer = forecast_.take();
+    if (!answer)
+        return;
+    Plot plot;
+    plot.title = "Predicted distortion at 0 dBFS";
+    plot.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
+    plot.y = {"over the signal", "dB", false, std::max(-180.0, 20.0 * std::floor(*std::min_element(answer->after.begin(), answer->after.end()) / 20.0)), 0.0, {}};
+    plot.series = {{"as it is", Role::before, answer->frequency, answer->before, {}, {}, Series::Shape::line, 0},
+                   {"linearized", Role::after, answer->frequency, answer->after, {}, {}, Series::Shape::line, 0}};
+    distortion_.show(std::move(plot));
+    forecastWords_.setText("Distortion " + words(decibels(answer->beforeDb)) + ", linearized " + words(decibels(answer->afterDb)) + ", at "
+                               + words(engineering(answer->displacement, "m", 2)) + " peak excursion",
+                           juce::dontSendNotification);
+}
+
+void LinearizePage::tick()
+{
+    const auto meters = processor_.take();
+    const double range = measuredDisplacement(processor_.model()), reach = std::isfinite(range) ? meters.displacement / range : 0.0;
+    excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm" + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
+                    meters.displacementExcess > 1e-3);
+    voltage_.show(meters.voltage / processor_.parameters().recipe().voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageExcess > 1e-3);
+    if (meters.faults > faults_)
+        window_.tell("Something was not finite: the engine has started anew.", true);
+    faults_ = meters.faults;
+    showForecast();
+}
+
+void LinearizePage::resized()
+{
+    auto area = getLocalBounds();
+    auto head = area.removeFromTop(30);
+    load_.setBounds(head.removeFromRight(140));
+    head.removeFromRight(8);
+    drivers_.setBounds(head.removeFromRight(220));
+    head.removeFromRight(8);
+    recipes_.setBounds(head.removeFromRight(210));
+    name_.setBounds(head);
+    area.removeFromTop(8);
+    auto left = area.removeFromLeft(juce::jmax(380, area.getWidth() * 2 / 5));
+    area.removeFromLeft(12);
+    mode_.setBounds(left.removeFromTop(30));
+    left.removeFromTop(8);
+    for (auto& dial : dials_) {
+        auto row = left.removeFromTop(28);
+        dial.title->setBounds(row.removeFromLeft(130));
+        dial.slider->setBounds(row);
+    }
+    left.removeFromTop(8);
+    for (auto& one : switches_)
+        one.button->setBounds(left.removeFromTop(24));
+    left.removeFromTop(12);
+    excursion_.setBounds(left.removeFromTop(32));
+    left.removeFromTop(6);
+    voltage_.setBounds(left.removeFromTop(32));
+    forecastWords_.setBounds(area.removeFromBottom(24));
+    distortion_.setBounds(area.removeFromBottom(area.getHeight() * 2 / 5));
+    const int columns = laws_.size() > 1 ? 2 : 1, rows = juce::jmax(1, (static_cast<int>(laws_.size()) + columns - 1) / columns);
+    for (std::size_t k = 0; k < laws_.size(); ++k) {
+        const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
+        laws_[k]->setBounds(area.getX() + column * area.getWidth() / columns, area.getY() + row * area.getHeight() / rows, area.getWidth() / columns,
+                            area.getHeight() / rows);
+    }
+}
+
+} // namespace excursion::plugin

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Plugin/Forecast.h"
+#include "Plugin/Meter.h"
+#include "Plugin/Page.h"
+#include "Plugin/PlotView.h"
+
+#include <memory>
+#include <vector>
+
+namespace excursion::plugin {
+
+/// What is done to the signal with the model: mode, limits, effects as switches, the laws, the meters of the protection, and the distortion that
+/// is to be expected with and without linearization.
+class LinearizePage : public Page {
+public:
+    explicit LinearizePage(Window&);
+
+    void showModel(const Model&);
+    void tick() override;
+    void resized() override;
+
+private:
+    struct Dial {
+        std::unique_ptr<juce::Label> title;
+        std::unique_ptr<juce::Slider> slider;
+        std::unique_ptr<juce::SliderParameterAttachment> attachment;
+    };
+    struct Switch {
+        std::unique_ptr<juce::ToggleButton> button;
+        std::unique_ptr<juce::ButtonParameterAttachment> attachment;
+    };
+
+    void choose();
+    void showForecast();
+
+    Processor& processor_;
+    juce::Label name_, forecastWords_;
+    juce::ComboBox drivers_, recipes_, mode_;
+    juce::TextButton load_ {"Load a model..."};
+    std::unique_ptr<juce::ComboBoxParameterAttachment> modeAttachment_;
+    std::vector<Dial> dials_;
+    std::vector<Switch> switches_;
+    std::vector<std::unique_ptr<PlotView>> laws_;
+    PlotView distortion_;
+    Meter excursion_ {"Excursion"}, voltage_ {"Voltage"};
+    Forecast forecast_;
+    std::unique_ptr<juce::FileChooser> chooser_;
+    int faults_ = 0;
+};
+
+} // namespace excursion::plugin

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/MeasurePage.h"
+
+#include "Bench/Draw.h"
+#include "Plots/Engineering.h"
+#include "Plots/Words.h"
+#include "Plugin/Look.h"
+
+#include <algorithm>
+
+namespace excursion::plugin {
+namespace {
+
+/// Signal to noise by octave, a line a channel.
+Plot signalPlot(const CheckReport& report)
+{
+    constexpr Role roles[] {Role::measured, Role::model, Role::error, Role::after, Role::noise};
+    Plot plot;
+    plot.title = "Signal to noise by octave, loudest level";
+    plot.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
+    plot.y = {"signal to noise", "dB", false, 0.0, 0.0, {}};
+    for (std::size_t k = 0; k < report.channels.size(); ++k) {
+        const auto& channel = report.channels[k];
+        Series series {std::string(name(channel.quantity)), roles[k % std::size(roles)], {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+        for (const auto& band : channel.bands) {
+            series.x.push_back(std::sqrt(band.low * band.high));
+            series.y.push_back(band.db);
+        }
+        if (!series.x.empty())
+            plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+juce::String textOf(const Findings& findings)
+{
+    juce::StringArray lines {words(findings.source)};
+    const auto& take = findings.file.take;
+    if (take.sampleRate > 0.0)
+        lines.add(juce::String(take.seconds, 1) + " s at " + words(nominal(take.sampleRate, "Hz"))
+                  + (take.realizations > 0 ? ", " + juce::String(static_cast<int>(take.levels.size())) + " levels of " + juce::String(take.realizations)
+                                                 + " realizations of " + juce::String(take.periods) + " periods"
+                                           : juce::String(", without periods")));
+    lines.add("");
+    for (const auto& channel : findings.report.channels) {
+        auto line = words(capitalized(name(channel.quantity))) + ": " + words(engineering(channel.rms, channel.unit, 3)) + " rms, peak "
+                  + words(engineering(channel.peak, channel.unit, 3));
+        if (channel.snrDb)
+            line += ", signal to noise " + juce::String(*channel.snrDb, 1) + " dB";
+        if (channel.delay)
+            line += ", delay " + words(engineering(channel.delay->seconds, "s", 2));
+        lines.add(line);
+    }
+    if (!findings.report.problems.empty())
+        lines.add("");
+    for (const auto& problem : findings.report.problems)
+        lines.add((problem.fatal ? "Fault: " : "Remark: ") + words(problem.sentence));
+    return lines.joinIntoString("\n");
+}
+
+} // namespace
+
+MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Page(window)
+{
+    for (auto* title : {&openTitle_, &virtualTitle_, &measuringTitle_})
+        title->setFont(juce::Font(16.0f));
+    openTitle_.setText("A take that you have", juce::dontSendNotification);
+    openHint_.setText("Or drop it anywhere on this window: a folder, a .csv, .zma or .frd.", juce::dontSendNotification);
+    openHint_.setColour(juce::Label::textColourId, look::dim);
+    openHint_.setFont(juce::Font(12.5f));
+    virtualTitle_.setText("A virtual loudspeaker with a hidden effect", juce::dontSendNotification);
+    measuringTitle_.setText("A loudspeaker of your own", juce::dontSendNotification);
+    verdict_.setFont(juce::Font(17.0f));
+    verdict_.setJustificationType(juce::Justification::topLeft);
+    verdict_.setText("Nothing has been measured yet.", juce::dontSendNotification);
+    report_.setMultiLine(true);
+    report_.setReadOnly(true);
+    report_.setCaretVisible(false);
+    report_.setColour(juce::TextEditor::backgroundColourId, look::panel);
+    report_.setColour(juce::TextEditor::outlineColourId, juce::Colours::transparentBlack);
+    for (std::size_t k = 0; k < bench::driverClasses().size(); ++k)
+        driver_.addItem(words(bench::driverClasses()[k]), static_cast<int>(k) + 1);
+    driver_.setSelectedItemIndex(2, juce::dontSendNotification);
+    seed_.setRange(1.0, 9999.0, 1.0);
+    seed_.setValue(7.0, juce::dontSendNotification);
+    draw_.onClick = [this] { session().open(VirtualOrder {driver_.getText().toStdString(), static_cast<std::uint64_t>(seed_.getValue())}); };
+    open_.onClick = [this] { choose(); };
+    folder_.onClick = [this] {
+        chooser_ = std::make_unique<juce::FileChooser>("Open the folder of a take");
+        chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectDirectories, [this](const juce::FileChooser& chosen) {
+            if (chosen.getResult() != juce::File())
+                session().open(chosen.getResult().getFullPathName().toStdString());
+        });
+    };
+    save_.onClick = [this] {
+        chooser_ = std::make_unique<juce::FileChooser>("Save the take as a folder", juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("take"));
+        chooser_->launchAsync(juce::FileBrowserComponent::saveMode, [this](const juce::FileChooser& chosen) {
+            if (chosen.getResult() != juce::File())
+                session().saveTake(chosen.getResult().getFullPathName().toStdString());
+        });
+    };
+    for (juce::Component* component : std::initializer_list<juce::Component*> {&openTitle_, &openHint_, &virtualTitle_, &measuringTitle_, &verdict_, &open_, &folder_,
+                                                                              &draw_, &save_, &driver_, &seed_, &report_, &signal_})
+        addAndMakeVisible(component);
+    save_.setEnabled(false);
+    if (devices != nullptr) {
+        measuring_ = std::make_unique<MeasuringPanel>(window, *devices);
+        addAndMakeVisible(*measuring_);
+    } else {
+        measuringTitle_.setText("To measure a loudspeaker, start the app: within a host the devices are the host's.", juce::dontSendNotification);
+        measuringTitle_.setFont(juce::Font(13.0f));
+        measuringTitle_.setColour(juce::Label::textColourId, look::dim);
+    }
+}
+
+void MeasurePage::choose()
+{
+    chooser_ = std::make_unique<juce::FileChooser>("Open a take", juce::File(), "*.json;*.csv;*.zma;*.frd");
+    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles, [this](const juce::FileChooser& chosen) {
+        if (chosen.getResult() != juce::File())
+            session().open(chosen.getResult().getFullPathName().toStdString());
+    });
+}
+
+void MeasurePage::show(const Findings& findings)
+{
+    const bool spectra = std::holds_alternative<Spectra>(*findings.take);
+    verdict_.setText(spectra ? juce::String("A frequency response: its linear effects can be told.") : words(findings.report.verdict()), juce::dontSendNotification);
+    verdict_.setColour(juce::Label::textColourId, findings.report.fitForUse() ? look::good : look::warning);
+    report_.setText(textOf(findings), juce::dontSendNotification);
+    signal_.show(signalPlot(findings.report));
+    save_.setEnabled(!spectra);
+}
+
+void MeasurePage::tick()
+{
+    if (measuring_)
+        measuring_->tick();
+}
+
+void MeasurePage::resized()
+{
+    auto area = getLocalBounds();
+    auto left = area.removeFromLeft(410);
+    area.removeFromLeft(16);
+    openTitle_.setBounds(left.removeFromTop(24));
+    auto line = left.removeFromTop(30);
+    open_.setBounds(line.removeFromLeft(140));
+    line.removeFromLeft(8);
+    folder_.setBounds(line.removeFromLeft(140));
+    openHint_.setBounds(left.removeFromTop(24));
+    left.removeFromTop(16);
+    virtualTitle_.setBounds(left.removeFromTop(24));
+    line = left.removeFromTop(30);
+    driver_.setBounds(line.removeFromLeft(130));
+    line.removeFromLeft(8);
+    seed_.setBounds(line.removeFromLeft(130));
+    line.removeFromLeft(8);
+    draw_.setBounds(line.removeFromLeft(120));
+    left.removeFromTop(16);
+    measuringTitle_.setBounds(left.removeFromTop(24));
+    if (measuring_)
+        measuring_->setBounds(left);
+    verdict_.setBounds(area.removeFromTop(44));
+    save_.setBounds(area.removeFromBottom(30).removeFromLeft(140));
+    area.removeFromBottom(8);
+    report_.setBounds(area.removeFromTop(area.getHeight() / 2));
+    area.removeFromTop(8);
+    signal_.setBounds(area);
+}
+
+} // namespace excursion::plugin

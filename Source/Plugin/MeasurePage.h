@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Plugin/MeasuringPanel.h"
+#include "Plugin/Page.h"
+#include "Plugin/PlotView.h"
+
+#include <memory>
+
+namespace excursion::plugin {
+
+/// Where takes come from: a file, the virtual loudspeaker, or an audio device; and what the check says of it, in plain words.
+class MeasurePage : public Page {
+public:
+    /// @param devices  of the app; null within a host
+    MeasurePage(Window&, juce::AudioDeviceManager* devices);
+
+    void show(const Findings&) override;
+    void tick() override;
+    void resized() override;
+
+    MeasuringPanel* measuring() { return measuring_.get(); }
+
+private:
+    void choose();
+
+    juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;
+    juce::TextButton open_ {"Open a take..."}, folder_ {"Open a folder..."}, draw_ {"Measure it"}, save_ {"Save the take..."};
+    juce::ComboBox driver_;
+    juce::Slider seed_ {juce::Slider::IncDecButtons, juce::Slider::TextBoxLeft};
+    std::unique_ptr<MeasuringPanel> measuring_;
+    juce::TextEditor report_;
+    PlotView signal_;
+    std::unique_ptr<juce::FileChooser> chooser_;
+};
+
+} // namespace excursion::plugin

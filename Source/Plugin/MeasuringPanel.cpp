@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/MeasuringPanel.h"
+
+#include "Engine/Error.h"
+#include "Plugin/Look.h"
+
+#include <cmath>
+#include <utility>
+
+namespace excursion::plugin {
+namespace {
+
+constexpr int period = 16384, settlePeriods = 1, periods = 3, realizations = 3;
+
+/// A positive number out of a text field.
+double entered(const juce::TextEditor& editor, const char* what)
+{
+    const auto text = editor.getText().trim();
+    const double value = text.getDoubleValue();
+    if (!text.containsOnly("0123456789.eE-+") || !(value > 0.0) || !std::isfinite(value))
+        throw Error(Error::Kind::usage, std::string("\"") + text.toStdString() + "\" is no " + what + ": enter a number above zero.");
+    return value;
+}
+
+double rateOf(juce::AudioDeviceManager& devices)
+{
+    auto* device = devices.getCurrentAudioDevice();
+    return device != nullptr ? device->getCurrentSampleRate() : 48000.0;
+}
+
+} // namespace
+
+MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices) : window_(window), devices_(devices)
+{
+    device_.onClick = [this] { showDevices(); };
+    go_.onClick = [this] { running() ? cancel() : start(); };
+    for (juce::Component* component : std::initializer_list<juce::Component*> {&device_, &go_, &deviceName_, &preview_, &levelsTitle_, &bandTitle_,
+                                                                              &fullScaleTitle_, &outputTitle_, &levels_, &low_, &high_, &fullScale_, &outputChannel_})
+        addAndMakeVisible(component);
+    for (int k = 0; k < inputs; ++k) {
+        auto& input = inputs_[static_cast<std::size_t>(k)];
+        input.title.setText("Input " + juce::String(k + 1), juce::dontSendNotification);
+        input.role.addItem("not used", 1);
+        for (std::size_t q = 0; q < quantities.size(); ++q)
+            input.role.addItem(words(std::string(name(quantities[q]))), static_cast<int>(q) + 2);
+        input.role.setSelectedId(1, juce::dontSendNotification);
+        input.role.onChange = [this, &input] { relabel(input); };
+        input.fullScale.setText("1");
+        for (juce::Component* component : std::initializer_list<juce::Component*> {&input.title, &input.role, &input.fullScale, &input.unit})
+            addAndMakeVisible(component);
+    }
+    setRole(0, Quantity::voltage, 16.0);
+    setRole(1, Quantity::current, 4.0);
+    outputTitle_.setText("Output", juce::dontSendNotification);
+    for (int k = 1; k <= 8; ++k)
+        outputChannel_.addItem(juce::String(k), k);
+    outputChannel_.setSelectedId(1, juce::dontSendNotification);
+    fullScaleTitle_.setText("V at full scale", juce::dontSendNotification);
+    fullScale_.setText("16");
+    levelsTitle_.setText("Levels, V rms", juce::dontSendNotification);
+    levels_.setText("0.5  1.5  3");
+    bandTitle_.setText("Band, Hz", juce::dontSendNotification);
+    low_.setText("15");
+    high_.setText("8000");
+    for (auto* editor : {&levels_, &low_, &high_, &fullScale_})
+        editor->onTextChange = [this] { preview(); };
+    preview();
+}
+
+MeasuringPanel::~MeasuringPanel()
+{
+    if (recorder_)
+        end();
+}
+
+void MeasuringPanel::relabel(Input& input)
+{
+    const int q = input.role.getSelectedId() - 2;
+    input.fullScale.setEnabled(q >= 0);
+    input.unit.setText(q >= 0 ? words(std::string(siUnit(quantities[static_cast<std::size_t>(q)]))) + " at full scale" : juce::String(), juce::dontSendNotification);
+}
+
+void MeasuringPanel::setRole(int input, Quantity quantity, double fullScale)
+{
+    auto& one = inputs_[static_cast<std::size_t>(input)];
+    for (std::size_t q = 0; q < quantities.size(); ++q)
+        if (quantities[q] == quantity)
+            one.role.setSelectedId(static_cast<int>(q) + 2, juce::dontSendNotification);
+    one.fullScale.setText(juce::String(fullScale));
+    relabel(one);
+}
+
+void MeasuringPanel::setBand(double low, double high)
+{
+    low_.setText(juce::String(low));
+    high_.setText(juce::String(high));
+}
+
+ExcitationPlanOptions MeasuringPanel::planOptions() const
+{
+    ExcitationPlanOptions options;
+    options.multisine.sampleRate = rateOf(devices_);
+    options.multisine.period = options.multisine.sampleRate > 64000.0 ? 2 * period : period;
+    options.multisine.bandLow = entered(low_, "frequency");
+    options.multisine.bandHigh = entered(high_, "frequency");
+    options.settlePeriods = settlePeriods;
+    options.periods = periods;
+    options.realizations = realizations;
+    options.levels.clear();
+    for (const auto& level : juce::StringArray::fromTokens(levels_.getText(), " ,;", ""))
+        if (level.isNotEmpty()) {
+            juce::TextEditor one;
+            one.setText(level);
+            options.levels.push_back(entered(one, "level"));
+        }
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The excitation cannot be played: " + reason + ".");
+    return options;
+}
+
+std::vector<InputRole> MeasuringPanel::roles() const
+{
+    std::vector<InputRole> result;
+    for (int k = 0; k < inputs; ++k) {
+        const auto& input = inputs_[static_cast<std::size_t>(k)];
+        const int q = input.role.getSelectedId() - 2;
+        if (q < 0)
+            continue;
+        const auto quantity = quantities[static_cast<std::size_t>(q)];
+        for (const auto& other : result)
+            if (other.quantity == quantity)
+                throw Error(Error::Kind::usage, "Two inputs are the " + std::string(name(quantity)) + ": choose one.");
+        result.push_back({k, quantity, entered(input.fullScale, "calibration")});
+    }
+    return result;
+}
+
+/// What is going to be played, in a sentence.
+void MeasuringPanel::preview()
+{
+    try {
+        const auto options = planOptions();
+        const double seconds = static_cast<double>(options.multisine.period * (options.settlePeriods + options.periods) * options.realizations)
+                             * static_cast<double>(options.levels.size()) / options.multisine.sampleRate;
+        // A random-phase multisine peaks at some four times its rms.
+        const double peak = 4.0 * options.levels.back(), most = entered(fullScale_, "voltage");
+        preview_.setText("Plays " + whole(seconds) + " s of odd multisines, to about " + juce::String(peak, 1) + " V peak"
+                             + (peak > most ? ", more than the output can give!" : "."),
+                         juce::dontSendNotification);
+        preview_.setColour(juce::Label::textColourId, peak > most ? look::warning : look::dim);
+    } catch (const Error& error) {
+        preview_.setText(words(error.what()), juce::dontSendNotification);
+        preview_.setColour(juce::Label::textColourId, look::warning);
+    }
+}
+
+void MeasuringPanel::start()
+{
+    try {
+        auto* device = devices_.getCurrentAudioDevice();
+        if (device == nullptr || !device->isOpen())
+            throw Error(Error::Kind::usage, "No audio device is open: choose one first.");
+        auto plan = planExcitation(planOptions());
+        const double fullScale = entered(fullScale_, "voltage");
+        for (const double volts : plan.input().samples)
+            if (std::abs(volts) > fullScale)
+                throw Error(Error::Kind::usage, "The loudest level peaks above what the output can give: lower the levels or turn up the amplifier.");
+        const auto wanted = roles();
+        bool voltage = false;
+        for (const auto& role : wanted) {
+            voltage = voltage || role.quantity == Quantity::voltage;
+            if (role.input >= device->getActiveInputChannels().countNumberOfSetBits())
+                throw Error(Error::Kind::usage, "The device has no input " + std::to_string(role.input + 1) + ".");
+        }
+        if (!voltage || wanted.size() < 2)
+            throw Error(Error::Kind::usage, "Choose an input for the voltage at the terminals and at least one other, such as the current.");
+        recorder_ = std::make_unique<Recorder>(std::move(plan), wanted, outputChannel_.getSelectedId() - 1, fullScale);
+        window_.processor().suspendProcessing(true);   // nothing else is heard meanwhile
+        devices_.addAudioCallback(recorder_.get());
+        go_.setButtonText("Stop");
+        window_.tell("Measuring. Do not touch the loudspeaker.", false);
+    } catch (const Error& error) {
+        recorder_ = nullptr;
+        window_.tell(words(error.what()), true);
+    }
+}
+
+void MeasuringPanel::end()
+{
+    devices_.removeAudioCallback(recorder_.get());
+    window_.processor().suspendProcessing(false);
+    go_.setButtonText("Start measuring");
+}
+
+void MeasuringPanel::cancel()
+{
+    if (!recorder_)
+        return;
+    end();
+    recorder_ = nullptr;
+    window_.tell("The measurement was stopped.", false);
+}
+
+void MeasuringPanel::tick()
+{
+    auto* device = devices_.getCurrentAudioDevice();
+    deviceName_.setText(device != nullptr ? device->getName() + ", " + whole(device->getCurrentSampleRate()) + " Hz, "
+                                                + juce::String(device->getActiveInputChannels().countNumberOfSetBits()) + " inputs"
+                                          : juce::String("no device is open"),
+                        juce::dontSendNotification);
+    if (!recorder_)
+        return;
+    if (recorder_->broken()) {
+        end();
+        recorder_ = nullptr;
+        window_.tell("The audio device stopped or changed its rate: measure again.", true);
+    } else if (recorder_->finished()) {
+        end();
+        const auto done = std::exchange(recorder_, nullptr);
+        try {
+            window_.processor().session().open(done->take(), "Measured with " + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")));
+        } catch (const Error& error) {
+            window_.tell(words(error.what()), true);
+        }
+    } else {
+        preview_.setColour(juce::Label::textColourId, look::text);
+        preview_.setText("Measuring, " + whole(100.0 * recorder_->fraction()) + " %", juce::dontSendNotification);
+    }
+}
+
+void MeasuringPanel::showDevices()
+{
+    juce::DialogWindow::LaunchOptions dialog;
+    auto* selector = new juce::AudioDeviceSelectorComponent(devices_, 1, 8, 1, 8, false, false, false, false);
+    selector->setSize(500, 420);
+    dialog.content.setOwned(selector);
+    dialog.dialogTitle = "Audio device";
+    dialog.dialogBackgroundColour = look::background;
+    dialog.resizable = false;
+    dialog.launchAsync();
+}
+
+void MeasuringPanel::resized()
+{
+    auto area = getLocalBounds();
+    const auto row = [&area] {
+        auto line = area.removeFromTop(26);
+        area.removeFromTop(4);
+        return line;
+    };
+    auto line = row();
+    device_.setBounds(line.removeFromLeft(130));
+    line.removeFromLeft(8);
+    deviceName_.setBounds(line);
+    for (auto& input : inputs_) {
+        line = row();
+        input.title.setBounds(line.removeFromLeft(64));
+        input.role.setBounds(line.removeFromLeft(130));
+        line.removeFromLeft(8);
+        input.fullScale.setBounds(line.removeFromLeft(64));
+        input.unit.setBounds(line);
+    }
+    line = row();
+    outputTitle_.setBounds(line.removeFromLeft(64));
+    outputChannel_.setBounds(line.removeFromLeft(64));
+    line.removeFromLeft(8);
+    fullScaleTitle_.setBounds(line.removeFromLeft(104));
+    fullScale_.setBounds(line.removeFromLeft(64));
+    line = row();
+    levelsTitle_.setBounds(line.removeFromLeft(104));
+    levels_.setBounds(line);
+    line = row();
+    bandTitle_.setBounds(line.removeFromLeft(104));
+    low_.setBounds(line.removeFromLeft(72));
+    line.removeFromLeft(8);
+    high_.setBounds(line.removeFromLeft(72));
+    preview_.setBounds(area.removeFromTop(40));
+    go_.setBounds(area.removeFromTop(30).removeFromLeft(130));
+}
+
+} // namespace excursion::plugin

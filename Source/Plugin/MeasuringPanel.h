@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Measurement/ExcitationPlan.h"
+#include "Plugin/Page.h"
+#include "Plugin/Recorder.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+
+namespace excursion::plugin {
+
+/// A measurement through an audio device: which input is what and how it is calibrated, the excitation and its levels, go and stop.
+class MeasuringPanel : public juce::Component {
+public:
+    MeasuringPanel(Window&, juce::AudioDeviceManager&);
+    ~MeasuringPanel() override;
+
+    /// Throws Error (usage) when something that was entered makes no sense.
+    ExcitationPlanOptions planOptions() const;
+    std::vector<InputRole> roles() const;
+
+    void start();   ///< as if the button had been pressed
+    void cancel();
+    void tick();
+    bool running() const { return recorder_ != nullptr; }
+
+    void setRole(int input, Quantity, double fullScale);
+    void setLevels(const juce::String& text) { levels_.setText(text); }
+    void setBand(double low, double high);   ///< Hz
+
+    void resized() override;
+
+private:
+    static constexpr int inputs = 4;
+    struct Input {
+        juce::Label title;
+        juce::ComboBox role;
+        juce::TextEditor fullScale;
+        juce::Label unit;
+    };
+
+    void end();
+    void preview();
+    void showDevices();
+    void relabel(Input&);
+
+    Window& window_;
+    juce::AudioDeviceManager& devices_;
+    juce::TextButton device_ {"Audio device..."}, go_ {"Start measuring"};
+    juce::Label deviceName_, preview_;
+    std::array<Input, inputs> inputs_;
+    juce::Label levelsTitle_, bandTitle_, fullScaleTitle_, outputTitle_;
+    juce::TextEditor levels_, low_, high_, fullScale_;
+    juce::ComboBox outputChannel_;
+    std::unique_ptr<Recorder> recorder_;
+};
+
+} // namespace excursion::plugin

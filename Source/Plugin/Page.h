@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Plugin/Juce.h"
+#include "Plugin/Processor.h"
+#include "Plugin/Session.h"
+
+#include <cmath>
+
+namespace excursion::plugin {
+
+enum class PageName { measure, compare, diagnose, linearize };
+
+/// What a page may ask of the window that it is on.
+class Window {
+public:
+    virtual ~Window() = default;
+    virtual Processor& processor() = 0;
+    virtual void go(PageName) = 0;
+    virtual void use(const Model&, const juce::String& from) = 0;   ///< loads it into the processor; tells when it can't be run
+    virtual void tell(const juce::String&, bool trouble) = 0;       ///< in the status line
+};
+
+/// One side of the window. All on the message thread.
+class Page : public juce::Component {
+public:
+    explicit Page(Window& window) : window_(window) {}
+
+    virtual void show(const Findings&) {}   ///< they are new
+    virtual void tick() {}                  ///< 20 times a second, while the page is seen
+
+protected:
+    Session& session() { return window_.processor().session(); }
+
+    Window& window_;
+};
+
+/// A whole number; juce::String(value, 0) would write all decimals that there are.
+inline juce::String whole(double value) { return juce::String(static_cast<juce::int64>(std::llround(value))); }
+
+/// UTF-8 as a string of JUCE.
+inline juce::String words(const std::string& text) { return juce::String::fromUTF8(text.c_str()); }
+
+} // namespace excursion::plugin

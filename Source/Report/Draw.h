@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Plots/Plot.h"
+
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// Draws all plots in one run of gnuplot and returns an SVG element for each, to be put into a page that defines the colours
+/// of style.css. Same plots, same text. Throws Error (numerical) when gnuplot is not there or refuses.
+std::vector<std::string> draw(const std::vector<Plot>&);
+
+} // namespace excursion

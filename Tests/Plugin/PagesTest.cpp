@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/Editor.h"
+#include "Plugin/VirtualDevice.h"
+
+#include <catch2/catch.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+using namespace excursion;
+using plugin::Editor;
+using plugin::PageName;
+using plugin::Processor;
+
+namespace {
+
+/// A picture of the window, kept to be looked at; the number of its pixels (every fifth) that are not background.
+int picture(Editor& editor, const juce::String& name)
+{
+    const auto image = editor.createComponentSnapshot(editor.getLocalBounds());
+    int drawn = 0;
+    for (int x = 0; x < image.getWidth(); x += 5)
+        for (int y = 0; y < image.getHeight(); y += 5)
+            drawn += image.getPixelAt(x, y) != image.getPixelAt(0, 0) ? 1 : 0;
+    const juce::File file(juce::String(EXCURSION_SCREENSHOTS) + "/" + name + ".png");
+    file.getParentDirectory().createDirectory();
+    file.deleteFile();
+    juce::FileOutputStream stream(file);
+    CHECK(juce::PNGImageFormat().writeImageToStream(image, stream));
+    return drawn;
+}
+
+template <class Component>
+Component* find(juce::Component& parent, const juce::String& text)
+{
+    for (auto* child : parent.getChildren()) {
+        if (auto* match = dynamic_cast<Component*>(child); match != nullptr && match->getButtonText() == text && match->isVisible())
+            return match;
+        if (child->isVisible())
+            if (auto* match = find<Component>(*child, text))
+                return match;
+    }
+    return nullptr;
+}
+
+int clicks = 0;
+
+/// As a person does: only what is seen and enabled can be clicked.
+void click(Editor& editor, const juce::String& text)
+{
+    auto* button = find<juce::TextButton>(editor, text);
+    INFO(text);
+    REQUIRE(button != nullptr);
+    REQUIRE(button->isEnabled());
+    ++clicks;
+    button->onClick();
+    editor.update();
+}
+
+void settle(Editor& editor)
+{
+    editor.processor().session().wait();
+    editor.update();
+    INFO(editor.status());
+    REQUIRE(!editor.processor().session().status().trouble);
+}
+
+/// Waits for the prediction on the last page.
+void forecast(Editor& editor)
+{
+    for (int k = 0; k < 100; ++k) {
+        editor.update();
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    }
+}
+
+} // namespace
+
+TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clicks", "[plugin][slow]")
+{
+    clicks = 0;
+    Processor processor;
+    processor.prepareToPlay(48000.0, 256);
+    Editor editor(processor);
+    CHECK(picture(editor, "measure-empty") > 1000);
+    click(editor, "Measure it");
+    settle(editor);
+    CHECK(picture(editor, "measure") > 1000);
+    const auto first = processor.session().findings();
+    REQUIRE(first->file.ladder.rungs.size() == 1);
+    REQUIRE(first->file.ladder.verdict == Verdict::missingEffect);
+    click(editor, "Compare");
+    CHECK(picture(editor, "compare") > 1000);
+    click(editor, "Diagnose");
+    CHECK(picture(editor, "diagnose") > 1000);
+    click(editor, "Add");
+    settle(editor);
+    const auto second = processor.session().findings();
+    REQUIRE(second->file.ladder.rungs.size() == 2);
+    CHECK(second->file.ladder.verdict == Verdict::complete);
+    CHECK(second->file.ladder.rungs[1].added == first->file.ladder.rungs[0].diagnosis.ranking[0].effect);
+    CHECK(second->file.ladder.rungs[1].model.components.back().effect->title() == second->truth);
+    CHECK(second->file.ladder.rungs[1].comparison.chi < 0.2 * second->file.ladder.rungs[0].comparison.chi);
+    CHECK(picture(editor, "diagnose-complete") > 1000);
+    click(editor, "Linearize with this model");
+    CHECK(processor.model().effectIds() == second->file.ladder.model().effectIds());
+    CHECK(clicks <= 8);
+    forecast(editor);
+    CHECK(picture(editor, "linearize") > 1000);
+    click(editor, "Compare");
+    CHECK(picture(editor, "compare-complete") > 1000);
+
+    click(editor, "Diagnose");
+    click(editor, "Take the last effect back");
+    settle(editor);
+    CHECK(processor.session().findings()->file.ladder.rungs.size() == 1);
+}
+
+TEST_CASE("Work in the background is cancelled, and what cannot be read is told", "[plugin]")
+{
+    Processor processor;
+    Editor editor(processor);
+    auto& session = processor.session();
+    session.open(plugin::VirtualOrder {"midbass", 3});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    session.cancel();
+    session.wait();
+    CHECK(session.status().words == "Cancelled.");
+    CHECK(!session.findings());
+    editor.load(juce::File("/nowhere/at all"));
+    session.wait();
+    editor.update();
+    CHECK(session.status().trouble);
+    CHECK(editor.status().contains("at all"));
+    session.add("stiffness");
+    session.wait();
+    CHECK(session.status().trouble);
+    CHECK(juce::String(session.status().words).contains("open a take"));
+    session.undo();
+    session.saveTake((std::filesystem::temp_directory_path() / "no take").string());
+    session.wait();
+    CHECK(session.status().trouble);
+    // A window that is closed and a processor that goes away in the midst of work leave nothing behind.
+    session.open(plugin::VirtualOrder {"woofer", 4});
+}
+
+TEST_CASE("A loudspeaker on an audio device is measured, and its hidden effect is found", "[plugin][slow]")
+{
+    juce::AudioDeviceManager devices;
+    devices.addAudioDeviceType(std::make_unique<plugin::VirtualDeviceType>());
+    devices.setCurrentAudioDeviceType("Virtual", true);
+    juce::AudioDeviceManager::AudioDeviceSetup setup;
+    setup.inputDeviceName = setup.outputDeviceName = "Virtual loudspeaker";
+    setup.sampleRate = 48000.0;
+    setup.bufferSize = 256;
+    REQUIRE(devices.setAudioDeviceSetup(setup, true).isEmpty());
+
+    Processor processor;
+    processor.prepareToPlay(48000.0, 256);
+    Editor editor(processor, &devices);
+    auto& panel = *editor.measure().measuring();
+    panel.setRole(2, Quantity::displacement, 8e-3);
+    panel.setBand(20.0, 2000.0);
+    panel.setLevels("0.5 1.5 3.5");
+    click(editor, "Start measuring");
+    REQUIRE(panel.running());
+    CHECK(processor.isSuspended());
+    picture(editor, "measuring");
+    for (int k = 0; k < 2000 && panel.running(); ++k) {
+        editor.update();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    REQUIRE(!panel.running());
+    CHECK(!processor.isSuspended());
+    settle(editor);
+    picture(editor, "measured");
+    const auto findings = processor.session().findings();
+    REQUIRE(findings);
+    for (const auto& problem : findings->report.problems)
+        UNSCOPED_INFO(problem.sentence);
+    REQUIRE(findings->report.fitForUse());
+    REQUIRE(!findings->file.ladder.rungs.empty());
+    CHECK(findings->file.ladder.verdict == Verdict::missingEffect);
+    CHECK(findings->file.ladder.rungs[0].diagnosis.ranking[0].effect == "stiffness");
+
+    SECTION("stopped half-way, nothing is left and the processor plays on")
+    {
+        editor.go(PageName::measure);
+        click(editor, "Start measuring");
+        click(editor, "Stop");
+        CHECK(!panel.running());
+        CHECK(!processor.isSuspended());
+    }
+    SECTION("what makes no sense is refused in a sentence")
+    {
+        editor.go(PageName::measure);
+        panel.setLevels("0.5 loud");
+        click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("loud"));
+        panel.setLevels("9");
+        click(editor, "Start measuring");
+        CHECK(!panel.running());
+        panel.setLevels("1");
+        panel.setRole(2, Quantity::current, 1.0);
+        click(editor, "Start measuring");
+        CHECK(!panel.running());
+        CHECK(editor.status().contains("current"));
+    }
+}

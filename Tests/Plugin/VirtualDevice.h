@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Plugin/Juce.h"
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace excursion::plugin {
+
+/// A midbass with a suspension that hardens, K(x) = 1852 (1 + |x/4 mm|^1.7) N/m, by Runge-Kutta steps, one sample after the other, with
+/// sensors that have noise. It shares no code with the models.
+class SampledSpeaker {
+public:
+    explicit SampledSpeaker(double sampleRate) : h_(1.0 / (steps * sampleRate)) {}
+
+    struct Reading {
+        double voltage, current, displacement;
+    };
+
+    /// @param u  V; the voltage between the samples is a cubic through four of them, so the reading is of two samples ago
+    Reading next(double u)
+    {
+        u_ = {u_[1], u_[2], u_[3], u};
+        for (int k = 0; k < steps; ++k) {
+            const double s = static_cast<double>(k) / steps, d = 1.0 / steps;
+            const auto a = rates(z_, at(s)), b = rates(plus(z_, a, 0.5 * h_), at(s + 0.5 * d)), c = rates(plus(z_, b, 0.5 * h_), at(s + 0.5 * d)),
+                       e = rates(plus(z_, c, h_), at(s + d));
+            for (std::size_t n = 0; n < 3; ++n)
+                z_[n] += h_ / 6.0 * (a[n] + 2.0 * b[n] + 2.0 * c[n] + e[n]);
+        }
+        return {u_[2] + noise(1e-3), z_[0] + noise(3e-4), z_[1] + noise(3e-7)};
+    }
+
+private:
+    static constexpr int steps = 2;
+    using State = std::array<double, 3>;   // i, x, v
+
+    static State rates(const State& z, double u)
+    {
+        const double K = 1852.0 * (1.0 + std::pow(std::abs(z[1]) / 4e-3, 1.7));
+        return {(u - 3.3 * z[0] - 4.95 * z[2]) / 266e-6, z[2], (4.95 * z[0] - 0.786 * z[2] - K * z[1]) / 0.01435};
+    }
+    static State plus(State z, const State& rate, double h)
+    {
+        for (std::size_t n = 0; n < 3; ++n)
+            z[n] += h * rate[n];
+        return z;
+    }
+    /// Between the second and the third of the last four samples.
+    double at(double s) const
+    {
+        return u_[1] + s * (-u_[0] / 3.0 - u_[1] / 2.0 + u_[2] - u_[3] / 6.0) + s * s * (u_[0] / 2.0 - u_[1] + u_[2] / 2.0)
+             + s * s * s * (-u_[0] / 6.0 + u_[1] / 2.0 - u_[2] / 2.0 + u_[3] / 6.0);
+    }
+    double noise(double rms) { return rms * normal_(random_); }
+
+    double h_;
+    std::array<double, 4> u_ {};
+    State z_ {};
+    std::mt19937_64 random_ {5};
+    std::normal_distribution<double> normal_;
+};
+
+/// An audio device at whose output a SampledSpeaker hangs: inputs 1 to 3 are voltage (16 V at full scale), current (4 A) and
+/// displacement (8 mm). It runs as fast as it can.
+class VirtualDevice : public juce::AudioIODevice {
+public:
+    VirtualDevice() : AudioIODevice("Virtual loudspeaker", "Virtual") {}
+    ~VirtualDevice() override { close(); }
+
+    juce::StringArray getOutputChannelNames() override { return {"out 1", "out 2"}; }
+    juce::StringArray getInputChannelNames() override { return {"voltage", "current", "displacement"}; }
+    juce::Array<double> getAvailableSampleRates() override { return {48000.0}; }
+    juce::Array<int> getAvailableBufferSizes() override { return {256}; }
+    int getDefaultBufferSize() override { return 256; }
+    juce::String open(const juce::BigInteger&, const juce::BigInteger&, double, int) override
+    {
+        open_ = true;
+        return {};
+    }
+    void close() override
+    {
+        stop();
+        open_ = false;
+    }
+    bool isOpen() override { return open_; }
+    void start(juce::AudioIODeviceCallback* callback) override
+    {
+        stop();
+        callback_ = callback;
+        callback_->audioDeviceAboutToStart(this);
+        thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    }
+    void stop() override
+    {
+        thread_ = {};
+        if (callback_ != nullptr)
+            callback_->audioDeviceStopped();
+        callback_ = nullptr;
+    }
+    bool isPlaying() override { return callback_ != nullptr; }
+    juce::String getLastError() override { return {}; }
+    int getCurrentBufferSizeSamples() override { return 256; }
+    double getCurrentSampleRate() override { return 48000.0; }
+    int getCurrentBitDepth() override { return 32; }
+    juce::BigInteger getActiveOutputChannels() const override { return bits(2); }
+    juce::BigInteger getActiveInputChannels() const override { return bits(3); }
+    int getOutputLatencyInSamples() override { return 0; }
+    int getInputLatencyInSamples() override { return 0; }
+
+private:
+    static juce::BigInteger bits(int count)
+    {
+        juce::BigInteger result;
+        result.setRange(0, count, true);
+        return result;
+    }
+
+    void run(const std::stop_token& stop)
+    {
+        SampledSpeaker speaker(48000.0);
+        std::array<std::vector<float>, 3> in;
+        std::array<std::vector<float>, 2> out;
+        for (auto& channel : in)
+            channel.assign(256, 0.0f);
+        for (auto& channel : out)
+            channel.assign(256, 0.0f);
+        while (!stop.stop_requested()) {
+            const float* const ins[] {in[0].data(), in[1].data(), in[2].data()};
+            float* const outs[] {out[0].data(), out[1].data()};
+            callback_->audioDeviceIOCallbackWithContext(ins, 3, outs, 2, 256, {});
+            for (std::size_t n = 0; n < 256; ++n) {
+                const auto reading = speaker.next(16.0 * static_cast<double>(out[0][n]));
+                in[0][n] = static_cast<float>(reading.voltage / 16.0);
+                in[1][n] = static_cast<float>(reading.current / 4.0);
+                in[2][n] = static_cast<float>(reading.displacement / 8e-3);
+            }
+        }
+    }
+
+    bool open_ = false;
+    juce::AudioIODeviceCallback* callback_ = nullptr;
+    std::jthread thread_;
+};
+
+class VirtualDeviceType : public juce::AudioIODeviceType {
+public:
+    VirtualDeviceType() : AudioIODeviceType("Virtual") {}
+    void scanForDevices() override {}
+    juce::StringArray getDeviceNames(bool) const override { return {"Virtual loudspeaker"}; }
+    int getDefaultDeviceIndex(bool) const override { return 0; }
+    int getIndexOfDevice(juce::AudioIODevice* device, bool) const override { return device != nullptr ? 0 : -1; }
+    bool hasSeparateInputsAndOutputs() const override { return false; }
+    juce::AudioIODevice* createDevice(const juce::String&, const juce::String&) override { return new VirtualDevice; }
+};
+
+} // namespace excursion::plugin
