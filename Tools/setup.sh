@@ -6,21 +6,21 @@ fail() {
     exit 1
 }
 
-# Packages of Tools/packages.txt that are not installed.
+# missing_packages LIST...: packages of these files that are not installed.
 missing_packages() {
     local package
-    for package in $(sed 's/#.*//' Tools/packages.txt); do
+    for package in $(sed 's/#.*//' "$@"); do
         dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
     done
 }
 
-# Installs what is missing, as root or with sudo, and says what.
+# install_packages LIST...: installs what is missing of these files, as root or with sudo, and says what.
 install_packages() {
-    local manual="install the packages of Tools/packages.txt by other means and use --no-install"
+    local manual="install the packages of $* by other means and use --no-install"
     local missing as_root=()
     command -v dpkg-query >/dev/null && command -v apt-get >/dev/null \
         || fail "this is not a Debian system; $manual."
-    missing=$(missing_packages | tr '\n' ' ')
+    missing=$(missing_packages "$@" | tr '\n' ' ')
     [ -n "$missing" ] || return 0
     if [ "$(id -u)" != 0 ]; then
         command -v sudo >/dev/null || fail "there is no sudo; run this as root, or $manual. Missing: $missing"

@@ -124,7 +124,10 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
     undo_.onClick = [this] { session().undo(); };
     linearize_.onClick = [this] {
         if (findings_ && !findings_->file.ladder.rungs.empty()) {
-            window_.use(findings_->file.ladder.model(), words(findings_->source));
+            auto model = findings_->file.ladder.model();
+            if (model.name.empty())
+                model.name = findings_->source;
+            window_.use(model, words(findings_->source));
             window_.go(PageName::linearize);
         }
     };

@@ -147,15 +147,19 @@ void PlotView::drawSeries(juce::Graphics& g, const Series& series) const
         return std::isfinite(series.x[k]) && std::isfinite(series.y[k]) && (!across_.logarithmic || series.x[k] > 0.0) && (!up_.logarithmic || series.y[k] > 0.0);
     };
     if (series.lower.size() == count && series.upper.size() == count && count > 1) {
+        // A quadrilateral from point to point: the rasterizer leaves holes in one polygon round the whole band.
         juce::Path band;
-        std::vector<std::size_t> known;
-        for (std::size_t k = 0; k < count; ++k)
-            if (drawable(k) && std::isfinite(series.lower[k]) && std::isfinite(series.upper[k]))
-                known.push_back(k);
-        for (std::size_t n = 0; n < known.size(); ++n)
-            n == 0 ? band.startNewSubPath(place(series.x[known[n]], series.upper[known[n]])) : band.lineTo(place(series.x[known[n]], series.upper[known[n]]));
-        for (std::size_t n = known.size(); n-- > 0;)
-            band.lineTo(place(series.x[known[n]], series.lower[known[n]]));
+        std::size_t before = count;
+        for (std::size_t k = 0; k < count; ++k) {
+            if (!drawable(k) || !std::isfinite(series.lower[k]) || !std::isfinite(series.upper[k]))
+                continue;
+            if (before < k)
+                band.addQuadrilateral(place(series.x[before], series.lower[before]).x, place(series.x[before], series.lower[before]).y,
+                                      place(series.x[before], series.upper[before]).x, place(series.x[before], series.upper[before]).y,
+                                      place(series.x[k], series.upper[k]).x, place(series.x[k], series.upper[k]).y,
+                                      place(series.x[k], series.lower[k]).x, place(series.x[k], series.lower[k]).y);
+            before = k;
+        }
         g.setColour(colour.withAlpha(0.18f));
         g.fillPath(band);
     }
