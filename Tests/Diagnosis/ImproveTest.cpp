@@ -7,6 +7,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <stop_token>
+
 using namespace excursion;
 
 namespace {
@@ -67,6 +70,43 @@ TEST_CASE("Nothing is added to a driver without effects, and its parameters are 
         CHECK(p.standardError < 1e-3 * value);
         CHECK(std::abs(p.value - value) < 5.0 * p.standardError);
     }
+}
+
+TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is cancelled", "[improve]")
+{
+    Improvement work(take({{"stiffness", 0.3}}));
+    REQUIRE(work.report().fitForUse());
+    CHECK(work.ladder().rungs.empty());
+    work.begin();
+    REQUIRE(work.ladder().rungs.size() == 1);
+    const double chi = work.ladder().rungs[0].comparison.chi;
+    std::stop_source stop;
+    Progress progress;
+    progress.stop = stop.get_token();
+    progress.report = [&](double fraction, std::string_view) {
+        if (fraction > 0.3)
+            stop.request_stop();
+    };
+    CHECK_THROWS_AS(work.add("stiffness", progress), Error);
+    CHECK(work.ladder().rungs.size() == 1);
+    CHECK_THROWS_WITH(work.add("no such thing"), Catch::Contains("no such thing"));
+    work.add("stiffness");
+    REQUIRE(work.ladder().rungs.size() == 2);
+    CHECK(work.ladder().verdict == Verdict::complete);
+    CHECK_THROWS_WITH(work.add("stiffness"), Catch::Contains("already"));
+    const auto waves = work.waveforms(2);
+    REQUIRE(waves.size() == 2);
+    double error = 0.0, power = 0.0;
+    for (std::size_t n = 0; n < waves[1].measured.size(); ++n) {
+        error += std::pow(waves[1].measured[n] - waves[1].model[n], 2);
+        power += std::pow(waves[1].measured[n], 2);
+    }
+    CHECK(10.0 * std::log10(error / power) == Approx(work.ladder().rungs[1].comparison.channels[1].byLevel[2].db).margin(0.5));
+    work.undo();
+    work.undo();
+    REQUIRE(work.ladder().rungs.size() == 1);
+    CHECK(work.ladder().verdict == Verdict::missingEffect);
+    CHECK(work.ladder().rungs[0].comparison.chi == chi);
 }
 
 TEST_CASE("One hidden effect is named, added, and the error falls to the noise", "[improve][slow]")
