@@ -18,6 +18,7 @@ using Spectrum = std::vector<std::complex<double>>;
 
 constexpr double trustedBand = 0.42;      // of the sample rate: near its half converters and interpolation are not to be trusted
 constexpr double distortionBand = 2.0;    // times the band: distortion products lie above it, too
+constexpr double foldingOrder = 6.0;      // products up to this order do not fold into the compared lines when samples are left out
 
 double power(const Spectrum& spectrum)
 {
@@ -315,7 +316,7 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
         // Above the distortion's band there is nothing to compare, and fewer samples are simulated sooner.
         std::size_t factor = 1;
         while (static_cast<std::size_t>(take.excitation->period) % (2 * factor) == 0
-               && distortionBand * record.bandHigh <= trustedBand * take.sampleRate / static_cast<double>(2 * factor))
+               && (distortionBand + foldingOrder) * record.bandHigh <= take.sampleRate / static_cast<double>(2 * factor))
             factor *= 2;
         record.sampleRate = take.sampleRate / static_cast<double>(factor);
         addPeriodicSections(take, options, factor, record);
