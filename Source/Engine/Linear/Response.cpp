@@ -13,20 +13,20 @@ namespace excursion {
 using Complex = std::complex<double>;
 using Eigen::Index;
 
-Complex evaluationPoint(double frequency, double sampleRate)
+Complex evaluationPoint(double frequency, double sampleRate, double alpha)
 {
     const double omega = 2.0 * std::numbers::pi * frequency;
     if (sampleRate == 0.0)
-        return {0.0, omega};
+        return alpha == 1.0 ? Complex(0.0, omega) : std::polar(std::pow(omega, alpha), 0.5 * std::numbers::pi * alpha);
     const double half = 0.5 * omega / sampleRate, s = std::sin(half), c = std::cos(half);
     return {-2.0 * s * s, 2.0 * s * c};
 }
 
-Eigen::VectorXcd evaluationPoints(const std::vector<double>& frequency, double sampleRate)
+Eigen::VectorXcd evaluationPoints(const std::vector<double>& frequency, double sampleRate, double alpha)
 {
     Eigen::VectorXcd points(static_cast<Index>(frequency.size()));
     for (Index k = 0; k < points.size(); ++k)
-        points[k] = evaluationPoint(frequency[static_cast<std::size_t>(k)], sampleRate);
+        points[k] = evaluationPoint(frequency[static_cast<std::size_t>(k)], sampleRate, alpha);
     return points;
 }
 

@@ -9,8 +9,9 @@ namespace excursion {
 /// What frequency responses are computed at: lambda = z - 1 in discrete time, lambda = j w in continuous time, so that
 ///     G = C (lambda I - L)^-1 B + D,  L = A - I or A.
 /// z - 1 = 2j sin(w/2) exp(j w/2), w = 2 pi f / fs, loses no digits at frequencies far below the sample rate, where z itself would.
-std::complex<double> evaluationPoint(double frequency, double sampleRate);
-Eigen::VectorXcd evaluationPoints(const std::vector<double>& frequency, double sampleRate);
+/// @param alpha  of systems of fractional order in continuous time: lambda = (j w)^alpha
+std::complex<double> evaluationPoint(double frequency, double sampleRate, double alpha = 1.0);
+Eigen::VectorXcd evaluationPoints(const std::vector<double>& frequency, double sampleRate, double alpha = 1.0);
 
 /// (lambda I - L)^-1 for many lambda, by one complex Schur form L = U T U^H and a triangular solve a point.
 class Resolvent {
