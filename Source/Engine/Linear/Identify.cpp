@@ -28,9 +28,9 @@ struct Candidate {
     double cost = std::numeric_limits<double>::infinity();
 };
 
-double scaleFor(const FrequencyData& data, double sampleRate)
+double scaleFor(const FrequencyData& data, const IdentifyOptions& options)
 {
-    return sampleRate > 0.0 ? 1.0 : 2.0 * std::numbers::pi * data.frequency.back();
+    return options.sampleRate > 0.0 ? 1.0 : std::pow(2.0 * std::numbers::pi * data.frequency.back(), options.alpha);
 }
 
 /// Rates of the bilinear transform that put the band's end at different places of the unit circle, and its middle for wide bands.
@@ -58,6 +58,23 @@ StateSpace subspaceAt(const FrequencyData& data, double rate, int order, bool st
     return model;
 }
 
+/// The same in lambda = s^alpha: z = (a + lambda)/(a - lambda), a = (2 rate)^alpha.
+StateSpace subspaceAt(const FrequencyData& data, double rate, const IdentifyOptions& options)
+{
+    const double a = std::pow(2.0 * rate, options.alpha);
+    const Eigen::VectorXcd lambda = evaluationPoints(data.frequency, 0.0, options.alpha);
+    auto range = observabilityRange(data, (a + lambda.array()) / (a - lambda.array()), blockRowsFor(options.order, data.lines()));
+    range.sampleRate = 0.5 * a;
+    auto model = toContinuous(dynamicsOf(range, options.order, data.inputs, false));
+    if (options.refinement.stable && data.inputs == 1) {
+        const auto sections = mirrored(sectionsOf(poles(model), 0.0, scaleFor(data, options), options.alpha));
+        const auto fit = fitPartialFractions(sections, data);
+        return realize(sections, fit.C, fit.D);
+    }
+    fitInputs(model, data, options.alpha);
+    return model;
+}
+
 /// All models that the subspace method has to offer, up to the first that costs less than `enough`. Those whose transform does not exist are left out.
 std::vector<StateSpace> subspaceModels(const FrequencyData& data, const IdentifyOptions& options, double enough = 0.0)
 {
@@ -67,8 +84,8 @@ std::vector<StateSpace> subspaceModels(const FrequencyData& data, const Identify
     std::vector<StateSpace> models;
     for (const double rate : warpingRates(data, options.thorough))
         try {
-            models.push_back(subspaceAt(data, rate, options.order, stable));
-            if (enough > 0.0 && judged(models.back(), data).cost < enough)
+            models.push_back(options.alpha == 1.0 ? subspaceAt(data, rate, options.order, stable) : subspaceAt(data, rate, options));
+            if (enough > 0.0 && judged(models.back(), data, options.alpha).cost < enough)
                 break;
         } catch (const Error& e) {
             if (e.kind() != Error::Kind::numerical)
@@ -103,7 +120,7 @@ Sections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& o
     double best = std::numeric_limits<double>::infinity();
     PartialFractionFit fit;
     for (const auto& model : subspaceModels(data, larger)) {
-        auto candidate = fitPartialFractions(sectionsOf(poles(model), options.sampleRate, scale), data);
+        auto candidate = fitPartialFractions(sectionsOf(poles(model), options.sampleRate, scale, options.alpha), data);
         if (candidate.cost < best) {
             best = candidate.cost;
             fit = std::move(candidate);
@@ -121,7 +138,7 @@ Sections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& o
 
 LinearIdentification fromFit(const PartialFractionFit& fit, const FrequencyData& data)
 {
-    auto result = judged(realize(fit.sections, fit.C, fit.D), data);
+    auto result = judged(realize(fit.sections, fit.C, fit.D), data, fit.sections.alpha);
     result.sections = fit.sections;
     result.cost = fit.cost;
     return result;
@@ -140,6 +157,8 @@ bool IdentifyOptions::isValid(std::string* reason) const
         return refuse("the order must lie between 0 and 400");
     if (!(sampleRate >= 0.0) || !std::isfinite(sampleRate))
         return refuse("the sample rate must be 0, for continuous time, or above");
+    if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && sampleRate != 0.0))
+        return refuse("the order of differentiation must lie between 0 and 2, and be 1 in discrete time");
     return refinement.isValid(reason);
 }
 
@@ -155,7 +174,7 @@ Sections withoutLeast(const PartialFractionFit& fit, const FrequencyData& data, 
     if (sections.pairs() == 0)
         return sections;
     // Least squares without the columns S costs c_S^T ((R^T R)^-1_SS)^-1 c_S more.
-    const auto lambda = evaluationPoints(data.frequency, sections.sampleRate);
+    const auto lambda = evaluationPoints(data.frequency, sections.sampleRate, sections.alpha);
     const auto basis = partialFractions(sections, lambda);
     const MatrixXd weights = weightsOf(data);
     Eigen::VectorXd loss = Eigen::VectorXd::Zero(sections.pairs());
@@ -181,15 +200,16 @@ Sections withoutLeast(const PartialFractionFit& fit, const FrequencyData& data, 
     return result;
 }
 
-LinearIdentification judged(StateSpace model, const FrequencyData& data)
+LinearIdentification judged(StateSpace model, const FrequencyData& data, double alpha)
 {
     LinearIdentification result;
-    const auto responses = respond(model, data.frequency);
+    const Resolvent resolvent(model);
     const MatrixXd weights = weightsOf(data);
     double error = 0.0, power = 0.0, weightedError = 0.0, weightedPower = 0.0, likelihood = 0.0;
-    for (Index k = 0; k < data.lines(); ++k)
+    for (Index k = 0; k < data.lines(); ++k) {
+        const Eigen::MatrixXcd response = resolvent.response(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha));
         for (Index e = 0; e < data.value.cols(); ++e) {
-            const double d = std::norm(responses[static_cast<std::size_t>(k)](e % data.outputs, e / data.outputs) - data.value(k, e));
+            const double d = std::norm(response(e % data.outputs, e / data.outputs) - data.value(k, e));
             error += d;
             power += std::norm(data.value(k, e));
             weightedError += d * weights(k, e) * weights(k, e);
@@ -197,10 +217,11 @@ LinearIdentification judged(StateSpace model, const FrequencyData& data)
             if (data.deviation.size() != 0)
                 likelihood += d / (data.deviation(k, e) * data.deviation(k, e));
         }
+    }
     result.cost = weightedError / weightedPower;
     result.errorDb = 10.0 * std::log10(std::max(error / power, 1e-40));
     result.likelihood = data.deviation.size() != 0 ? likelihood : std::numeric_limits<double>::quiet_NaN();
-    result.stable = isStable(model);
+    result.stable = alpha == 1.0 ? isStable(model) : isStable(sectionsOf(poles(model), 0.0, 1.0, alpha));
     result.model = std::move(model);
     return result;
 }
@@ -226,7 +247,7 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
         LinearIdentification best;
         best.cost = std::numeric_limits<double>::infinity();
         for (const auto& model : models)
-            if (auto found = judged(model, data); found.cost < best.cost)
+            if (auto found = judged(model, data, options.alpha); found.cost < best.cost)
                 best = std::move(found);
         if (!std::isfinite(best.cost))
             throw Error(Error::Kind::numerical, "The subspace method found no model of order " + std::to_string(options.order) + ".");
@@ -235,10 +256,10 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
         return best;
     }
 
-    const double scale = scaleFor(data, options.sampleRate);
+    const double scale = scaleFor(data, options);
     std::vector<Candidate> candidates;
     for (const auto& model : models)
-        add(candidates, "subspace", sectionsOf(poles(model), options.sampleRate, scale), data);
+        add(candidates, "subspace", sectionsOf(poles(model), options.sampleRate, scale, options.alpha), data);
     const auto bestCost = [&candidates] {
         double cost = std::numeric_limits<double>::infinity();
         for (const auto& c : candidates)
@@ -247,8 +268,9 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
     };
     if (!(bestCost() < floor)) {
         progress.at(0.2, "fitting vectors");
-        add(candidates, "vector fitting", fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, false), data, 10), data);
-        add(candidates, "vector fitting", fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, true), data, 10), data);
+        for (const bool logarithmic : {false, true})
+            add(candidates, "vector fitting",
+                fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, logarithmic, options.alpha), data, 10), data);
         if (options.thorough && options.order >= 2) {
             progress.at(0.4, "pruning a larger model");
             add(candidates, "pruned", prunedTo(options.order, data, options, scale), data);

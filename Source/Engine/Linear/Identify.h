@@ -15,10 +15,12 @@ namespace excursion {
 /// maximum likelihood, the best one kept.
 ///
 /// A continuous-time model is identified by subspace through the bilinear transform, at several warpings, since what part of the unit
-/// circle the poles fill decides how well they are seen; the refinement works directly in s with scaled frequency.
+/// circle the poles fill decides how well they are seen; the refinement works directly in s with scaled frequency. In lambda = s^alpha the same
+/// transform serves; its points then lie on an arc beside the circle, which the orthogonal powers do not mind.
 struct IdentifyOptions {
     int order = 4;
     double sampleRate = 0.0;   ///< Hz; 0: a model of continuous time
+    double alpha = 1.0;        ///< order of differentiation, of models of continuous time: the model is one in lambda = s^alpha (seed 5.3)
     bool refine = true;        ///< maximum likelihood after the starts
     bool thorough = true;      ///< below the true order, where no start reaches the noise: more of them, also by pruning a larger model
 
@@ -32,7 +34,7 @@ struct LinearIdentification {
     double cost = 0.0;             ///< weighted relative squared error, as PartialFractionFit::cost
     double errorDb = 0.0;          ///< unweighted relative rms error of all entries (seed 4.26)
     double likelihood = 0.0;       ///< sum of |model - measured|^2 / deviation^2; NaN without deviations. About 1 a value when all but noise is explained
-    bool stable = false;
+    bool stable = false;           ///< by the region that belongs to sampleRate and alpha
     std::string start;             ///< where the model came from: "subspace", "vector fitting", "pruned", ..
     std::string reason = "nothing was identified";   ///< why the refinement stopped
     std::optional<Sections> sections;   ///< of models with one input
@@ -47,6 +49,7 @@ LinearIdentification identify(const FrequencyData&, const IdentifyOptions&, cons
 Sections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd);
 
 /// Errors, likelihood and stability of any model on data.
-LinearIdentification judged(StateSpace, const FrequencyData&);
+/// @param alpha  of a model in s^alpha
+LinearIdentification judged(StateSpace, const FrequencyData&, double alpha = 1.0);
 
 } // namespace excursion

@@ -92,7 +92,7 @@ OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& optio
                 continue;
             const auto refined = refinePoles(start, data, identifying.refinement);
             if (refined.fit.cost < entry.found.cost) {
-                entry.found = judged(realize(refined.fit.sections, refined.fit.C, refined.fit.D), data);
+                entry.found = judged(realize(refined.fit.sections, refined.fit.C, refined.fit.D), data, identifying.alpha);
                 entry.found.cost = refined.fit.cost;
                 entry.found.sections = refined.fit.sections;
                 entry.found.start = "pruned";
@@ -103,7 +103,7 @@ OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& optio
             fits[static_cast<std::size_t>(order)] = fitPartialFractions(*entry.found.sections, data);
         entry.mdl = mdlOf(entry.found, data);
         if (validation)
-            entry.validationDb = judged(entry.found.model, *validation).errorDb;
+            entry.validationDb = judged(entry.found.model, *validation, identifying.alpha).errorDb;
         sweep.entries.push_back(std::move(entry));
     }
     std::reverse(sweep.entries.begin(), sweep.entries.end());

@@ -26,8 +26,8 @@ constexpr double rounding = 1e-15;
 
 /// What does not change in a search: points, weighted responses, and their power.
 struct Problem {
-    explicit Problem(const FrequencyData& data, double sampleRate)
-        : lambda(evaluationPoints(data.frequency, sampleRate)), weights(weightsOf(data)), value(data.value.cwiseProduct(weights)),
+    Problem(const FrequencyData& data, const Sections& sections)
+        : lambda(evaluationPoints(data.frequency, sections.sampleRate, sections.alpha)), weights(weightsOf(data)), value(data.value.cwiseProduct(weights)),
           power(value.squaredNorm())
     {
     }
@@ -38,7 +38,7 @@ struct Problem {
     double power;
 };
 
-Problem problemOf(const FrequencyData& data, double sampleRate)
+Problem problemOf(const FrequencyData& data, const Sections& sections)
 {
     std::string reason;
     if (!data.isValid(&reason))
@@ -46,7 +46,7 @@ Problem problemOf(const FrequencyData& data, double sampleRate)
     if (data.inputs != 1)
         throw Error(Error::Kind::data, "Partial fractions are fitted to responses to one input; these are to "
                                            + std::to_string(data.inputs) + ".");
-    return Problem(data, sampleRate);
+    return Problem(data, sections);
 }
 
 /// Real parts above imaginary parts, each line times its weight.
@@ -125,10 +125,10 @@ Projected projectedJacobian(const PartialFractionFit& fit, const Problem& proble
 
 PartialFractionFit fitPartialFractions(const Sections& sections, const FrequencyData& data)
 {
-    return fitAt(sections, problemOf(data, sections.sampleRate));
+    return fitAt(sections, problemOf(data, sections));
 }
 
-Sections spreadPoles(Index order, const FrequencyData& data, double sampleRate, double scale, bool logarithmic)
+Sections spreadPoles(Index order, const FrequencyData& data, double sampleRate, double scale, bool logarithmic, double alpha)
 {
     std::vector<Complex> roots;
     const double high = data.frequency.back();
@@ -139,20 +139,20 @@ Sections spreadPoles(Index order, const FrequencyData& data, double sampleRate, 
         const double f = logarithmic ? low * std::pow(high / low, at) : low + (high - low) * at;
         const double omega = 2.0 * std::numbers::pi * std::min(f, sampleRate > 0.0 ? 0.49 * sampleRate : f);
         const Complex s(-0.01 * omega, omega);
-        const Complex root = sampleRate > 0.0 ? std::exp(s / sampleRate) : s;
+        const Complex root = sampleRate > 0.0 ? std::exp(s / sampleRate) : alpha == 1.0 ? s : std::pow(s, alpha);
         roots.push_back(root);
         roots.push_back(std::conj(root));
     }
     if (order % 2 != 0) {
         const double s = -2.0 * std::numbers::pi * std::sqrt(low * high);
-        roots.push_back(sampleRate > 0.0 ? std::exp(s / sampleRate) : s);
+        roots.push_back(sampleRate > 0.0 ? std::exp(s / sampleRate) : -std::pow(-s, alpha));
     }
-    return sectionsOf(roots, sampleRate, scale);
+    return sectionsOf(roots, sampleRate, scale, alpha);
 }
 
 Sections relocatePoles(const Sections& sections, const FrequencyData& data)
 {
-    const auto problem = problemOf(data, sections.sampleRate);
+    const auto problem = problemOf(data, sections);
     const auto n = sections.order(), K = problem.lambda.size();
     if (n == 0)
         return sections;
@@ -183,7 +183,7 @@ Sections relocatePoles(const Sections& sections, const FrequencyData& data)
     const double constant = std::abs(x[n]) > 1e-8 ? x[n] : std::copysign(1e-8, x[n]);
     auto zeroModel = realize(sections, x.head(n).transpose(), VectorXd::Constant(1, constant));
     zeroModel.A -= zeroModel.B * zeroModel.C / constant;
-    return mirrored(sectionsOf(poles(zeroModel), sections.sampleRate, sections.scale));
+    return mirrored(sectionsOf(poles(zeroModel), sections.sampleRate, sections.scale, sections.alpha));
 }
 
 bool PoleRefinementOptions::isValid(std::string* reason) const
@@ -199,7 +199,7 @@ PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, con
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The poles cannot be refined: " + reason + ".");
-    const auto problem = problemOf(data, start.sampleRate);
+    const auto problem = problemOf(data, start);
     const auto n = start.order();
     PoleRefinement result;
     result.fit = fitAt(start, problem);

@@ -27,7 +27,7 @@ PartialFractionFit fitPartialFractions(const Sections&, const FrequencyData&);
 Sections relocatePoles(const Sections&, const FrequencyData&);
 
 /// Lightly damped poles spread over the band of the data, to start relocations from.
-Sections spreadPoles(Eigen::Index order, const FrequencyData&, double sampleRate, double scale, bool logarithmic);
+Sections spreadPoles(Eigen::Index order, const FrequencyData&, double sampleRate, double scale, bool logarithmic, double alpha = 1.0);
 
 struct PoleRefinementOptions {
     int maximumIterations = 50;

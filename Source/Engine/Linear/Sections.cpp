@@ -3,17 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace excursion {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
 
-Sections sectionsOf(const std::vector<Complex>& poles, double sampleRate, double scale)
+Sections sectionsOf(const std::vector<Complex>& poles, double sampleRate, double scale, double alpha)
 {
     Sections sections;
     sections.sampleRate = sampleRate;
     sections.scale = scale;
+    sections.alpha = alpha;
     sections.factors.resize(static_cast<Index>(poles.size()));
     std::vector<double> real;
     Index at = 0;
@@ -62,10 +64,12 @@ std::vector<Complex> poles(const Sections& sections)
 bool isStable(const Sections& sections)
 {
     const bool discrete = sections.sampleRate > 0.0;
+    const double border = sections.alpha == 1.0 ? 0.0 : -2.0 * std::cos(0.5 * std::numbers::pi * sections.alpha);
     for (Index i = 0; i < sections.pairs(); ++i) {
         const double b = sections.factors[2 * i], e = sections.factors[2 * i + 1];
         // Jury's conditions for z^2 + (b - 2) z + (1 - b + e)
-        if (discrete ? !(e < b && e > 0.0 && 4.0 - 2.0 * b + e > 0.0) : !(b > 0.0 && e > 0.0))
+        // in continuous time -b/(2 sqrt(e)) is the cosine of a complex pair's angle, and beyond 1 in size for two real roots of one sign
+        if (discrete ? !(e < b && e > 0.0 && 4.0 - 2.0 * b + e > 0.0) : !(e > 0.0 && b > border * std::sqrt(e)))
             return false;
     }
     if (!sections.odd())
@@ -81,10 +85,19 @@ Sections mirrored(const Sections& sections)
         if (sections.sampleRate > 0.0) {
             if (std::norm(root) >= 1.0)
                 root /= std::max(std::norm(root), 1.0 + 1e-9);
+        } else if (sections.alpha != 1.0) {
+            const double border = 0.5 * std::numbers::pi * sections.alpha, angle = std::abs(std::arg(root));
+            const double size = std::max(std::abs(root), 1e-18 * sections.scale);
+            if (root.imag() == 0.0)
+                root = -size;
+            else if (angle <= border) {
+                const double beyond = std::clamp(2.0 * border - angle, border + 1e-9, 0.5 * (border + std::numbers::pi));
+                root = std::polar(size, std::copysign(beyond, root.imag()));
+            }
         } else if (root.real() >= 0.0)
             root = {-std::max(root.real(), 1e-9 * std::max(std::abs(root.imag()), 1e-9 * sections.scale)), root.imag()};
     }
-    return sectionsOf(roots, sections.sampleRate, sections.scale);
+    return sectionsOf(roots, sections.sampleRate, sections.scale, sections.alpha);
 }
 
 Eigen::MatrixXcd partialFractions(const Sections& sections, const Eigen::VectorXcd& lambda)

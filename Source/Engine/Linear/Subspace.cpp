@@ -37,10 +37,16 @@ void require(const FrequencyData& data, double sampleRate)
 ObservabilityRange observabilityRange(const FrequencyData& data, double sampleRate, Index q)
 {
     require(data, sampleRate);
+    auto range = observabilityRange(data, evaluationPoints(data.frequency, sampleRate).array() + 1.0, q);
+    range.sampleRate = sampleRate;
+    return range;
+}
+
+ObservabilityRange observabilityRange(const FrequencyData& data, const Eigen::VectorXcd& z, Index q)
+{
     const auto K = data.lines(), p = data.outputs, m = data.inputs;
     const MatrixXd weights = weightsOf(data);
     ObservabilityRange range;
-    range.sampleRate = sampleRate;
     range.outputScale.resize(p);
     VectorXd line = VectorXd::Zero(K);
     for (Index o = 0; o < p; ++o) {
@@ -51,7 +57,6 @@ ObservabilityRange observabilityRange(const FrequencyData& data, double sampleRa
         for (Index i = 0; i < m; ++i)
             line += weights.col(o + p * i) / range.outputScale[o];
     }
-    const Eigen::VectorXcd z = evaluationPoints(data.frequency, sampleRate).array() + 1.0;
     const auto basis = orthogonalPowers(z, line, q);
     q = basis.values.cols();
     range.H = basis.H;
@@ -130,7 +135,7 @@ StateSpace mirrored(const StateSpace& model)
     return result;
 }
 
-void fitInputs(StateSpace& model, const FrequencyData& data)
+void fitInputs(StateSpace& model, const FrequencyData& data, double alpha)
 {
     const auto n = model.order(), p = data.outputs, K = data.lines();
     const MatrixXd weights = weightsOf(data);
@@ -141,7 +146,7 @@ void fitInputs(StateSpace& model, const FrequencyData& data)
         const Resolvent resolvent(model);
         for (Index k = 0; k < K; ++k)
             rows[static_cast<std::size_t>(k)]
-                = resolvent.left(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate));
+                = resolvent.left(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha));
     }
     for (Index i = 0; i < data.inputs; ++i) {
         TallQr qr(n + p + 1);

@@ -30,6 +30,9 @@ struct ObservabilityRange {
 ///              buy digits: exact data of order 3 is met at -240 dB with 8, at -275 dB with 60 of them
 ObservabilityRange observabilityRange(const FrequencyData&, double sampleRate, Eigen::Index q);
 
+/// The same for lines at any points z_k of the complex plane, closed under conjugation with their conjugates; sampleRate is left at 0.
+ObservabilityRange observabilityRange(const FrequencyData&, const Eigen::VectorXcd& points, Eigen::Index q);
+
 /// Algorithm 1: a uniform grid k fs/N, k = 0 or 1 .. N/2, without weights. The inverse DFT of the response, a Hankel matrix of it and its SVD.
 /// A missing line at 0 or fs/2 is filled by cubic extrapolation of the real part.
 /// Throws Error (data) when the grid is not of that kind.
@@ -40,8 +43,8 @@ ObservabilityRange observabilityRangeUniform(const FrequencyData&, double sample
 StateSpace dynamicsOf(const ObservabilityRange&, Eigen::Index order, Eigen::Index inputs, bool stable);
 
 /// B and D by weighted linear least squares, A and C given; also for continuous time. Directions of the basis that are no more than
-/// rounding are left out.
-void fitInputs(StateSpace&, const FrequencyData&);
+/// rounding are left out. @param alpha  of a model in s^alpha
+void fitInputs(StateSpace&, const FrequencyData&, double alpha = 1.0);
 
 /// The model with every pole outside of the stable region mirrored into it: 1/conj(z), or -conj(s); response magnitudes do not stay.
 StateSpace mirrored(const StateSpace&);
