@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Linear/TallQr.h"
 
 #include <algorithm>
 #include <array>
@@ -142,23 +143,42 @@ Point lowestBetween(const Curve& curve, const Point& start, double low, double h
     return best;
 }
 
-/// d2V/dalpha2 about the lowest point, with a step that raises V by about 1/2 (`unit`: V of one). May move the point when it finds a lower one.
-double curvature(const Curve& curve, Point& best, double unit, double largestStep)
+/// d2V/dalpha2 of the curve, all else at its best: twice the squared length of dG/dalpha/sigma at right angles to the derivatives by poles, C and D.
+/// Differences of V would ask for searches that all end in the same minimum to many digits.
+double curvature(const PartialFractionFit& fit, const FrequencyData& data)
 {
-    double step = 0.25 * largestStep, result = 0.0;
-    for (int pass = 0; pass < 4; ++pass) {
-        const auto up = curve.at(best.alpha + step, best), down = curve.at(best.alpha - step, best);
-        result = (up.V + down.V - 2.0 * best.V) / (step * step * unit);
-        if (up.V < best.V || down.V < best.V) {
-            best = up.V < down.V ? up : down;
-            continue;
+    const auto& sections = fit.sections;
+    const auto n = sections.order(), K = data.lines(), p = data.outputs;
+    const auto lambda = evaluationPoints(data.frequency, 0.0, sections.alpha);
+    const Eigen::MatrixXcd basis = partialFractions(sections, lambda);
+    TallQr qr(p * (n + 1) + n + 1);
+    for (Index o = 0; o < p; ++o) {
+        const Eigen::VectorXd c = fit.C.row(o).transpose();
+        Eigen::MatrixXcd columns = Eigen::MatrixXcd::Zero(K, qr.columns());
+        columns.middleCols(o * (n + 1), n) = basis;
+        columns.col(o * (n + 1) + n).setOnes();
+        columns.middleCols(p * (n + 1), n) = partialFractionSlopes(sections, lambda, basis, c);
+        for (Index k = 0; k < K; ++k) {
+            const Complex mu = lambda[k] / sections.scale;
+            Complex slope = 0.0;   // dG/dmu
+            for (Index i = 0; i < sections.pairs(); ++i) {
+                const Complex f = basis(k, 2 * i), g = basis(k, 2 * i + 1);
+                slope += c[2 * i + 1] * f - (c[2 * i] * f + c[2 * i + 1] * g) * (2.0 * mu + sections.factors[2 * i]) * f;
+            }
+            if (sections.odd())
+                slope -= c[n - 1] * basis(k, n - 1) * basis(k, n - 1);
+            const double f = data.frequency[static_cast<std::size_t>(k)];
+            if (f > 0.0)   // at 0 Hz lambda does not move with alpha
+                columns(k, qr.columns() - 1) = slope * mu * Complex(std::log(2.0 * std::numbers::pi * f), 0.5 * std::numbers::pi);
         }
-        const double wanted = std::clamp(1.0 / std::sqrt(std::max(result, 1e-12)), 1e-5, largestStep);
-        if (wanted > 0.7 * step && wanted < 1.4 * step)
-            break;
-        step = wanted;
+        const Eigen::VectorXd weights = data.deviation.size() != 0 ? Eigen::VectorXd(data.deviation.col(o).cwiseInverse())
+                                                                   : Eigen::VectorXd(weightsOf(data).col(o));
+        Eigen::MatrixXd rows(2 * K, qr.columns());
+        rows << weights.asDiagonal() * columns.real(), weights.asDiagonal() * columns.imag();
+        qr.fold(rows);
     }
-    return result;
+    const double length = qr.R()(qr.columns() - 1, qr.columns() - 1);
+    return 2.0 * length * length;
 }
 
 std::string decimals(double x)
@@ -212,9 +232,9 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
     auto best = lowestBetween(curve, *lowest, points[index > 0 ? index - 1 : 0].alpha, points[std::min(index + 1, points.size() - 1)].alpha);
 
     const double freedom = freedomOf(data, options.order);
-    const auto unit = [&] { return data.deviation.size() != 0 ? 1.0 : best.V / freedom; };
-    progress.at(0.95, "standard error of alpha");
-    const double second = curvature(curve, best, unit(), options.gridStep);
+    const bool known = data.deviation.size() != 0;
+    const double unit = known ? 1.0 : best.V / freedom;
+    const double second = curvature(best.fit, data);
 
     FractionalIdentification result;
     auto found = judged(realize(best.fit.sections, best.fit.C, best.fit.D), data, best.alpha);
@@ -225,13 +245,16 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
     result.start = best.start;
     result.reason = best.reason;
     for (const auto& point : points)
-        result.curve.push_back({point.alpha, point.V / unit()});
+        result.curve.push_back({point.alpha, point.V / unit});
     const auto above = std::find_if(result.curve.begin(), result.curve.end(), [&](const auto& p) { return p.alpha > best.alpha; });
-    result.curve.insert(above, {best.alpha, best.V / unit()});
+    result.curve.insert(above, {best.alpha, best.V / unit});
 
     const bool inside = best.alpha > options.leastAlpha + 1e-3 && best.alpha < options.mostAlpha - 1e-3;
-    result.alphaDeviation = inside && second > 0.0 ? std::sqrt(std::max(1.0, best.V / (unit() * freedom)) / second) : notKnown;
-    const auto [low, high] = rangeOf(result.curve, best.V / unit());
+    // Of the noise, or of what is left where that is more; without deviations V is the cost, over the power that curvature() does not divide by.
+    const double left = known ? best.V : best.V * weightsOf(data).cwiseProduct(data.value.cwiseAbs()).squaredNorm();
+    const double spread = known ? std::max(1.0, left / freedom) : left / freedom;
+    result.alphaDeviation = inside && second > 0.0 ? std::sqrt(spread / second) : notKnown;
+    const auto [low, high] = rangeOf(result.curve, best.V / unit);
     if (!inside)
         result.warning = "The error falls towards the end of the search at alpha " + decimals(best.alpha) + ", so alpha is not determined.";
     else if (!std::isfinite(result.alphaDeviation) || high > best.alpha + 3.0 * result.alphaDeviation + options.gridStep

@@ -15,8 +15,8 @@ namespace excursion {
 /// standard deviation, the polynomials are orthonormal on them, the start is refined to maximum likelihood, and its poles stay out of Matignon's sector.
 ///
 /// With alpha free, the likelihood with everything else at its best is a curve in alpha alone: V(alpha) = sum |e|^2/sigma^2 = -ln L. It is searched on
-/// a grid, each point with starts of its own, then by a parabola about the lowest point, with poles carried from one alpha to the next
-/// as lambda^(alpha'/alpha). Its curvature is Fisher's information: deviation = (d2V/dalpha2)^(-1/2). Where the model leaves more than the noise, or
+/// a grid, each point with starts of its own, then by golden section about the lowest point, with poles carried from one alpha to the next
+/// as lambda^(alpha'/alpha). Its curvature is Fisher's information, taken from the Jacobian: deviation = (d2V/dalpha2)^(-1/2). Where the model leaves more than the noise, or
 /// no standard deviations are known, the noise is what is left, over K - P/2 complex values of P parameters.
 struct FractionalOptions {
     int order = 5;
