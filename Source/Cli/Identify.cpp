@@ -5,12 +5,17 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Document/JsonText.h"
+#include "Engine/Fractional/FractionalIdentify.h"
+#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Fractional/MixedImpedance.h"
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Linear/StateSpaceFile.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -23,10 +28,10 @@ using Json = nlohmann::ordered_json;
 
 struct IdentifyArguments {
     ResponseChoice response;
-    std::string validation, out;
+    std::string validation, out, alpha;
     std::vector<int> orders;
     std::vector<double> band;
-    bool discrete = false, unrefined = false, quick = false, unstable = false;
+    bool discrete = false, unrefined = false, quick = false, unstable = false, mixed = false;
 };
 
 std::vector<int> ordersFrom(std::vector<int> orders)
@@ -86,16 +91,132 @@ void print(const OrderSweep& sweep, Terminal& terminal)
     terminal.table({"order", "error dB", "weighted dB", "MDL", "validation dB", "stable", "from"}, rows);
 }
 
+/// --alpha: a number, or nothing for "free".
+std::optional<double> alphaFrom(const std::string& text)
+{
+    if (text == "free")
+        return std::nullopt;
+    double alpha = 0.0;
+    const auto end = text.data() + text.size();
+    if (const auto read = std::from_chars(text.data(), end, alpha); read.ec != std::errc {} || read.ptr != end || !(alpha > 0.0 && alpha < 2.0))
+        throw Error(Error::Kind::usage, "--alpha is \"" + text + "\", expected a number between 0 and 2, or free.");
+    return alpha;
+}
+
+std::string withError(double value, double deviation)
+{
+    return significant(value, 5) + (std::isfinite(deviation) && deviation > 0.0 ? " +- " + significant(deviation, 2) : "");
+}
+
+/// A state-space model of commensurate fractional order.
+void runFractional(const IdentifyArguments& options, const OpenResponse& open, const FrequencyData& data, Terminal& terminal)
+{
+    if (options.discrete || options.unrefined || options.unstable || !options.validation.empty())
+        throw Error(Error::Kind::usage, "Fractional models are refined, stable and of continuous time: leave --discrete, --subspace, --allow-unstable and "
+                                        "--validation out with --alpha.");
+    FractionalOptions fractional;
+    fractional.alpha = alphaFrom(options.alpha);
+    fractional.thorough = !options.quick;
+    const auto sweep = sweepFractional(data, ordersFrom(options.orders), fractional, terminal.progress());
+    const auto& chosen = sweep.entries[sweep.chosen];
+    const auto& found = chosen.found;
+    const NamedFractionalStateSpace named {std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, found.model};
+    if (!options.out.empty())
+        writeFractionalStateSpace(named, options.out);
+
+    terminal.say(open.output + " / " + open.input + ", " + std::to_string(data.lines()) + " lines, in s^alpha");
+    std::vector<std::vector<std::string>> rows;
+    Json orders = Json::array();
+    for (const auto& e : sweep.entries) {
+        rows.push_back({std::to_string(e.order), withError(e.found.model.alpha, e.found.alphaDeviation), fixed(e.found.errorDb, 1),
+                        fixed(10.0 * std::log10(std::max(e.found.cost, 1e-40)), 1), significant(e.mdl, 6), fixed(e.found.sectorMargin, 3), e.found.start});
+        Json curve = Json::array();
+        for (const auto& point : e.found.curve)
+            curve.push_back(Json::array({point.alpha, point.likelihood}));
+        orders.push_back({{"order", e.order},
+                          {"alpha", e.found.model.alpha},
+                          {"alphaDeviation", numberOrNull(e.found.alphaDeviation)},
+                          {"errorDb", e.found.errorDb},
+                          {"weightedErrorDb", 10.0 * std::log10(std::max(e.found.cost, 1e-40))},
+                          {"likelihood", numberOrNull(e.found.likelihood)},
+                          {"mdl", e.mdl},
+                          {"sectorMargin", numberOrNull(e.found.sectorMargin)},
+                          {"stable", e.found.stable},
+                          {"start", e.found.start},
+                          {"stopped", e.found.reason},
+                          {"warning", e.found.warning},
+                          {"curve", std::move(curve)}});
+    }
+    terminal.table({"order", "alpha", "error dB", "weighted dB", "MDL", "margin rad", "from"}, rows);
+    if (sweep.entries.size() > 1)
+        terminal.say(wrapped(sweep.sentence));
+    for (const auto& warning : {found.warning, sweep.warning})
+        if (!warning.empty())
+            terminal.say(wrapped(warning));
+    if (!options.out.empty())
+        terminal.say("Wrote " + options.out + ".");
+
+    Json document {{"format", "excursion-fractional-identification"}, {"version", 1}, {"source", options.response.path}};
+    document["lines"] = data.lines();
+    document["orders"] = std::move(orders);
+    document["chosen"] = chosen.order;
+    document["sentence"] = sweep.sentence;
+    document["warning"] = sweep.warning;
+    document["eigenvalues"] = json(poles(found.model.form));
+    document["model"] = toJson(named);
+    terminal.document(document);
+    if (!found.stable)
+        terminal.answer = 1;
+}
+
+/// R + L s^alpha and a resonance, of an impedance.
+void runMixed(const IdentifyArguments& options, const OpenResponse& open, const FrequencyData& data, Terminal& terminal)
+{
+    if (open.output != "voltage" || open.input != "current")
+        throw Error(Error::Kind::usage, "--mixed fits an impedance: add --output voltage --input current.");
+    if (!options.out.empty())
+        throw Error(Error::Kind::usage, "A mixed-order impedance has no file of its own; take its parameters from --json and leave --out out.");
+    MixedImpedanceOptions mixed;
+    mixed.alpha = alphaFrom(options.alpha);
+    const auto fit = fitMixedImpedance(data, mixed);
+    static constexpr std::array<std::array<const char*, 3>, MixedImpedance::parameters> names {
+        {{"resistance", "R", "ohm"}, {"semiInductance", "L", "ohm s^alpha"}, {"alpha", "alpha", "1"}, {"motional", "K = Bl^2/m", "ohm/s"},
+         {"resonance", "f0", "Hz"}, {"quality", "Q", "1"}}};
+    Json document {{"format", "excursion-mixed-impedance"}, {"version", 1}, {"source", options.response.path}};
+    document["lines"] = data.lines();
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const double value = fit.model.values()[k], deviation = fit.deviation.values()[k];
+        rows.push_back({names[k][1], significant(value, 5), significant(deviation, 2), names[k][2]});
+        document[names[k][0]] = {{"value", value}, {"deviation", numberOrNull(deviation)}, {"unit", names[k][2]}};
+    }
+    document["errorDb"] = fit.errorDb;
+    document["likelihood"] = numberOrNull(fit.likelihood);
+    document["converged"] = fit.converged;
+    document["stopped"] = fit.reason;
+    terminal.say("impedance, " + std::to_string(data.lines()) + " lines: R + L s^alpha + K s/(s^2 + w0/Q s + w0^2), error " + fixed(fit.errorDb, 1) + " dB");
+    terminal.table({"parameter", "value", "standard error", "unit"}, rows);
+    terminal.document(document);
+    if (!fit.converged)
+        terminal.answer = 1;
+}
+
 void run(const IdentifyArguments& options, Terminal& terminal)
 {
     if (!options.out.empty())
         requireFilePlace(options.out);
     if (!options.band.empty() && !(options.band[0] < options.band[1]))
         throw Error(Error::Kind::usage, "The band of --band begins at or beyond its end.");
+    if (options.orders.empty() != options.mixed)
+        throw Error(Error::Kind::usage, options.mixed ? "A mixed-order impedance has no order; leave --order out with --mixed." : "Give an --order.");
+    if (options.mixed && options.alpha.empty())
+        throw Error(Error::Kind::usage, "Give --alpha with --mixed: a number, or free.");
     const auto open = openResponse(options.response);
     if (options.discrete && open.sampleRate == 0.0)
         throw Error(Error::Kind::usage, "A frequency response has no sample rate; leave --discrete out.");
     const auto data = frequencyDataOf(within(open.frf, options.band));
+    if (!options.alpha.empty())
+        return options.mixed ? runMixed(options, open, data, terminal) : runFractional(options, open, data, terminal);
     std::optional<FrequencyData> validation;
     if (!options.validation.empty()) {
         auto choice = options.response;
@@ -148,7 +269,9 @@ void addIdentify(CLI::App& app, Terminal& terminal)
     auto* verb = app.add_subcommand("identify", "Identify a linear state-space model of a frequency response, of a given or of the best order")
                      ->group(step::fit);
     verb->add_option("TAKE", o->response.path, "a take, a .csv, .zma or .frd, or the .json of excursion bla")->required();
-    verb->add_option("--order", o->orders, "the order, or several separated by commas to choose from")->delimiter(',')->required()->check(CLI::Range(0, 400));
+    verb->add_option("--order", o->orders, "the order, or several separated by commas to choose from")->delimiter(',')->check(CLI::Range(0, 400));
+    verb->add_option("--alpha", o->alpha, "a model of fractional order, in s^alpha: alpha, or free to find it with its standard error");
+    verb->add_flag("--mixed", o->mixed, "with --alpha: an impedance R + L s^alpha with one resonance, in place of a state-space model");
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
     verb->add_option("--input", o->response.input, "the channel it is explained by; by default the voltage or force");
     verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
@@ -159,7 +282,7 @@ void addIdentify(CLI::App& app, Terminal& terminal)
     verb->add_flag("--quick", o->quick, "fewer starts");
     verb->add_flag("--allow-unstable", o->unstable, "do not keep the poles stable");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
-    verb->footer("Exit code 1: the model is not stable.");
+    verb->footer("Exit code 1: the model is not stable, or the search of --mixed did not converge.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
