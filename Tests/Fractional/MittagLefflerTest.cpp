@@ -72,11 +72,18 @@ TEST_CASE("The Mittag-Leffler function agrees with its series in 180 digits")
         {2.5, 0.0, {-65644.70676805013, 143436.30110030278}, {4.5935942654931474113e+37, -8.6342790590818881494e+37}},
         {3.0, 1.0, {0.0707372016677029, 0.9974949866040544}, {1.0104139651407475985, 0.16644247005164140135}},
         {3.0, -1.5, {7642.691913004848, 2364.1616532907165}, {-163768915758.99849885, 204237154789.52859471}},
+        {0.05, -2.0, {1.1076215334108885, 0.468294873254488}, {-0.46102108610842653219, -0.41720156271034960257}},
+        {0.3, -2.0, {0.08144864620875797, 1.148541564318312}, {-0.42573637151923437972, 0.10035641190004811501}},
+        {0.75, -2.0, {-0.5946035575013605, 0.0}, {-0.24015135185254749464, 0.0}},
+        {1.0, -3.3, {9.210609940028851, 3.8941834230865053}, {156558772.98130316113, -123780196.65810739903}},
+        {1.6, -3.3, {0.12818484391369087, 1.807588314889614}, {6.204137332409452862, -6.0131991484333699402}},
+        {3.0, 12.0, {-1000.0, 0.0}, {1.6018099779300977143e-8, 0.0}},
     };
     for (const auto& r : references) {
         INFO("alpha " << r.alpha << ", beta " << r.beta << ", z " << r.z);
         const double condition = 1.0 + std::pow(std::abs(r.z), 1.0 / r.alpha) / r.alpha;
-        CHECK(relativeError(mittagLeffler(r.alpha, r.beta, r.z), r.value) < 5e-14 * condition);
+        if (r.beta >= -1.5 && r.beta <= 5.0)
+            CHECK(relativeError(mittagLeffler(r.alpha, r.beta, r.z), r.value) < 5e-14 * condition);
         CHECK(relativeError(mittagLeffler(r.alpha, r.beta, r.z), r.value) < 1e-12);
     }
 }
@@ -94,6 +101,6 @@ TEST_CASE("Far out the Mittag-Leffler function follows its algebraic tail")
 
 TEST_CASE("A Mittag-Leffler function that does not exist is refused")
 {
-    refused(Error::Kind::usage, "0.05 to 50", [] { mittagLeffler(0.0, 1.0, 1.0); });
+    refused(Error::Kind::usage, "0.05 to 3", [] { mittagLeffler(0.0, 1.0, 1.0); });
     refused(Error::Kind::usage, "finite", [] { mittagLeffler(0.5, 1.0, std::nan("")); });
 }

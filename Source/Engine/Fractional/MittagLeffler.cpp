@@ -17,7 +17,7 @@ using Complex = std::complex<double>;
 using std::numbers::pi;
 
 constexpr double nepers = 41.0;   // e^-41 = 1.6e-18: what truncation and step may leave of the largest integrand
-constexpr double seriesRadius = 0.9;
+constexpr double seriesRadius = 0.9, poleRadius = 1.5;   // the series is taken for |z| up to the one, or |z|^(1/alpha) up to the other
 
 Complex series(double alpha, double beta, Complex z)
 {
@@ -25,7 +25,7 @@ Complex series(double alpha, double beta, Complex z)
     for (int k = 0, small = 0; k < 4000 && small < 4; ++k, power *= z) {
         const Complex term = power * reciprocalGamma(alpha * k + beta);
         sum += term;
-        small = std::abs(term) <= 1e-18 * std::abs(sum) ? small + 1 : 0;   // a zero of 1/Gamma alone says nothing
+        small = alpha * k + beta > 1.0 && std::abs(term) <= 1e-18 * std::abs(sum) ? small + 1 : 0;   // before, 1/Gamma has zeros
     }
     return sum;
 }
@@ -127,9 +127,9 @@ Complex inverted(double alpha, double beta, Complex z)
 
 Complex mittagLeffler(double alpha, double beta, Complex z)
 {
-    if (!(alpha >= 0.05 && alpha <= 50.0 && std::abs(beta) <= 100.0 && std::isfinite(z.real()) && std::isfinite(z.imag())))
-        throw Error(Error::Kind::usage, "The Mittag-Leffler function is computed for alpha of 0.05 to 50, beta of -100 to 100 and finite arguments.");
-    if (std::abs(z) <= seriesRadius)
+    if (!(alpha >= 0.05 && alpha <= 3.0 && beta >= -3.5 && beta <= 12.0 && std::isfinite(z.real()) && std::isfinite(z.imag())))
+        throw Error(Error::Kind::usage, "The Mittag-Leffler function is computed for alpha of 0.05 to 3, beta of -3.5 to 12 and finite arguments.");
+    if (std::abs(z) <= std::max(seriesRadius, std::pow(poleRadius, alpha)))
         return series(alpha, beta, z);
     // Here the tail is no more than its rounding in the integral: E_{1,1-n}(z) = z^n e^z.
     if (alpha == 1.0 && beta <= 1.0 && beta == std::nearbyint(beta))
