@@ -79,7 +79,8 @@ std::vector<Complex> zeros(const StateSpace& model)
     for (Eigen::Index k = 0; k < n + m; ++k) {
         const Complex alpha = solver.alphas()[k];
         const double beta = solver.betas()[k];
-        if (std::abs(alpha) <= 1e8 * a * std::abs(beta))
+        // Where both vanish there is no zero, but a quotient of roundings.
+        if (std::abs(beta) > 1e-14 && std::abs(alpha) <= 1e8 * a * std::abs(beta))
             values.push_back(alpha / beta);
     }
     return sorted(std::move(values));
