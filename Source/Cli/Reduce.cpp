@@ -7,6 +7,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/Identify.h"
+#include "Engine/Linear/PoleZeroReduction.h"
 #include "Engine/Linear/Reduction.h"
 #include "Engine/Linear/StateSpaceFile.h"
 
@@ -25,14 +26,15 @@ struct ReduceArguments {
     std::string model, out;
     ResponseChoice response;
     int order = -1;
-    double errorDb = 0.0;
+    double errorDb = 0.0, rippleDb = 0.0;
+    std::vector<double> band;
     bool settled = false;
 };
 
 void balance(const ReduceArguments& options, NamedStateSpace& named, Json& document, Terminal& terminal)
 {
     if (options.order < 0)
-        throw Error(Error::Kind::usage, "Give the --order to reduce the model to, or a --response to prune it by.");
+        throw Error(Error::Kind::usage, "Give the --order to reduce the model to, a --ripple to allow, or a --response to prune it by.");
     const auto all = balanced(named.model);
     const double bound = truncationBound(all, options.order);
     named.model = truncated(all, options.order, options.settled ? Truncation::singularPerturbation : Truncation::direct);
@@ -74,12 +76,52 @@ void pruneBy(const ReduceArguments& options, NamedStateSpace& named, Json& docum
     terminal.say("Ended: " + result.reason + ".");
 }
 
+Json rootsJson(const std::vector<std::complex<double>>& roots, double origin)
+{
+    Json list = Json::array();
+    for (const auto& root : roots)
+        list.push_back(Json::array({origin + root.real(), root.imag()}));
+    return list;
+}
+
+void takeOut(const ReduceArguments& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+{
+    PoleZeroReductionOptions reduction;
+    reduction.rippleDb = options.rippleDb;
+    reduction.order = std::max(options.order, 0);
+    if (!options.band.empty()) {
+        reduction.low = options.band[0];
+        reduction.high = options.band[1];
+    }
+    const auto result = reduceByPolesAndZeros(named.model, reduction);
+    const double origin = named.model.continuous() ? 0.0 : 1.0;   // roots are told as the model's own, z or s
+    named.model = result.model;
+    named.delay += result.delay;
+    document["method"] = "poles-and-zeros";
+    document["stopped"] = result.reason;
+    document["delay"] = result.delay;
+    document["steps"] = Json::array();
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& step : result.steps) {
+        document["steps"].push_back({{"order", step.order}, {"cancelled", step.cancelled}, {"poles", rootsJson(step.poles, origin)},
+                                     {"zeros", rootsJson(step.zeros, origin)}, {"boundDb", step.boundDb}, {"rippleDb", step.rippleDb},
+                                     {"errorBound", numberOrNull(step.errorBound)}, {"error", step.error}});
+        rows.push_back({std::to_string(step.order), step.cancelled ? "pair" : "remote", fixed(step.boundDb, 3), fixed(step.rippleDb, 3)});
+    }
+    terminal.table({"order", "taken out", "bound dB", "ripple dB"}, rows);
+    terminal.say("Ended: " + result.reason + ".");
+    if (result.delay != 0.0)
+        terminal.say("The model answers " + significant(-1e6 * result.delay, 4) + " us earlier than the one it came from.");
+}
+
 void run(const ReduceArguments& options, Terminal& terminal)
 {
     requireFilePlace(options.out);
     auto named = readStateSpace(options.model);
     Json document {{"format", "excursion-reduction"}, {"version", 1}, {"source", options.model}, {"from", named.model.order()}};
-    if (options.response.path.empty())
+    if (options.rippleDb > 0.0)
+        takeOut(options, named, document, terminal);
+    else if (options.response.path.empty())
         balance(options, named, document, terminal);
     else
         pruneBy(options, named, document, terminal);
@@ -104,6 +146,13 @@ void addReduce(CLI::App& app, Terminal& terminal)
         ->type_name("TAKE");
     verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
     verb->add_option("--error", o->errorDb, "stop pruning before the weighted error would pass this, dB")->check(CLI::Range(-400.0, 0.0));
+    verb->add_option("--ripple", o->rippleDb, "take out remote poles and zeros, and pairs that cancel, as long as all of it ripples by no more than this, dB")
+        ->check(CLI::Range(0.0, 60.0))
+        ->excludes("--response");
+    verb->add_option("--band", o->band, "lowest and highest frequency that the ripple counts at, Hz; a model of continuous time needs them")
+        ->delimiter(',')
+        ->expected(2)
+        ->needs("--ripple");
     verb->add_flag("--settled", o->settled, "truncated states are taken as settled: exact at frequency 0");
     verb->add_option("--out", o->out, "the smaller model, a .json")->required()->type_name("FILE");
     verb->callback([o, &terminal] { run(*o, terminal); });

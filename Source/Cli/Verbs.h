@@ -27,6 +27,7 @@ void addCheck(CLI::App&, Terminal&);
 void addBla(CLI::App&, Terminal&);
 void addIdentify(CLI::App&, Terminal&);
 void addReduce(CLI::App&, Terminal&);
+void addStabilize(CLI::App&, Terminal&);
 void addPnlss(CLI::App&, Terminal&);
 void addFit(CLI::App&, Terminal&);
 void addCompare(CLI::App&, Terminal&);

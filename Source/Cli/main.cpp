@@ -117,6 +117,7 @@ int main(int argc, char** argv)
     cli::addBla(app, terminal);
     cli::addIdentify(app, terminal);
     cli::addReduce(app, terminal);
+    cli::addStabilize(app, terminal);
     cli::addPnlss(app, terminal);
     cli::addFit(app, terminal);
     cli::addCompare(app, terminal);

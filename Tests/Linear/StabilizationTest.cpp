@@ -365,6 +365,14 @@ TEST_CASE("A stable model is left alone, and what cannot be stabilized is refuse
     CHECK(found.reason == "the model is stable already");
     CHECK(found.model.A == truth.model.A);
     const auto mix = mixed(0.0, normal);
+    StabilizeOptions parting;
+    parting.method = StabilizingMethod::decompose;
+    const auto parted = stabilized(mix.model, sampled(mix.model), parting);
+    REQUIRE(parted.parts);
+    CHECK(parted.model.order() == 5);
+    CHECK(parted.parts->unstable.order() == 3);
+    CHECK(parted.steps[0].errorDb < -200.0);   // the response is the model's own
+    CHECK(parted.steps[1].errorDb > -40.0);
     auto data = sampled(mix.model, 50);
     CHECK(data.lines() == 50);
     CHECK(std::abs(data.value(7, 0) - mix.at(pointOf(data.frequency[7], 0.0))) < 1e-12 * std::abs(data.value(7, 0)));

@@ -10,12 +10,12 @@ namespace excursion {
 
 /// Smaller models by editing poles and zeros, each edit with a bound of what it does to the response (seed 6.1.2 and 6.1.3).
 ///
-/// Remote poles and zeros. |e^jw - r| of a root r lies between least = |1 - |r|| and most = 1 + |r| on the circle, so leaving it out changes the gain by no more
-/// than a ripple, peak to peak, of
+/// Remote poles and zeros. |e^jw - r| of a root r lies between least = |1 - |r|| and most = 1 + |r| on the circle, so leaving it out changes
+/// the gain by no more than a ripple, peak to peak, of
 ///     20 log10(most / least)                                        (eq. 6.2)
-/// Here least and most are taken over the band alone, which is the seed's for the whole circle, and gives continuous time a meaning, where no root is remote
-/// from all of the axis. What is left out is the factor 1 - r/z (|r| < 1) or 1 - z/r, so the gain stays; z itself is a sample of delay, which the result tells and the
-/// seed calls a phase that is to be verified case by case.
+/// Here least and most are taken over the band alone, which is the seed's for the whole circle, and gives continuous time a meaning, where no
+/// root is remote from all of the axis. What is left out is the factor 1 - r/z (|r| < 1) or 1 - z/r, so the gain stays; z itself is a sample of
+/// delay, which the result tells and the seed calls a phase that is to be verified case by case.
 ///
 /// Pairs of a pole p and a zero q that nearly cancel: their factor is 1 + eps(w),
 ///     |eps| <= eps_sup = |p - q| / least(p)                         (eq. 6.7)

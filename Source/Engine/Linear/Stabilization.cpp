@@ -2,7 +2,6 @@
 #include "Engine/Linear/Stabilization.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/Decomposition.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
@@ -228,6 +227,13 @@ Stabilization stabilized(const StateSpace& model, const FrequencyData& data, con
     }
     if (options.method == StabilizingMethod::delay) {
         addDelay(result, data, options, progress);
+        return result;
+    }
+    if (options.method == StabilizingMethod::decompose) {
+        result.parts = decomposed(model);
+        result.model = result.parts->stable;
+        result.steps.push_back(stepOf("stable part", result.model, data));
+        result.reason = "the stable and the unstable part add up to the model";
         return result;
     }
     const bool mirror = options.method == StabilizingMethod::mirror;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Linear/Decomposition.h"
 #include "Engine/Linear/DelayedFit.h"
 #include "Engine/Linear/PartialFractionFit.h"
 #include "Engine/Linear/StateSpace.h"
@@ -34,11 +35,16 @@ StateSpace mirroredByAllPass(const StateSpace&);
 /// @param delay  samples; has to be 0 in continuous time, where no finite order shifts a response
 StateSpace stableProjection(const StateSpace&, Eigen::Index delay = 0);
 
-enum class StabilizingMethod { mirror, project, delay };
+enum class StabilizingMethod {
+    mirror,      ///< mirroredByAllPass(), then a fit
+    project,     ///< stableProjection(), then a fit
+    delay,       ///< a fit of a stable model and a delay
+    decompose    ///< the stable part of decomposed() and nothing else, so that with the unstable one it adds up to the model
+};
 
 struct StabilizeOptions {
     StabilizingMethod method = StabilizingMethod::mirror;
-    bool refit = true;                    ///< after it; the delay is a fit in itself
+    bool refit = true;                    ///< after mirror and project; the delay is a fit in itself
     PoleRefinementOptions refinement;     ///< of the refit; always stable
     std::optional<double> seconds;        ///< the delay to add; else the one that fits best is looked for, see DelayedFit.h
 
@@ -47,7 +53,7 @@ struct StabilizeOptions {
 
 /// Where the model stands after each step.
 struct StabilizationStep {
-    std::string what;               ///< "as it came", "mirrored", "projected", "delayed", "refitted"
+    std::string what;               ///< "as it came", "mirrored", "projected", "delayed", "stable part", "refitted"
     Eigen::Index order = 0;
     bool stable = false;
     double errorDb = 0.0;           ///< unweighted relative rms error to the response (seed 4.26)
@@ -58,6 +64,7 @@ struct Stabilization {
     StateSpace model;
     double delay = 0.0;                            ///< s: the model has the response times exp(-j w delay)
     std::optional<double> delayDeviation;          ///< standard error, where the delay was looked for
+    std::optional<Decomposition> parts;            ///< where the model was decomposed
     std::vector<StabilizationStep> steps;          ///< in the order in which they were taken
     std::string reason = "nothing was stabilized"; ///< how it ended
 };
@@ -68,8 +75,8 @@ struct Stabilization {
 /// Throws Error (usage) for options that make no sense or data that is not of the model's inputs and outputs, and as decomposed() does.
 Stabilization stabilized(const StateSpace&, const FrequencyData& data, const StabilizeOptions& = {}, const Progress& = {});
 
-/// The model's own response where its poles and zeros show: `lines` frequencies, evenly on a logarithmic scale, from a tenth of the slowest pole to ten times the
-/// fastest or to half the sample rate.
+/// The model's own response where its poles show: `lines` frequencies, evenly on a logarithmic scale, from a tenth of the slowest pole to ten
+/// times the fastest or to half the sample rate.
 FrequencyData sampled(const StateSpace&, int lines = 1000);
 
 } // namespace excursion

@@ -69,6 +69,8 @@ Json toJson(const NamedStateSpace& named)
     document["B"] = matrixJson(named.model.B);
     document["C"] = matrixJson(named.model.C);
     document["D"] = matrixJson(named.model.D);
+    if (named.delay != 0.0)
+        document["delay"] = named.delay;
     return document;
 }
 
@@ -86,6 +88,8 @@ NamedStateSpace stateSpaceFromJson(const JsonField& field)
     named.model.B = matrixFrom(field.at("B"), n, m);
     named.model.C = matrixFrom(field.at("C"), p, n);
     named.model.D = matrixFrom(field.at("D"), p, m);
+    if (field.has("delay"))
+        named.delay = field.at("delay").numberWithin(-1e3, 1e3);
     return named;
 }
 

@@ -15,6 +15,7 @@ struct NamedStateSpace {
     std::string name;
     std::vector<std::string> inputs, outputs;   ///< quantities, "voltage"
     StateSpace model;
+    double delay = 0.0;                         ///< s: the model has the response times exp(-j w delay); see Stabilization.h
 };
 
 nlohmann::ordered_json toJson(const NamedStateSpace&);

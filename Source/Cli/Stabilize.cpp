@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
+#include "Cli/OpenResponse.h"
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Document/JsonText.h"
+#include "Engine/Error.h"
+#include "Engine/Linear/Stabilization.h"
+#include "Engine/Linear/StateSpaceFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+namespace excursion::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::pair<const char*, StabilizingMethod> methods[] {{"mirror", StabilizingMethod::mirror},
+                                                               {"project", StabilizingMethod::project},
+                                                               {"delay", StabilizingMethod::delay},
+                                                               {"decompose", StabilizingMethod::decompose}};
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+struct StabilizeArguments {
+    std::string model, out, unstable, method = "mirror";
+    ResponseChoice response;
+    double seconds = unknown;
+    bool unfitted = false;
+};
+
+FrequencyData dataFor(const StabilizeArguments& options, const NamedStateSpace& named)
+{
+    if (options.response.path.empty())
+        return sampled(named.model);
+    if (named.model.inputs() != 1 || named.model.outputs() != 1)
+        throw Error(Error::Kind::data, "Only models with one input and one output are stabilized by a response; leave --frf out.");
+    auto choice = options.response;
+    choice.input = named.inputs[0];
+    choice.output = named.outputs[0];
+    return delayed(frequencyDataOf(openResponse(choice).frf), named.delay);
+}
+
+Stabilization stabilizeBy(const StabilizeArguments& options, const StateSpace& model, const FrequencyData& data, Terminal& terminal)
+{
+    StabilizeOptions stabilizing;
+    for (const auto& [name, method] : methods)
+        if (options.method == name)
+            stabilizing.method = method;
+    stabilizing.refit = !options.unfitted;
+    if (std::isfinite(options.seconds))
+        stabilizing.seconds = options.seconds;
+    return stabilized(model, data, stabilizing, terminal.progress());
+}
+
+void print(const Stabilization& result, Terminal& terminal)
+{
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& step : result.steps)
+        rows.push_back({step.what, std::to_string(step.order), step.stable ? "yes" : "no", fixed(step.errorDb, 1), fixed(step.weightedErrorDb, 1)});
+    terminal.table({"model", "order", "stable", "error dB", "weighted dB"}, rows);
+    if (result.delay != 0.0)
+        terminal.say("The model answers " + significant(1e6 * result.delay, 5) + " us later than the response"
+                     + (result.delayDeviation && std::isfinite(*result.delayDeviation) ? " (+- " + significant(1e6 * *result.delayDeviation, 2) + " us)." : "."));
+    terminal.say("Ended: " + result.reason + ".");
+}
+
+void writeUnstable(const StabilizeArguments& options, NamedStateSpace named, const Decomposition& parts, Json& document, Terminal& terminal)
+{
+    named.model = parts.unstable;
+    document["coupling"] = parts.coupling;
+    document["unstable"] = toJson(named);
+    if (options.unstable.empty())
+        return;
+    writeStateSpace(named, options.unstable);
+    terminal.say("Wrote " + options.unstable + ", the unstable part of order " + std::to_string(parts.unstable.order()) + ".");
+}
+
+void run(const StabilizeArguments& options, Terminal& terminal)
+{
+    requireFilePlace(options.out);
+    if (!options.unstable.empty()) {
+        if (options.method != "decompose")
+            throw Error(Error::Kind::usage, "Only --method decompose has an unstable part to write.");
+        requireFilePlace(options.unstable);
+    }
+    if (std::isfinite(options.seconds) && options.method != "delay")
+        throw Error(Error::Kind::usage, "--seconds goes with --method delay.");
+    auto named = readStateSpace(options.model);
+    const auto data = dataFor(options, named);
+    Json document {{"format", "excursion-stabilization"}, {"version", 1}, {"source", options.model}, {"method", options.method}};
+    document["response"] = options.response.path.empty() ? Json() : Json(options.response.path);
+    const auto result = stabilizeBy(options, named.model, data, terminal);
+    if (result.parts)
+        writeUnstable(options, named, *result.parts, document, terminal);
+    named.model = result.model;
+    named.delay += result.delay;
+    document["steps"] = Json::array();
+    for (const auto& step : result.steps)
+        document["steps"].push_back({{"step", step.what}, {"order", step.order}, {"stable", step.stable}, {"errorDb", step.errorDb},
+                                     {"weightedErrorDb", step.weightedErrorDb}});
+    document["delay"] = result.delay;
+    document["delayDeviation"] = numberOrNull(result.delayDeviation.value_or(unknown));
+    document["stopped"] = result.reason;
+    document["stable"] = isStable(named.model);
+    writeStateSpace(named, options.out);
+    print(result, terminal);
+    terminal.say("Wrote " + options.out + ".");
+    document["model"] = toJson(named);
+    terminal.document(document);
+}
+
+} // namespace
+
+void addStabilize(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<StabilizeArguments>();
+    auto* verb = app.add_subcommand("stabilize", "A stable linear model in place of an unstable one, and what each step costs")->group(step::fit);
+    verb->add_option("MODEL", o->model, "the model, as identify --allow-unstable wrote it")->required();
+    verb->add_option("--method", o->method,
+                     "mirror unstable poles, project on the stable part, add a delay and fit again, or decompose into a stable and an unstable model")
+        ->check(CLI::IsMember({"mirror", "project", "delay", "decompose"}))
+        ->capture_default_str();
+    verb->add_option("--frf", o->response.path, "the take or response that the model is of, to fit it to again; by default the model's own response")
+        ->type_name("TAKE");
+    verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
+    verb->add_option("--seconds", o->seconds, "the delay to add; by default the one that fits best is looked for");
+    verb->add_flag("--no-refit", o->unfitted, "leave out the constrained fit at the end");
+    verb->add_option("--unstable", o->unstable, "write the unstable part of --method decompose, a .json")->type_name("FILE");
+    verb->add_option("--out", o->out, "the stable model, a .json")->required()->type_name("FILE");
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli
