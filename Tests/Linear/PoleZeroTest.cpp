@@ -99,6 +99,18 @@ TEST_CASE("A chain of sections answers as its poles and zeros say, and they are 
     refused(Error::Kind::data, "zero", [&] { poleZeroGainOf(silent); });
 }
 
+TEST_CASE("A model without zeros has none that matter")
+{
+    PoleZeroGain g;
+    g.gain = 2.5;
+    for (const Complex pole : {Complex(-15.0481, 0), Complex(-14.7453, 23.0581), Complex(-33.424, 30.1889), Complex(-976.946, 896.799)})
+        addRoot(g.poles, pole);
+    for (const auto& zero : zeros(realize(g)))
+        CHECK(std::abs(zero) > 1e4);   // from infinity, by rounding
+    for (const auto& zero : poleZeroGainOf(realize(g)).zeros)
+        CHECK(std::abs(zero) > 1e4);
+}
+
 TEST_CASE("Ripples are those of the seed: 6 dB for a root of size 1/3 or 3, and within a band no more")
 {
     for (const double radius : {1.0 / 3.0, 3.0}) {
