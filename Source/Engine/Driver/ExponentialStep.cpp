@@ -56,14 +56,15 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     }
     const auto memories = static_cast<Eigen::Index>(lawPlace_.size());
     const auto outputs = motions + memories, laws = rates + memories;
-    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(outputs, n), E = Eigen::MatrixXd::Zero(n, laws);
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(outputs, n);
+    E_.setZero(n, laws);
     C.topLeftCorner(3, 3).setIdentity();
     C.row(3) = A_.row(0);
     C.row(4) = A_.row(2);
-    E(0, 0) = E(2, 1) = 1.0;
+    E_(0, 0) = E_(2, 1) = 1.0;
     for (Eigen::Index k = 0; k < memories; ++k) {
         const auto place = lawPlace_[static_cast<std::size_t>(k)];
-        C(motions + k, place) = E(place, rates + k) = 1.0;
+        C(motions + k, place) = E_(place, rates + k) = 1.0;
     }
 
     const auto whole = exponential(A_, B, h, terms), half = exponential(A_, B, 0.5 * h, terms);
@@ -83,10 +84,10 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     quadrature_.resize(n, 3 * laws);
     Q_.resize(n, laws);
     for (Eigen::Index q = 0; q < laws; ++q) {
-        const auto weights = quadrature(A_, E.col(q), h);
+        const auto weights = quadrature(A_, E_.col(q), h);
         for (Eigen::Index point = 0; point < 3; ++point)
             quadrature_.col(point * laws + q) = weights.col(point);
-        Q_.col(q) = exponential(A_, E.col(q), 0.5 * h, 1).phi;
+        Q_.col(q) = exponential(A_, E_.col(q), 0.5 * h, 1).phi;
     }
     stage_ = C * Q_;
     last_ = C * (half.decay * Q_);
@@ -120,13 +121,6 @@ std::pair<double, double> ExponentialStep::later(std::span<const double> u)
         end += u[k];
     }
     return {middle, end};
-}
-
-double ExponentialStep::acceleration(const double* z, double u)
-{
-    y_.noalias() = linear_.block(order(), 0, y_.size(), order()) * Eigen::Map<const Eigen::VectorXd>(z, order());
-    ask(u, N_[0].data());
-    return y_[4] + N_[0][1] + motion(u);
 }
 
 double ExponentialStep::step(double* z, std::span<const double> u)

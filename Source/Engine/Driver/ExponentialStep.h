@@ -38,14 +38,12 @@ public:
     /// @param u  coefficients of the input on the step, u(s) = sum u_k s^k, 0 <= s <= 1, V (or N); at most `terms`
     double step(double* z, std::span<const double> u);
 
-    /// dv/dt at state z under input u, m/s^2.
-    double acceleration(const double* z, double u);
-
     /// The largest eigenvalue of dN/d(i, v), in size, over what was visited (1/s): where h times it goes beyond 2, the step is too long
     /// to be stable.
     double fastestLaw();
 
 private:
+    friend class ExponentialAdams;
     friend class SensitivityStep;
 
     static constexpr Eigen::Index rates = 2;     // di/dt and dv/dt lead N
@@ -67,7 +65,7 @@ private:
     bool electrical_;
     double inductance_ = 0.0, mass_ = 0.0;    ///< of the linear part
     std::vector<Eigen::Index> linearPlace_, lawPlace_;   ///< of the linear part's states, and of the laws' memories, in z
-    Eigen::MatrixXd A_;
+    Eigen::MatrixXd A_, E_;
     Eigen::MatrixXd linear_;                  ///< (z, u) -> (z at the end, y at the start, halfway, at the end) without the laws; rows padded
     Eigen::MatrixXd halfway_;                 ///< (z, u) -> z halfway without the laws
     Eigen::MatrixXd quadrature_;              ///< (N at the start, sum of both halfway, at the end) -> what they add to z

@@ -2,6 +2,7 @@
 #include "Engine/Linear/PartialFractionFit.h"
 
 #include "Engine/Error.h"
+#include "Engine/Linear/RealRows.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
@@ -49,14 +50,6 @@ Problem problemOf(const FrequencyData& data, const Sections& sections)
     return Problem(data, sections);
 }
 
-/// Real parts above imaginary parts, each line times its weight.
-void place(MatrixXd& target, Index first, const MatrixXcd& columns, const VectorXd& weights)
-{
-    const auto K = columns.rows();
-    target.block(0, first, K, columns.cols()) = weights.asDiagonal() * columns.real();
-    target.block(K, first, K, columns.cols()) = weights.asDiagonal() * columns.imag();
-}
-
 /// C and D of one output from the triangular factor of [basis, 1 | .. | y], and what the truncated solution leaves behind.
 double solveOutput(const MatrixXd& R, Index n, Index o, PartialFractionFit& fit)
 {
@@ -84,7 +77,7 @@ PartialFractionFit fitAt(const Sections& sections, const Problem& problem)
     const MatrixXcd basis = partialFractions(sections, problem.lambda);
     MatrixXd rows(2 * K, n + 2);
     for (Index o = 0; o < problem.value.cols(); ++o) {
-        place(rows, 0, basis, problem.weights.col(o));
+        placeRealRows(rows, 0, basis, problem.weights.col(o));
         rows.col(n) << problem.weights.col(o), VectorXd::Zero(K);
         rows.col(n + 1) << problem.value.col(o).real(), problem.value.col(o).imag();
         TallQr qr(n + 2);
@@ -109,9 +102,9 @@ Projected projectedJacobian(const PartialFractionFit& fit, const Problem& proble
     MatrixXd rows(2 * K, 2 * n + 2);
     TallQr all(n + 1);
     for (Index o = 0; o < problem.value.cols(); ++o) {
-        place(rows, 0, basis, problem.weights.col(o));
+        placeRealRows(rows, 0, basis, problem.weights.col(o));
         rows.col(n) << problem.weights.col(o), VectorXd::Zero(K);
-        place(rows, n + 1, partialFractionSlopes(sections, problem.lambda, basis, fit.C.row(o).transpose()), problem.weights.col(o));
+        placeRealRows(rows, n + 1, partialFractionSlopes(sections, problem.lambda, basis, fit.C.row(o).transpose()), problem.weights.col(o));
         rows.col(2 * n + 1) << problem.value.col(o).real(), problem.value.col(o).imag();
         TallQr qr(2 * n + 2);
         qr.fold(rows);
@@ -161,10 +154,10 @@ Sections relocatePoles(const Sections& sections, const FrequencyData& data)
     MatrixXd rows(2 * K, 2 * n + 2);
     TallQr sigma(n + 2);
     for (Index o = 0; o < problem.value.cols(); ++o) {
-        place(rows, 0, basis, problem.weights.col(o));
+        placeRealRows(rows, 0, basis, problem.weights.col(o));
         rows.col(n) << problem.weights.col(o), VectorXd::Zero(K);
         const MatrixXcd product = (-problem.value.col(o)).asDiagonal() * basis;
-        place(rows, n + 1, product, VectorXd::Ones(K));
+        placeRealRows(rows, n + 1, product, VectorXd::Ones(K));
         rows.col(2 * n + 1) << -problem.value.col(o).real(), -problem.value.col(o).imag();
         TallQr qr(2 * n + 2);
         qr.fold(rows);

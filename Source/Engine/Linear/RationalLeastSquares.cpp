@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/OrthogonalPowers.h"
+#include "Engine/Linear/RealRows.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
@@ -21,13 +22,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-void place(MatrixXd& rows, Index first, const MatrixXcd& columns, const VectorXd& weights)
-{
-    const auto K = columns.rows();
-    rows.block(0, first, K, columns.cols()) = weights.asDiagonal() * columns.real();
-    rows.block(K, first, K, columns.cols()) = weights.asDiagonal() * columns.imag();
-}
-
 /// The coefficients of N, one column an output, and of D, its leading one left out, with lines divided by |divisor|.
 struct Coefficients {
     MatrixXd N;
@@ -43,9 +37,9 @@ Coefficients solve(const MatrixXcd& powers, const FrequencyData& data, const Mat
     for (Index o = 0; o < p; ++o) {
         const VectorXd w = weights.col(o).cwiseQuotient(divisor);
         const MatrixXcd product = data.value.col(o).asDiagonal() * powers;
-        place(rows, 0, powers, w);
-        place(rows, n + 1, -product.leftCols(n), w);
-        place(rows, 2 * n + 1, product.rightCols(1), w);
+        placeRealRows(rows, 0, powers, w);
+        placeRealRows(rows, n + 1, -product.leftCols(n), w);
+        placeRealRows(rows, 2 * n + 1, product.rightCols(1), w);
         each.emplace_back(2 * n + 2);
         each.back().fold(rows);
         MatrixXd corner = each.back().R().bottomRightCorner(n + 1, n + 1);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Speaker.h"
 
-#include "Engine/Driver/Simulate.h"
 #include "Engine/Linearization/Cubic.h"
 #include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/Subnormals.h"
@@ -15,20 +14,25 @@ namespace {
 constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
 constexpr double followingTime = 0.005;  // s
 
+int stepsFor(const Model& model, double rate)
+{
+    return std::clamp(static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / rate).fastestLaw() / (ExponentialAdams::stable * rate))), 1, 64);
+}
+
 } // namespace
 
 Speaker::Speaker(const Model& model, const RealTimeOptions& options)
     : oversampling_((requireRunnable(model, options), options.oversampling)),
-      substeps_(stableSubsteps(model, options.sampleRate * options.oversampling)),
+      substeps_(stepsFor(model, options.sampleRate * options.oversampling)),
       motion_(model, 1.0 / (options.sampleRate * options.oversampling * substeps_)), reference_(model, options.sampleRate * options.oversampling),
       recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
-      smoothing_(1.0 - std::exp(-1.0 / (followingTime * options.sampleRate))), state_(static_cast<std::size_t>(motion_.order()), 0.0)
+      smoothing_(1.0 - std::exp(-1.0 / (followingTime * options.sampleRate)))
 {
 }
 
 void Speaker::rest()
 {
-    std::fill(state_.begin(), state_.end(), 0.0);
+    motion_.reset();
     past_ = {};
     reference_.reset();
 }
@@ -52,18 +56,18 @@ void Speaker::setLinearShareRemoved(double share)
 double Speaker::advance(double u)
 {
     const auto drive = Cubic::through(past_[2], past_[1], past_[0], u);
+    double acceleration = 0.0;
     for (int s = 0; s < substeps_; ++s)
-        motion_.step(state_.data(), drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
+        acceleration = motion_.step(drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
     past_ = {u, past_[0], past_[1]};
-    const double acceleration = motion_.acceleration(state_.data(), u);
     const double linear = reference_.step(u).a;
-    if (!(std::abs(state_[0]) < implausibleState && std::abs(state_[1]) < implausibleState && std::abs(state_[2]) < implausibleState
+    if (!(std::abs(motion_.state()[0]) < implausibleState && std::abs(motion_.state()[1]) < implausibleState && std::abs(motion_.state()[2]) < implausibleState
           && std::isfinite(acceleration) && std::isfinite(linear))) {
         faulty_ = true;
         return 0.0;
     }
-    peakCurrent_ = std::max(peakCurrent_, std::abs(state_[0]));
-    peakDisplacement_ = std::max(peakDisplacement_, std::abs(state_[1]));
+    peakCurrent_ = std::max(peakCurrent_, std::abs(motion_.state()[0]));
+    peakDisplacement_ = std::max(peakDisplacement_, std::abs(motion_.state()[1]));
     return acceleration - share_ * linear;
 }
 

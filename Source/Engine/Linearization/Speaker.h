@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/ExponentialStep.h"
+#include "Engine/Driver/ExponentialAdams.h"
 #include "Engine/Linearization/Oversampling.h"
 #include "Engine/Linearization/Peak.h"
 #include "Engine/Linearization/RealTime.h"
@@ -16,9 +16,9 @@
 namespace excursion {
 
 /// The driver with its effects, in real time: from the voltage to the acceleration of the cone, which is what is heard in front of it.
-///     u -> up -> exponential steps (see ExponentialStep) -> (a - share a_linear) -> down
+///     u -> up -> exponential steps (see ExponentialAdams) -> (a - share a_linear) -> down
 /// The linear part a_linear is that of Reference; with a share of 1 only the distortion is left.
-/// The steps are as many as the laws ask for (stableSubsteps) and do not adapt; between samples the input is a cubic through the
+/// The steps are as many as the laws ask for and do not adapt; between samples the input is a cubic through the
 /// latest four. As for blocks, faults and the audio thread see Predistorter; after a fault the driver starts from rest and fades in from
 /// silence.
 class Speaker {
@@ -51,11 +51,10 @@ private:
 
     Oversampling oversampling_;
     int substeps_;
-    ExponentialStep motion_;
+    ExponentialAdams motion_;
     Reference reference_;
     Recovery recovery_;
     double smoothing_, share_ = 0.0, shareTarget_ = 0.0;
-    std::vector<double> state_;
     std::array<double, 3> past_ {};   ///< u(n-1), u(n-2), u(n-3)
     std::array<double, Oversampling::longestBlock> block_ {};
     std::array<double, 4 * Oversampling::longestBlock> fine_ {};
