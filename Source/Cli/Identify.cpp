@@ -10,6 +10,7 @@
 #include "Engine/Fractional/MixedImpedance.h"
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Linear/StateSpaceFile.h"
+#include "Engine/Signal/Level.h"
 
 #include <nlohmann/json.hpp>
 
@@ -72,7 +73,7 @@ Json json(const OrderSweepEntry& entry)
 {
     Json object {{"order", entry.order},
                  {"errorDb", entry.found.errorDb},
-                 {"weightedErrorDb", 10.0 * std::log10(std::max(entry.found.cost, 1e-40))},
+                 {"weightedErrorDb", decibelsOf(entry.found.cost)},
                  {"likelihood", numberOrNull(entry.found.likelihood)},
                  {"mdl", entry.mdl},
                  {"validationDb", numberOrNull(entry.validationDb.value_or(std::numeric_limits<double>::quiet_NaN()))},
@@ -86,7 +87,7 @@ void print(const OrderSweep& sweep, Terminal& terminal)
 {
     std::vector<std::vector<std::string>> rows;
     for (const auto& e : sweep.entries)
-        rows.push_back({std::to_string(e.order), fixed(e.found.errorDb, 1), fixed(10.0 * std::log10(std::max(e.found.cost, 1e-40)), 1),
+        rows.push_back({std::to_string(e.order), fixed(e.found.errorDb, 1), fixed(decibelsOf(e.found.cost), 1),
                         significant(e.mdl, 6), e.validationDb ? fixed(*e.validationDb, 1) : "-", e.found.stable ? "yes" : "no", e.found.start});
     terminal.table({"order", "error dB", "weighted dB", "MDL", "validation dB", "stable", "from"}, rows);
 }
@@ -129,7 +130,7 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     Json orders = Json::array();
     for (const auto& e : sweep.entries) {
         rows.push_back({std::to_string(e.order), withError(e.found.model.alpha, e.found.alphaDeviation), fixed(e.found.errorDb, 1),
-                        fixed(10.0 * std::log10(std::max(e.found.cost, 1e-40)), 1), significant(e.mdl, 6), fixed(e.found.sectorMargin, 3), e.found.start});
+                        fixed(decibelsOf(e.found.cost), 1), significant(e.mdl, 6), fixed(e.found.sectorMargin, 3), e.found.start});
         Json curve = Json::array();
         for (const auto& point : e.found.curve)
             curve.push_back(Json::array({point.alpha, point.likelihood}));
@@ -137,7 +138,7 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
                           {"alpha", e.found.model.alpha},
                           {"alphaDeviation", numberOrNull(e.found.alphaDeviation)},
                           {"errorDb", e.found.errorDb},
-                          {"weightedErrorDb", 10.0 * std::log10(std::max(e.found.cost, 1e-40))},
+                          {"weightedErrorDb", decibelsOf(e.found.cost)},
                           {"likelihood", numberOrNull(e.found.likelihood)},
                           {"mdl", e.mdl},
                           {"sectorMargin", numberOrNull(e.found.sectorMargin)},

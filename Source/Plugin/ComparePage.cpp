@@ -59,9 +59,10 @@ ComparePage::ComparePage(Window& window) : Page(window)
     addAndMakeVisible(wave_);
 }
 
-void ComparePage::show(const Findings& findings)
+void ComparePage::show(const std::shared_ptr<const Findings>& fresh)
 {
-    findings_ = std::make_shared<const Findings>(findings);
+    findings_ = fresh;
+    const auto& findings = *fresh;
     const auto& ladder = findings.file.ladder;
     const int before = rung_.getNumItems();
     juce::StringArray rungs, channels, levels;

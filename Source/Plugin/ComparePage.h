@@ -14,7 +14,7 @@ class ComparePage : public Page {
 public:
     explicit ComparePage(Window&);
 
-    void show(const Findings&) override;
+    void show(const std::shared_ptr<const Findings>&) override;
     void paint(juce::Graphics&) override;
     void resized() override;
 

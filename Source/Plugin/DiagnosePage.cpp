@@ -147,9 +147,10 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
 
 DiagnosePage::~DiagnosePage() = default;
 
-void DiagnosePage::show(const Findings& findings)
+void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
 {
-    findings_ = std::make_shared<const Findings>(findings);
+    findings_ = fresh;
+    const auto& findings = *fresh;
     const auto& ladder = findings.file.ladder;
     candidates_.clear();
     falls_.clear();

@@ -15,7 +15,7 @@ public:
     explicit DiagnosePage(Window&);
     ~DiagnosePage() override;
 
-    void show(const Findings&) override;
+    void show(const std::shared_ptr<const Findings>&) override;
     void tick() override;
     void paint(juce::Graphics&) override;
     void resized() override;

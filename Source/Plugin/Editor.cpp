@@ -108,11 +108,11 @@ void Editor::update()
         seen_ = status.version;
         if (const auto findings = owner_.session().findings())
             for (auto* page : pages_)
-                page->show(*findings);
+                page->show(findings);
     }
     // A host may have restored another state.
-    if (auto text = toJson(owner_.model()).dump(); text != shown_) {
-        shown_ = std::move(text);
+    if (const auto version = owner_.modelVersion(); version != shown_) {
+        shown_ = version;
         linearize_.showModel(owner_.model());
     }
     pages_[page_]->tick();

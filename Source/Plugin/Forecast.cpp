@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Forecast.h"
 
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
 
-#include <nlohmann/json.hpp>
+#include <utility>
 
 namespace excursion::plugin {
 
@@ -18,12 +17,7 @@ Forecast::~Forecast()
 
 void Forecast::ask(const Model& model, const LinearizationControls& controls, double volts)
 {
-    auto text = toJson(model).dump() + " " + std::to_string(controls.amount) + " " + std::to_string(controls.displacementLimit) + " "
-              + std::to_string(controls.voltageLimit) + " " + std::to_string(volts);
     const std::lock_guard lock(mutex_);
-    if (text == last_)
-        return;
-    last_ = std::move(text);
     open_ = Question {model, controls, volts};
     changed_.notify_all();
 }

@@ -18,7 +18,6 @@ public:
     Forecast();
     ~Forecast();
 
-    /// Nothing happens when the question is the one that was asked last.
     void ask(const Model&, const LinearizationControls&, double volts);
 
     /// The answer, once.
@@ -35,7 +34,6 @@ private:
     std::mutex mutex_;
     std::condition_variable_any changed_;
     std::optional<Question> open_;
-    std::string last_;   ///< what was asked last, as text
     std::optional<PredictedDistortion> answer_;
     std::jthread thread_;
 };

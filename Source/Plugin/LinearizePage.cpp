@@ -7,6 +7,8 @@
 #include "Plots/Engineering.h"
 #include "Plots/Plots.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -93,8 +95,11 @@ void LinearizePage::choose()
 void LinearizePage::showForecast()
 {
     const auto recipe = processor_.parameters().recipe();
-    const auto model = withoutOff(processor_.model(), recipe);
-    forecast_.ask(model, controlsOf(recipe, model), recipe.fullScale);
+    if (auto question = std::pair {processor_.modelVersion(), toJson(recipe).dump()}; question != asked_) {
+        asked_ = std::move(question);
+        const auto model = withoutOff(processor_.model(), recipe);
+        forecast_.ask(model, controlsOf(recipe, model), recipe.fullScale);
+    }
     const auto answer = forecast_.take();
     if (!answer)
         return;

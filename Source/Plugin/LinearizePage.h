@@ -6,7 +6,10 @@
 #include "Plugin/Page.h"
 #include "Plugin/PlotView.h"
 
+#include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace excursion::plugin {
@@ -46,6 +49,7 @@ private:
     PlotView distortion_;
     Meter excursion_ {"Excursion"}, voltage_ {"Voltage"};
     Forecast forecast_;
+    std::pair<std::uint64_t, std::string> asked_;   ///< version of the model, and the recipe, that the forecast is of
     std::unique_ptr<juce::FileChooser> chooser_;
     int faults_ = 0;
 };

@@ -122,8 +122,9 @@ void MeasurePage::choose()
     });
 }
 
-void MeasurePage::show(const Findings& findings)
+void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)
 {
+    const auto& findings = *fresh;
     const bool spectra = std::holds_alternative<Spectra>(*findings.take);
     verdict_.setText(spectra ? juce::String("A frequency response: its linear effects can be told.") : words(findings.report.verdict()), juce::dontSendNotification);
     verdict_.setColour(juce::Label::textColourId, findings.report.fitForUse() ? look::good : look::warning);

@@ -15,7 +15,7 @@ public:
     /// @param devices  of the app; null within a host
     MeasurePage(Window&, juce::AudioDeviceManager* devices);
 
-    void show(const Findings&) override;
+    void show(const std::shared_ptr<const Findings>&) override;
     void tick() override;
     void resized() override;
 

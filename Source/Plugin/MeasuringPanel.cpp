@@ -13,9 +13,9 @@ namespace {
 constexpr int period = 16384, settlePeriods = 1, periods = 3, realizations = 3;
 
 /// A positive number out of a text field.
-double entered(const juce::TextEditor& editor, const char* what)
+double entered(const juce::String& field, const char* what)
 {
-    const auto text = editor.getText().trim();
+    const auto text = field.trim();
     const double value = text.getDoubleValue();
     if (!text.containsOnly("0123456789.eE-+") || !(value > 0.0) || !std::isfinite(value))
         throw Error(Error::Kind::usage, std::string("\"") + text.toStdString() + "\" is no " + what + ": enter a number above zero.");
@@ -42,7 +42,7 @@ MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices
         input.title.setText("Input " + juce::String(k + 1), juce::dontSendNotification);
         input.role.addItem("not used", 1);
         for (std::size_t q = 0; q < quantities.size(); ++q)
-            input.role.addItem(words(std::string(name(quantities[q]))), static_cast<int>(q) + 2);
+            input.role.addItem(words(name(quantities[q])), static_cast<int>(q) + 2);
         input.role.setSelectedId(1, juce::dontSendNotification);
         input.role.onChange = [this, &input] { relabel(input); };
         input.fullScale.setText("1");
@@ -77,7 +77,7 @@ void MeasuringPanel::relabel(Input& input)
 {
     const int q = input.role.getSelectedId() - 2;
     input.fullScale.setEnabled(q >= 0);
-    input.unit.setText(q >= 0 ? words(std::string(siUnit(quantities[static_cast<std::size_t>(q)]))) + " at full scale" : juce::String(), juce::dontSendNotification);
+    input.unit.setText(q >= 0 ? words(siUnit(quantities[static_cast<std::size_t>(q)])) + " at full scale" : juce::String(), juce::dontSendNotification);
 }
 
 void MeasuringPanel::setRole(int input, Quantity quantity, double fullScale)
@@ -101,18 +101,15 @@ ExcitationPlanOptions MeasuringPanel::planOptions() const
     ExcitationPlanOptions options;
     options.multisine.sampleRate = rateOf(devices_);
     options.multisine.period = options.multisine.sampleRate > 64000.0 ? 2 * period : period;
-    options.multisine.bandLow = entered(low_, "frequency");
-    options.multisine.bandHigh = entered(high_, "frequency");
+    options.multisine.bandLow = entered(low_.getText(), "frequency");
+    options.multisine.bandHigh = entered(high_.getText(), "frequency");
     options.settlePeriods = settlePeriods;
     options.periods = periods;
     options.realizations = realizations;
     options.levels.clear();
     for (const auto& level : juce::StringArray::fromTokens(levels_.getText(), " ,;", ""))
-        if (level.isNotEmpty()) {
-            juce::TextEditor one;
-            one.setText(level);
-            options.levels.push_back(entered(one, "level"));
-        }
+        if (level.isNotEmpty())
+            options.levels.push_back(entered(level, "level"));
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The excitation cannot be played: " + reason + ".");
@@ -131,7 +128,7 @@ std::vector<InputRole> MeasuringPanel::roles() const
         for (const auto& other : result)
             if (other.quantity == quantity)
                 throw Error(Error::Kind::usage, "Two inputs are the " + std::string(name(quantity)) + ": choose one.");
-        result.push_back({k, quantity, entered(input.fullScale, "calibration")});
+        result.push_back({k, quantity, entered(input.fullScale.getText(), "calibration")});
     }
     return result;
 }
@@ -144,7 +141,7 @@ void MeasuringPanel::preview()
         const double seconds = static_cast<double>(options.multisine.period * (options.settlePeriods + options.periods) * options.realizations)
                              * static_cast<double>(options.levels.size()) / options.multisine.sampleRate;
         // A random-phase multisine peaks at some four times its rms.
-        const double peak = 4.0 * options.levels.back(), most = entered(fullScale_, "voltage");
+        const double peak = 4.0 * options.levels.back(), most = entered(fullScale_.getText(), "voltage");
         preview_.setText("Plays " + whole(seconds) + " s of odd multisines, to about " + juce::String(peak, 1) + " V peak"
                              + (peak > most ? ", more than the output can give!" : "."),
                          juce::dontSendNotification);
@@ -162,7 +159,7 @@ void MeasuringPanel::start()
         if (device == nullptr || !device->isOpen())
             throw Error(Error::Kind::usage, "No audio device is open: choose one first.");
         auto plan = planExcitation(planOptions());
-        const double fullScale = entered(fullScale_, "voltage");
+        const double fullScale = entered(fullScale_.getText(), "voltage");
         for (const double volts : plan.input().samples)
             if (std::abs(volts) > fullScale)
                 throw Error(Error::Kind::usage, "The loudest level peaks above what the output can give: lower the levels or turn up the amplifier.");

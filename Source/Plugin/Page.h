@@ -4,8 +4,9 @@
 #include "Plugin/Juce.h"
 #include "Plugin/Processor.h"
 #include "Plugin/Session.h"
+#include "Plugin/Text.h"
 
-#include <cmath>
+#include <memory>
 
 namespace excursion::plugin {
 
@@ -26,19 +27,13 @@ class Page : public juce::Component {
 public:
     explicit Page(Window& window) : window_(window) {}
 
-    virtual void show(const Findings&) {}   ///< they are new
-    virtual void tick() {}                  ///< 20 times a second, while the page is seen
+    virtual void show(const std::shared_ptr<const Findings>&) {}   ///< they are new; never null
+    virtual void tick() {}                                         ///< 20 times a second, while the page is seen
 
 protected:
     Session& session() { return window_.processor().session(); }
 
     Window& window_;
 };
-
-/// A whole number; juce::String(value, 0) would write all decimals that there are.
-inline juce::String whole(double value) { return juce::String(static_cast<juce::int64>(std::llround(value))); }
-
-/// UTF-8 as a string of JUCE.
-inline juce::String words(const std::string& text) { return juce::String::fromUTF8(text.c_str()); }
 
 } // namespace excursion::plugin

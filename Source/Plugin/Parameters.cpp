@@ -2,6 +2,7 @@
 #include "Plugin/Parameters.h"
 
 #include "Engine/Driver/Catalogue.h"
+#include "Plugin/Text.h"
 
 #include <cmath>
 
@@ -9,8 +10,6 @@ namespace excursion::plugin {
 namespace {
 
 constexpr int versionHint = 1;
-
-juce::String text(std::string_view characters) { return juce::String::fromUTF8(characters.data(), static_cast<int>(characters.size())); }
 
 juce::AudioParameterFloat* number(juce::AudioProcessor& processor, const char* id, const char* title, const char* unit, float least, float most,
                                   float step, float centre, float value)
@@ -35,7 +34,7 @@ Parameters::Parameters(juce::AudioProcessor& processor)
 {
     juce::StringArray titles;
     for (const auto which : modes)
-        titles.add(text(title(which)));
+        titles.add(words(title(which)));
     mode_ = new juce::AudioParameterChoice({"mode", versionHint}, "Mode", titles, 0);
     processor.addParameter(mode_);
     fullScale_ = number(processor, "fullScale", "Volts at 0 dBFS", "V", 0.01f, 200.0f, 0.01f, 10.0f, 10.0f);
@@ -44,7 +43,7 @@ Parameters::Parameters(juce::AudioProcessor& processor)
     voltageLimit_ = number(processor, "voltageLimit", "Voltage limit", "V", 0.01f, 1000.0f, 0.01f, 30.0f, 100.0f);
     trim_ = number(processor, "trim", "Output trim", "dB", -60.0f, 24.0f, 0.1f, 0.0f, 0.0f);
     for (const auto* effect : catalogue()) {
-        auto* on = new juce::AudioParameterBool({"effect-" + text(effect->id()), versionHint}, text(effect->title()), true);
+        auto* on = new juce::AudioParameterBool({"effect-" + words(effect->id()), versionHint}, words(effect->title()), true);
         processor.addParameter(on);
         on->addListener(this);
         effects_.push_back(on);

@@ -2,7 +2,7 @@
 #include "Plugin/PlotView.h"
 
 #include "Plugin/Look.h"
-#include "Plugin/Page.h"
+#include "Plugin/Text.h"
 
 #include <algorithm>
 #include <array>

@@ -81,6 +81,7 @@ void Processor::setModel(const Model& model)
     requireRunnable(model, options(sampleRate_ > 0.0 ? sampleRate_ : 48000.0));
     requireRunnable(withoutOff(model, parameters_.recipe()), options(sampleRate_ > 0.0 ? sampleRate_ : 48000.0));
     model_ = model;
+    modelVersion_.fetch_add(1, std::memory_order_release);
     build();
 }
 

@@ -36,6 +36,7 @@ public:
     /// Any thread but the audio thread. Throws Error for a model that cannot be run; then the one before stays.
     void setModel(const Model&);
     Model model() const;
+    std::uint64_t modelVersion() const { return modelVersion_.load(std::memory_order_acquire); }   ///< counts the models, from 1
 
     /// Since the last call, over all channels.
     struct Meters {
@@ -81,6 +82,7 @@ private:
     Parameters parameters_;
     mutable std::mutex mutex_;   ///< of what follows; never locked on the audio thread
     Model model_;
+    std::atomic<std::uint64_t> modelVersion_ {1};
     double sampleRate_ = 0.0;    ///< 0: not prepared
     std::atomic<double> measuredDisplacement_ {0.0};
     std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;   ///< changed only while no audio runs

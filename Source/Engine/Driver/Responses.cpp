@@ -4,6 +4,7 @@
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/PistonBand.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -272,7 +273,7 @@ double responseErrorDb(const Model& model, const ResponseTarget& target)
         error += weight * std::norm(value - target.value[f]);
         power += weight * std::norm(target.value[f]);
     }
-    return 10.0 * std::log10(std::max(error / power, 1e-40));
+    return decibelsOf(error / power);
 }
 
 } // namespace excursion

@@ -121,9 +121,9 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
     return true;
 }
 
-int stableSubsteps(const Model& model, double sampleRate)
+int stableSubsteps(const Model& model, double sampleRate, double limit)
 {
-    return std::clamp(static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (2.0 * sampleRate))), 1, 64);
+    return std::clamp(static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (limit * sampleRate))), 1, 64);
 }
 
 bool SimulationOptions::isValid(std::string* reason) const

@@ -17,7 +17,7 @@ struct Trajectory {
     std::vector<double> current, displacement, velocity, acceleration;   ///< A, m, m/s, m/s^2
 };
 
-/// A voltage (or force) record, upsampled so that Runge-Kutta steps find the band-limited input between the samples.
+/// A voltage (or force) record, upsampled so that steps find the band-limited input between the samples.
 class Drive {
 public:
     /// @param samples     V (or N), starting from silence
@@ -55,8 +55,9 @@ bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, c
 bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, std::size_t first,
                    const std::vector<Quantity>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
 
-/// The fewest steps a sample with which both are stable.
-int stableSubsteps(const Model&, double sampleRate);
+/// The fewest steps a sample, at most 64, with which the laws' fastest eigenvalue times the step stays within the limit; by default that up
+/// to which both of the above are stable.
+int stableSubsteps(const Model&, double sampleRate, double limit = 2.0);
 
 struct SimulationOptions {
     double tolerance = 1e-5;   ///< largest relative rms change of any channel when the step is halved

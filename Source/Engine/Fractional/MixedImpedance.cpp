@@ -2,6 +2,7 @@
 #include "Engine/Fractional/MixedImpedance.h"
 
 #include "Engine/Error.h"
+#include "Engine/Signal/Level.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -208,7 +209,7 @@ MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpeda
     double left = 0.0;
     for (Index k = 0; k < data.lines(); ++k)
         left += std::norm(fit.model.at(data.frequency[static_cast<std::size_t>(k)]) - data.value(k, 0));
-    fit.errorDb = 10.0 * std::log10(std::max(left / data.value.squaredNorm(), 1e-40));
+    fit.errorDb = decibelsOf(left / data.value.squaredNorm());
     fit.likelihood = known ? 0.5 * r.squaredNorm() : std::numeric_limits<double>::quiet_NaN();
     return fit;
 }

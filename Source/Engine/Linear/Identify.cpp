@@ -6,6 +6,7 @@
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
 #include "Engine/Linear/TallQr.h"
+#include "Engine/Signal/Level.h"
 
 #include <Eigen/LU>
 
@@ -219,7 +220,7 @@ LinearIdentification judged(StateSpace model, const FrequencyData& data, double 
         }
     }
     result.cost = weightedError / weightedPower;
-    result.errorDb = 10.0 * std::log10(std::max(error / power, 1e-40));
+    result.errorDb = decibelsOf(error / power);
     result.likelihood = data.deviation.size() != 0 ? likelihood : std::numeric_limits<double>::quiet_NaN();
     result.stable = alpha == 1.0 ? isStable(model) : isStable(sectionsOf(poles(model), 0.0, 1.0, alpha));
     result.model = std::move(model);

@@ -5,6 +5,7 @@
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/ThinSvd.h"
+#include "Engine/Signal/Level.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -122,7 +123,7 @@ Pruning prune(const PartialFractionFit& start, const FrequencyData& data, const 
     if (!isStable(start.sections))
         throw Error(Error::Kind::data, "Only a stable model can be pruned: stabilize it first.");
     const auto stepOf = [](const PartialFractionFit& fit) {
-        return PruningStep {fit.sections.order(), fit.cost, 10.0 * std::log10(std::max(fit.cost, 1e-40))};
+        return PruningStep {fit.sections.order(), fit.cost, decibelsOf(fit.cost)};
     };
     PoleRefinementOptions refinement;
     refinement.maximumIterations = options.refinementIterations;

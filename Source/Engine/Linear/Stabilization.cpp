@@ -6,6 +6,7 @@
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
 #include "Engine/Linear/Sylvester.h"
+#include "Engine/Signal/Level.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -113,7 +114,7 @@ StateSpace timesAllPass(const StateSpace& model)
 StabilizationStep stepOf(const char* what, const StateSpace& model, const FrequencyData& data)
 {
     const auto found = judged(model, data);
-    return {what, model.order(), found.stable, found.errorDb, 10.0 * std::log10(std::max(found.cost, 1e-40))};
+    return {what, model.order(), found.stable, found.errorDb, decibelsOf(found.cost)};
 }
 
 double scaleFor(const StateSpace& model, const FrequencyData& data)

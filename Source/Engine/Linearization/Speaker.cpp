@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Speaker.h"
 
+#include "Engine/Driver/Simulate.h"
 #include "Engine/Linearization/Cubic.h"
 #include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/Subnormals.h"
@@ -14,16 +15,11 @@ namespace {
 constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
 constexpr double followingTime = 0.005;  // s
 
-int stepsFor(const Model& model, double rate)
-{
-    return std::clamp(static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / rate).fastestLaw() / (ExponentialAdams::stable * rate))), 1, 64);
-}
-
 } // namespace
 
 Speaker::Speaker(const Model& model, const RealTimeOptions& options)
     : oversampling_((requireRunnable(model, options), options.oversampling)),
-      substeps_(stepsFor(model, options.sampleRate * options.oversampling)),
+      substeps_(stableSubsteps(model, options.sampleRate * options.oversampling, ExponentialAdams::stable)),
       motion_(model, 1.0 / (options.sampleRate * options.oversampling * substeps_)), reference_(model, options.sampleRate * options.oversampling),
       recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
       smoothing_(1.0 - std::exp(-1.0 / (followingTime * options.sampleRate)))

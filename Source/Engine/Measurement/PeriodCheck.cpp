@@ -4,6 +4,7 @@
 #include "Engine/Measurement/Hum.h"
 #include "Engine/Measurement/PeriodShift.h"
 #include "Engine/Measurement/Periods.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,6 @@ std::string rounded(double value, int decimals)
     return error == std::errc() ? std::string(text.data(), end) : std::string("?");
 }
 
-double decibels(double ratio) { return 10.0 * std::log10(std::max(ratio, 1e-40)); }
 
 /// Powers of one period of one channel at one level, on each line.
 struct Powers {
@@ -50,7 +50,7 @@ Powers powersOf(const Measurement& take, const Channel& channel, int level)
 struct SignalAndNoise {
     double signal = 0.0, noise = 0.0;
     /// Not below -20 dB, where the estimate of the signal is noise itself.
-    double db() const { return decibels(std::max(signal, 0.01 * noise) / std::max(noise, 1e-30 * signal)); }
+    double db() const { return decibelsOf(std::max(signal, 0.01 * noise) / std::max(noise, 1e-30 * signal)); }
 };
 
 SignalAndNoise between(const Powers& powers, const std::vector<int>& lines, int periods, int low, int high)
@@ -90,7 +90,7 @@ std::optional<double> settling(const Measurement& take, const Channel& channel, 
     const double excess = difference - expected;
     if (excess < 0.5 * expected || !(signal > 0.0))
         return -300.0;
-    return decibels(excess / signal);
+    return decibelsOf(excess / signal);
 }
 
 } // namespace
@@ -145,7 +145,7 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
         all += powers.mean[k];
         scatter += powers.noise[k];
     }
-    figures.repeatabilityDb = decibels(scatter / all);
+    figures.repeatabilityDb = decibelsOf(scatter / all);
     if (*figures.repeatabilityDb > -20.0)
         problems.push_back({"poor-repeatability", channel.quantity, *figures.repeatabilityDb, "dB",
                             *figures.repeatabilityDb > -6.0,

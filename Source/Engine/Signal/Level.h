@@ -25,4 +25,7 @@ inline double rmsOf(std::span<const double> samples)
     return samples.empty() ? 0.0 : std::sqrt(power / static_cast<double>(samples.size()));
 }
 
+/// Ratio of powers in dB; -400 of nothing.
+inline double decibelsOf(double powerRatio) { return 10.0 * std::log10(std::max(powerRatio, 1e-40)); }
+
 } // namespace excursion
