@@ -133,7 +133,10 @@ Improvement& Session::improvement()
 void Session::publishLadder()
 {
     auto fresh = std::make_shared<Findings>(*findings());
-    fresh->file.ladder = improvement_->ladder();
+    if (fresh->file.responses.empty())
+        fresh->file = makeLadderFile(improvement_->ladder(), *fresh->take, fresh->source);
+    else
+        fresh->file.ladder = improvement_->ladder();
     fresh->waveforms.clear();
     const auto& levels = improvement_->ladder().rungs.back().comparison.levels;
     for (std::size_t level = 0; level < levels.size(); ++level)

@@ -90,6 +90,7 @@ TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clic
     const auto first = processor.session().findings();
     REQUIRE(first->file.ladder.rungs.size() == 1);
     REQUIRE(first->file.ladder.verdict == Verdict::missingEffect);
+    CHECK(!first->file.responses.empty());   // of which the page and a report draw the evidence of effects without a law
     click(editor, "Compare");
     CHECK(picture(editor, "compare") > 1000);
     click(editor, "Diagnose");
