@@ -3,9 +3,10 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/ThinSvd.h"
 #include "Engine/Polynomial/Recursion.h"
+#include "Engine/Polynomial/Search.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 
 #include <Eigen/LU>
 
@@ -21,7 +22,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double boldness = 100.0;   // by how much the damping falls with every step that is taken
 
 /// The gain L of the stationary Kalman filter x(t+1|t) of a linear model, process noise on all states in the proportion of their
 /// movement: by iterating Riccati's equation, which converges for an unstable A as well.
@@ -41,15 +41,14 @@ MatrixXd kalmanGain(const StateSpace& model, const VectorXd& movement, const Vec
     return L;
 }
 
-/// The record's errors, weighted; and how the fit sees them.
-class Problem {
+/// The records' errors, weighted; and how the fit sees them.
+class SimulationError : public SearchProblem {
 public:
-    Problem(const std::vector<PnlssRecord>& records, const PnlssFitOptions& options, const Pnlss& structure)
-        : records_(records), options_(options), recursion_(structure, options.linearFree), n_(structure.linear.order())
+    SimulationError(const std::vector<PnlssRecord>& records, const PnlssFitOptions& options, const Pnlss& structure)
+        : structure_(structure), records_(records), options_(options), recursion_(structure, options.linearFree), n_(structure.linear.order())
     {
-        for (const auto& record : records) {
+        for (const auto& record : records)
             power_ += weighted(record.output.bottomRows(record.output.rows() - record.skip)).squaredNorm();
-        }
         states_.resize(records.size());
         outputs_.resize(records.size());
     }
@@ -63,9 +62,9 @@ public:
         return values;
     }
 
-    Pnlss modelAt(const Pnlss& structure, const VectorXd& values) const
+    Pnlss modelAt(const VectorXd& values) const
     {
-        auto model = structure;
+        auto model = structure_;
         recursion_.setValues(model, values.head(recursion_.parameters()));
         return model;
     }
@@ -81,7 +80,9 @@ public:
     double bound = infinity;
     MatrixXd gain;   ///< empty: not guided
 
-    /// |weighted error|^2 over |weighted output|^2; infinite when the model runs away.
+    /// Of the weighted error over the weighted output.
+    double cost(const VectorXd& values) override { return cost(modelAt(values), values); }
+
     double cost(const Pnlss& model, const VectorXd& values)
     {
         double sum = 0.0;
@@ -93,9 +94,10 @@ public:
         return std::isfinite(sum) ? sum / power_ : infinity;
     }
 
-    /// The triangular factor of [J, error], states and outputs being those of the last cost() at the same values.
-    MatrixXd factor(const Pnlss& model)
+    MatrixXd factor(const VectorXd& values) override
     {
+        const auto model = modelAt(values);
+        cost(model, values);   // for the states
         const auto P = recursion_.parameters(), all = parameters();
         TallQr qr(all + 1);
         for (std::size_t k = 0; k < records_.size(); ++k) {
@@ -136,6 +138,16 @@ public:
         return qr.R();
     }
 
+    /// Follows the output from now on, with the gain of a Kalman filter made for states of the size that the linear model moves at the measured input.
+    void guide(double strength, const VectorXd& values)
+    {
+        auto linear = modelAt(values);
+        linear.E.setZero();
+        linear.F.setZero();
+        const VectorXd moved = std::isfinite(cost(linear, values)) ? movement() : VectorXd::Ones(n_);
+        gain = strength * kalmanGain(linear.linear, 0.1 * moved, outputPower(), 1e-3);
+    }
+
     /// How far the states of the last cost() went, rms of each.
     VectorXd movement() const
     {
@@ -148,6 +160,7 @@ public:
         return (sum / count).cwiseSqrt();
     }
 
+private:
     VectorXd outputPower() const
     {
         VectorXd sum = VectorXd::Zero(records_.front().output.cols());
@@ -156,7 +169,6 @@ public:
         return sum / static_cast<double>(records_.size());
     }
 
-private:
     std::optional<Recursion::Guide> guideOf(const PnlssRecord& record) const
     {
         if (gain.size() == 0)
@@ -193,6 +205,7 @@ private:
         return result;
     }
 
+    const Pnlss& structure_;
     const std::vector<PnlssRecord>& records_;
     const PnlssFitOptions& options_;
     Recursion recursion_;
@@ -272,14 +285,14 @@ double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& recor
         error += (record.output.bottomRows(rows) - outputs.bottomRows(rows)).squaredNorm();
         power += record.output.bottomRows(rows).squaredNorm();
     }
-    return std::isfinite(error) ? 10.0 * std::log10(std::max(error / power, 1e-40)) : infinity;
+    return std::isfinite(error) ? decibelsOf(error / power) : infinity;
 }
 
 PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
                   const PnlssFitOptions& options, const Progress& progress)
 {
     require(start, estimation, validation, options);
-    Problem problem(estimation, options, start);
+    SimulationError problem(estimation, options, start);
     VectorXd values = problem.valuesOf(start);
     PnlssFit result;
     result.model = start;
@@ -287,103 +300,49 @@ PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation
     result.estimationDb = result.validationDb = infinity;
     double bestJudged = infinity;
 
+    const auto judge = [&](const VectorXd& reached, double cost) {
+        const auto model = problem.modelAt(reached);
+        result.history.push_back(decibelsOf(cost));
+        std::vector<VectorXd> initial;
+        if (options.estimateInitialStates)
+            for (std::size_t k = 0; k < estimation.size(); ++k)
+                initial.push_back(problem.initialState(reached, k));
+        const double validationDb = validation.empty() ? std::numeric_limits<double>::quiet_NaN() : relativeErrorDb(model, validation);
+        const double judged = validation.empty() ? cost : validationDb;
+        if (judged < bestJudged) {
+            bestJudged = judged;
+            result.model = model;
+            result.initialStates = std::move(initial);
+            result.validationDb = validationDb;
+            result.estimationDb = relativeErrorDb(model, estimation, result.initialStates);
+        }
+    };
+    SearchOptions searching;
+    searching.costTolerance = options.costTolerance;
+    searching.rankTolerance = options.rankTolerance;
+    searching.begun = [&] {
+        progress.at(static_cast<double>(result.iterations++) / options.maximumIterations, "fitting the polynomial model");
+    };
     auto gains = options.guideGains;
     gains.push_back(0.0);
     int left = options.maximumIterations;
-    for (std::size_t stage = 0; stage < gains.size(); ++stage) {
-        auto model = problem.modelAt(start, values);
+    for (const double gain : gains) {
         problem.bound = 1e12;
         problem.gain.resize(0, 0);
-        if (gains[stage] > 0.0) {
-            // The filter is made for states of the size that the linear model moves at the measured input.
-            auto linear = model;
-            linear.E.setZero();
-            linear.F.setZero();
-            VectorXd movement = VectorXd::Ones(start.linear.order());
-            if (std::isfinite(problem.cost(linear, values)))
-                movement = problem.movement();
-            problem.gain = gains[stage] * kalmanGain(model.linear, 0.1 * movement, problem.outputPower(), 1e-3);
-        }
-        double cost = problem.cost(model, values);
-        if (!std::isfinite(cost))
+        if (gain > 0.0)
+            problem.guide(gain, values);
+        if (!std::isfinite(problem.cost(values)))
             continue;
         problem.bound = 1e3 * std::max(problem.movement().maxCoeff(), 1e-300);
-        double damping = 1.0;
-        int still = 0;
-        const bool last = stage + 1 == gains.size();
         // A guided stage only has to lead to the next.
-        const int share = last ? left : std::min(left, std::max(3, options.maximumIterations / (4 * static_cast<int>(gains.size()))));
-        int used = 0;
-        result.reason = "the largest number of iterations was reached";
-        const auto judge = [&] {
-            if (!last)
-                return;
-            result.history.push_back(10.0 * std::log10(std::max(cost, 1e-40)));
-            std::vector<VectorXd> initial;
-            if (options.estimateInitialStates)
-                for (std::size_t k = 0; k < estimation.size(); ++k)
-                    initial.push_back(problem.initialState(values, k));
-            const double validationDb = validation.empty() ? std::numeric_limits<double>::quiet_NaN() : relativeErrorDb(model, validation);
-            const double judged = validation.empty() ? cost : validationDb;
-            if (judged < bestJudged) {
-                bestJudged = judged;
-                result.model = model;
-                result.initialStates = std::move(initial);
-                result.validationDb = validationDb;
-                result.estimationDb = relativeErrorDb(model, estimation, result.initialStates);
-            }
-        };
-        judge();
-        while (used < share) {
-            progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "fitting the polynomial model");
-            ++used;
-            ++result.iterations;
-            problem.cost(model, values);   // leaves the states of the present model
-            const MatrixXd R = problem.factor(model);
-            const auto P = R.cols() - 1;
-            const VectorXd scale = R.leftCols(P).colwise().norm().transpose().unaryExpr(
-                [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
-            const auto svd = thinSvd(R.topLeftCorner(P, P) * scale.asDiagonal());
-            const auto& s = svd.s;
-            const VectorXd q = svd.U.transpose() * R.col(P).head(P);
-            const auto stepAt = [&](double lambda) -> VectorXd {
-                VectorXd y = VectorXd::Zero(P);
-                for (Index k = 0; k < P; ++k)
-                    if (s[k] > options.rankTolerance * s[0])
-                        y[k] = q[k] * s[k] / (s[k] * s[k] + lambda * s[0] * s[0]);
-                return scale.cwiseProduct(svd.V * y);
-            };
-            // Boldly towards Gauss-Newton: weak directions of the Jacobian have to move early, or the search creeps along curved valleys.
-            double trialCost = infinity, lambda = damping / boldness;
-            VectorXd trialValues;
-            for (int attempt = 0; attempt < 32 && !(trialCost < cost) && lambda < 1e6; ++attempt, lambda *= 10.0) {
-                trialValues = values + stepAt(lambda);
-                trialCost = trialValues.allFinite() ? problem.cost(problem.modelAt(start, trialValues), trialValues) : infinity;
-                damping = std::max(lambda, 1e-30);
-            }
-            if (!(trialCost < cost)) {
-                result.reason = "no step lowers the error any further";
-                result.converged = last;
-                break;
-            }
-            const double gain = (cost - trialCost) / cost;
-            values = trialValues;
-            cost = trialCost;
-            model = problem.modelAt(start, values);
-            judge();
-            still = gain < options.costTolerance ? still + 1 : 0;
-            if (cost < 1e-31) {
-                result.reason = "the error is no more than rounding";
-                result.converged = last;
-                break;
-            }
-            if (still >= 3) {
-                result.reason = "the error no longer falls";
-                result.converged = last;
-                break;
-            }
-        }
-        left = std::max(1, left - used);
+        const bool last = gain == 0.0;
+        searching.maximumIterations = last ? left : std::min(left, std::max(3, options.maximumIterations / (4 * static_cast<int>(gains.size()))));
+        searching.accepted = last ? judge : decltype(searching.accepted) {};
+        const auto summary = search(problem, values, searching);
+        values = summary.values;
+        result.reason = summary.reason;
+        result.converged = last && summary.converged;
+        left = std::max(1, left - summary.iterations);
     }
     result.stable = isStable(result.model.linear) && std::isfinite(result.estimationDb);
     return result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Polynomial/MonomialProducts.h"
 #include "Engine/Polynomial/Pnlss.h"
 
 #include <Eigen/Core>
@@ -48,26 +49,14 @@ private:
         Eigen::Index row;         // states first, then outputs
         Eigen::Index regressor;   // x, u, monomials
     };
-    struct Product {
-        Eigen::Index left, right;   // nodes
-    };
-    struct Slope {   // d(monomial)/d(state) = factor * node
-        Eigen::Index term, state, node;
-        double factor;
-    };
     struct Group {   // columns of one row, side by side
         Eigen::Index row, first, count;
     };
 
-    Eigen::Index node(const Eigen::RowVectorXi& exponents);
-
     Eigen::Index n_, m_, p_;
     std::vector<Column> columns_;
     std::vector<Group> groups_;
-    std::vector<Eigen::RowVectorXi> nodes_;   // 1, z_1 .. z_{n+m}, then products
-    std::vector<Product> products_;           // of nodes 1 + n + m and on
-    std::vector<Eigen::Index> termNode_;
-    std::vector<Slope> slopes_;
+    MonomialProducts monomials_;
 };
 
 } // namespace excursion

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/Lanes.h"
+
+#include "Engine/Dispatch.h"
+
+#include <algorithm>
+
+namespace excursion::lanes {
+
+using Eigen::Index;
+
+namespace {
+
+/// One step for 8 parameters: J = G X, X <- M X + g r. M, G are laid out [entry][time], r and J [time][parameter].
+template <int N, bool general>
+[[gnu::always_inline]] inline void eightColumns(const double* M, const double* G, Index p, const double* r, Index strideR, const double* g, Index row,
+                                                double* X, double* J, Index strideJ, Index sizeJ, Index T)
+{
+    Four a[N], b[N];
+    for (int i = 0; i < N; ++i) {
+        a[i] = *reinterpret_cast<const Four*>(X + abreast * i);
+        b[i] = *reinterpret_cast<const Four*>(X + abreast * i + 4);
+    }
+    for (Index t = 0; t < T; ++t) {
+        for (Index o = 0; o < p; ++o) {
+            Four ya = G[(o * N) * pitch + t] * a[0], yb = G[(o * N) * pitch + t] * b[0];
+            for (int j = 1; j < N; ++j) {
+                const double e = G[(o * N + j) * pitch + t];
+                ya += e * a[j];
+                yb += e * b[j];
+            }
+            double* target = J + o * sizeJ + t * strideJ;
+            *reinterpret_cast<Four*>(target) = ya;
+            *reinterpret_cast<Four*>(target + 4) = yb;
+        }
+        const Four ra = *reinterpret_cast<const Four*>(r + t * strideR), rb = *reinterpret_cast<const Four*>(r + t * strideR + 4);
+        Four na[N], nb[N];
+        for (int i = 0; i < N; ++i) {
+            const double first = M[(i * N) * pitch + t];
+            na[i] = first * a[0];
+            nb[i] = first * b[0];
+            for (int j = 1; j < N; ++j) {
+                const double e = M[(i * N + j) * pitch + t];
+                na[i] += e * a[j];
+                nb[i] += e * b[j];
+            }
+            if constexpr (general) {
+                na[i] += g[i] * ra;
+                nb[i] += g[i] * rb;
+            } else {
+                const double on = i == row ? 1.0 : 0.0;
+                na[i] += on * ra;
+                nb[i] += on * rb;
+            }
+        }
+        for (int i = 0; i < N; ++i) {
+            a[i] = na[i];
+            b[i] = nb[i];
+        }
+    }
+    for (int i = 0; i < N; ++i) {
+        *reinterpret_cast<Four*>(X + abreast * i) = a[i];
+        *reinterpret_cast<Four*>(X + abreast * i + 4) = b[i];
+    }
+}
+
+/// The same for any number of states, X in memory.
+[[gnu::always_inline]] inline void eightColumnsOfMany(Index N, const double* M, const double* G, Index p, const double* r, Index strideR,
+                                                      const double* g, double* X, double* next, double* J, Index strideJ, Index sizeJ, Index T)
+{
+    for (Index t = 0; t < T; ++t) {
+        for (Index o = 0; o < p; ++o) {
+            Four ya {}, yb {};
+            for (Index j = 0; j < N; ++j) {
+                const double e = G[(o * N + j) * pitch + t];
+                ya += e * *reinterpret_cast<const Four*>(X + abreast * j);
+                yb += e * *reinterpret_cast<const Four*>(X + abreast * j + 4);
+            }
+            double* target = J + o * sizeJ + t * strideJ;
+            *reinterpret_cast<Four*>(target) = ya;
+            *reinterpret_cast<Four*>(target + 4) = yb;
+        }
+        const Four ra = *reinterpret_cast<const Four*>(r + t * strideR), rb = *reinterpret_cast<const Four*>(r + t * strideR + 4);
+        for (Index i = 0; i < N; ++i) {
+            Four na = g[i] * ra, nb = g[i] * rb;
+            for (Index j = 0; j < N; ++j) {
+                const double e = M[(i * N + j) * pitch + t];
+                na += e * *reinterpret_cast<const Four*>(X + abreast * j);
+                nb += e * *reinterpret_cast<const Four*>(X + abreast * j + 4);
+            }
+            *reinterpret_cast<Four*>(next + abreast * i) = na;
+            *reinterpret_cast<Four*>(next + abreast * i + 4) = nb;
+        }
+        std::copy(next, next + abreast * N, X);
+    }
+}
+
+} // namespace
+
+EXCURSION_DISPATCH
+void columnsThroughBlock(Index N, const double* M, const double* G, Index p, const double* r, Index strideR, const double* g, Index row, double* X,
+                         double* next, double* J, Index strideJ, Index sizeJ, Index T)
+{
+    const bool one = row >= 0;
+    switch (N) {
+    case 1: return eightColumns<1, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
+    case 2:
+        return one ? eightColumns<2, false>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T)
+                   : eightColumns<2, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
+    case 3:
+        return one ? eightColumns<3, false>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T)
+                   : eightColumns<3, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
+    case 4: return eightColumns<4, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
+    default: return eightColumnsOfMany(N, M, G, p, r, strideR, g, X, next, J, strideJ, sizeJ, T);
+    }
+}
+
+EXCURSION_DISPATCH
+void multiply(double* target, const double* a, const double* b, Index T)
+{
+    for (Index t = 0; t < T; ++t)
+        target[t] = a[t] * b[t];
+}
+
+EXCURSION_DISPATCH
+void addScaled(double* target, double factor, const double* a, Index T)
+{
+    for (Index t = 0; t < T; ++t)
+        target[t] += factor * a[t];
+}
+
+EXCURSION_DISPATCH
+void combine(double* target, const double* W, const double* r, Index rows, Index count)
+{
+    for (Index i = 0; i < rows; i += 4) {
+        Four even {}, odd {};
+        Index k = 0;
+        for (; k + 1 < count; k += 2) {
+            even += r[k] * *reinterpret_cast<const Four*>(W + k * rows + i);
+            odd += r[k + 1] * *reinterpret_cast<const Four*>(W + (k + 1) * rows + i);
+        }
+        if (k < count)
+            even += r[k] * *reinterpret_cast<const Four*>(W + k * rows + i);
+        *reinterpret_cast<Four*>(target + i) = even + odd;
+    }
+}
+
+EXCURSION_DISPATCH
+void toRows(double* rows, Index stride, const double* const* columns, Index T)
+{
+    for (Index t = 0; t < T; ++t)
+        for (Index c = 0; c < abreast; ++c)
+            rows[t * stride + c] = columns[c][t];
+}
+
+EXCURSION_DISPATCH
+void toColumns(double* columns, Index columnStride, const double* rows, Index stride, Index count, Index T)
+{
+    for (Index t = 0; t < T; ++t)
+        for (Index c = 0; c < count; ++c)
+            columns[c * columnStride + t] = rows[t * stride + c];
+}
+
+} // namespace excursion::lanes
