@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Alpha.h"
 #include "Cli/Destination.h"
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
@@ -16,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -90,23 +90,6 @@ void print(const OrderSweep& sweep, Terminal& terminal)
         rows.push_back({std::to_string(e.order), fixed(e.found.errorDb, 1), fixed(decibelsOf(e.found.cost), 1),
                         significant(e.mdl, 6), e.validationDb ? fixed(*e.validationDb, 1) : "-", e.found.stable ? "yes" : "no", e.found.start});
     terminal.table({"order", "error dB", "weighted dB", "MDL", "validation dB", "stable", "from"}, rows);
-}
-
-/// --alpha: a number, or nothing for "free".
-std::optional<double> alphaFrom(const std::string& text)
-{
-    if (text == "free")
-        return std::nullopt;
-    double alpha = 0.0;
-    const auto end = text.data() + text.size();
-    if (const auto read = std::from_chars(text.data(), end, alpha); read.ec != std::errc {} || read.ptr != end || !(alpha > 0.0 && alpha < 2.0))
-        throw Error(Error::Kind::usage, "--alpha is \"" + text + "\", expected a number between 0 and 2, or free.");
-    return alpha;
-}
-
-std::string withError(double value, double deviation)
-{
-    return significant(value, 5) + (std::isfinite(deviation) && deviation > 0.0 ? " +- " + significant(deviation, 2) : "");
 }
 
 /// A state-space model of commensurate fractional order.

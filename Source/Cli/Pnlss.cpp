@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Pnlss.h"
+
 #include "Cli/Destination.h"
-#include "Cli/OpenResponse.h"
-#include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Measurement/FindExcitation.h"
-#include "Engine/Measurement/Periods.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Polynomial/PnlssFile.h"
-#include "Engine/Polynomial/PnlssFit.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,19 +19,7 @@
 namespace excursion::cli {
 namespace {
 
-using Eigen::Index;
 using Json = nlohmann::ordered_json;
-
-struct PnlssArguments {
-    ResponseChoice response;
-    std::string model, out, played, mask = "full";
-    int order = 0, degree = 3, iterations = 50;
-    bool noOutputTerms = false, offset = false, guided = false;
-};
-
-struct Records {
-    std::vector<PnlssRecord> estimation, validation;
-};
 
 const Channel& channelNamed(const Measurement& take, const std::string& quantity)
 {
@@ -46,48 +30,127 @@ const Channel& channelNamed(const Measurement& take, const std::string& quantity
     return *channel;
 }
 
-Eigen::MatrixXd column(std::span<const double> samples)
-{
-    return Eigen::Map<const Eigen::VectorXd>(samples.data(), static_cast<Index>(samples.size()));
-}
-
-/// Averaged periods of every realization at one level, the last one for validation; the last third of a take without periods.
-Records recordsOf(const Measurement& take, const Channel& input, const Channel& output, int wantedLevel)
-{
-    Records records;
-    if (!take.excitation || take.excitation->lines.empty()) {
-        const auto N = static_cast<Index>(take.length()), cut = N * 2 / 3;
-        const auto u = column(input.samples), y = column(output.samples);
-        const Index skip = std::min<Index>(1000, N / 10);
-        records.estimation.push_back({u.topRows(cut), y.topRows(cut), skip, false});
-        records.validation.push_back({u.bottomRows(N - cut), y.bottomRows(N - cut), skip, false});
-        return records;
-    }
-    const auto& excitation = periodicExcitation(take);
-    const int level = wantedLevel >= 0 ? wantedLevel : static_cast<int>(excitation.levels.size()) - 1;
-    for (int r = 0; r < excitation.realizations; ++r) {
-        const auto record = periodicRecord(column(averagePeriod(take, input, level, r)), column(averagePeriod(take, output, level, r)),
-                                           std::min(excitation.period, 4096));
-        const bool last = excitation.realizations > 1 && r + 1 == excitation.realizations;
-        (last ? records.validation : records.estimation).push_back(record);
-    }
-    return records;
-}
+std::string decibels(double db) { return std::isfinite(db) ? fixed(db, 1) : "runs away"; }
 
 /// The take as the model plays it: the input as it is, the output from rest.
-void writePlayed(const Pnlss& model, const Measurement& take, const Channel& input, const Channel& output, const std::string& folder)
+void writePlayed(const PnlssTake& data, const Eigen::MatrixXd& y, const std::string& folder)
 {
-    auto played = take;
-    played.channels = {input, output};
-    const auto y = simulate(model, column(input.samples));
     if (!y.allFinite())
         throw Error(Error::Kind::numerical, "The model runs away on this take, so nothing was written.");
+    auto played = data.take;
+    played.channels = {*data.input, *data.output};
     played.channels[1].samples.assign(y.data(), y.data() + y.size());
-    played.channels[1].fullScale = std::max(output.fullScale, y.cwiseAbs().maxCoeff());
+    played.channels[1].fullScale = std::max(data.output->fullScale, y.cwiseAbs().maxCoeff());
     writeMeasurement(played, folder);
 }
 
-std::string decibels(double db) { return std::isfinite(db) ? fixed(db, 1) : "runs away"; }
+Pnlss startFor(const PnlssArguments& options, const Measurement& take)
+{
+    IdentifyOptions identifying;
+    identifying.order = options.order;
+    identifying.sampleRate = take.sampleRate;
+    const auto linear = identify(frequencyDataOf(openResponse(options.response).frf), identifying).model;
+    auto start = withTerms(linear, options.degree, maskNamed(options.mask), options.offset);
+    if (options.noOutputTerms)
+        start.free.bottomRows(linear.outputs()).rightCols(start.terms() - (options.offset ? 1 : 0)).setConstant(false);
+    return start;
+}
+
+/// The channels that a kept model connects, or those that are asked for.
+void choose(const PnlssArguments& options, const nlohmann::json& kept, PnlssTake& data)
+{
+    if (!kept.is_null()) {
+        const JsonField linear = JsonField(kept, "", options.model).at("linear");
+        const auto inputs = linear.at("inputs").items(), outputs = linear.at("outputs").items();
+        if (inputs.size() != 1 || outputs.size() != 1)
+            throw Error(Error::Kind::data, "The model has several inputs or outputs; a take is judged with one of each.");
+        data.input = &channelNamed(data.take, inputs[0].text());
+        data.output = &channelNamed(data.take, outputs[0].text());
+    } else {
+        data.input = &data.take.input();
+        std::string output = options.response.output;
+        for (const auto& channel : data.take.channels)
+            if (output.empty() && channel.quantity != data.input->quantity)
+                output = name(channel.quantity);
+        data.output = &channelNamed(data.take, output);
+    }
+    data.records = recordsOf(data.take, *data.input, *data.output, options.response.level);
+}
+
+bool isFractional(const PnlssArguments& options, const nlohmann::json& kept)
+{
+    return kept.is_object() ? kept.value("format", "") == "excursion-fractional-pnlss" : !options.alpha.empty();
+}
+
+void require(const PnlssArguments& options)
+{
+    if (options.model.empty() == (options.order == 0 && !options.mixed))
+        throw Error(Error::Kind::usage, "Give either --order (or --alpha with --mixed), to fit a model, or --model, to judge one that was kept.");
+    if (options.mixed && (options.alpha.empty() || options.order != 0))
+        throw Error(Error::Kind::usage, "--mixed is a driver's current under a voltage, of three states: give --alpha, and leave --order out.");
+    if (!options.alpha.empty() && options.guided)
+        throw Error(Error::Kind::usage, "A fractional model has no guided start: leave --guided out.");
+    if (!options.model.empty() && !options.out.empty())
+        throw Error(Error::Kind::usage, "--out is for a model that is fitted; --model is kept already.");
+    if (!options.out.empty())
+        requireFilePlace(options.out);
+    if (!options.played.empty())
+        requireFolderPlace(options.played);
+}
+
+void run(PnlssArguments options, Terminal& terminal)
+{
+    require(options);
+    PnlssTake data;
+    data.take = readMeasurement(options.response.path);
+    completeExcitation(data.take);
+    const auto levels = data.take.excitation ? static_cast<int>(data.take.excitation->levels.size()) : 0;
+    if (options.response.level >= std::max(levels, 1))
+        throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
+    const auto kept = options.model.empty() ? nlohmann::json() : readJson(options.model);
+    choose(options, kept, data);
+    options.response.output = name(data.output->quantity);
+    const auto outcome = (isFractional(options, kept) ? fractionalPnlss : integerPnlss)(options, data, terminal);
+    if (!std::isfinite(outcome.estimationDb))
+        throw Error(Error::Kind::numerical, "The model runs away on the records that it was to explain; try --guided, another --order or --mask.");
+    if (!options.out.empty())
+        writeJson(outcome.model, options.out);
+    if (!options.played.empty())
+        writePlayed(data, outcome.played, options.played);
+
+    if (options.model.empty())
+        terminal.say("linear part alone: " + decibels(outcome.startDb) + " dB; " + std::to_string(outcome.iterations) + " iterations: "
+                     + outcome.reason + ".");
+    if (!outcome.alpha.empty())
+        terminal.say("alpha " + outcome.alpha);
+    const bool validated = !data.records.validation.empty();
+    terminal.table({"records", "error dB"}, {{"estimation", decibels(outcome.estimationDb)},
+                                             {"validation", validated ? decibels(outcome.validationDb) : "-"}});
+    if (!outcome.stable)
+        terminal.say("The linear part of this model is not stable.");
+    for (const auto& written : {options.out, options.played})
+        if (!written.empty())
+            terminal.say("Wrote " + written + ".");
+
+    Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", options.response.path}};
+    document["estimationDb"] = outcome.estimationDb;
+    document["validationDb"] = validated ? numberOrNull(outcome.validationDb) : Json();
+    document["iterations"] = outcome.iterations;
+    document["stopped"] = outcome.reason;
+    document["stable"] = outcome.stable;
+    document["history"] = numbersOrNulls(outcome.history);
+    document["model"] = outcome.model;
+    terminal.document(document);
+    if (!outcome.stable)
+        terminal.answer = 1;
+}
+
+} // namespace
+
+Eigen::MatrixXd PnlssTake::wholeInput() const
+{
+    return Eigen::Map<const Eigen::VectorXd>(input->samples.data(), static_cast<Eigen::Index>(input->samples.size()));
+}
 
 TermMask maskNamed(const std::string& wanted)
 {
@@ -97,104 +160,36 @@ TermMask maskNamed(const std::string& wanted)
     throw Error(Error::Kind::usage, "There is no mask \"" + wanted + "\".");
 }
 
-Pnlss startFor(const PnlssArguments& options, const Measurement& take, int level)
+PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, Terminal& terminal)
 {
-    auto choice = options.response;
-    choice.level = level;
-    IdentifyOptions identifying;
-    identifying.order = options.order;
-    identifying.sampleRate = take.sampleRate;
-    const auto linear = identify(frequencyDataOf(openResponse(choice).frf), identifying).model;
-    auto start = withTerms(linear, options.degree, maskNamed(options.mask), options.offset);
-    if (options.noOutputTerms)
-        start.free.bottomRows(linear.outputs()).rightCols(start.terms() - (options.offset ? 1 : 0)).setConstant(false);
-    return start;
-}
-
-void run(const PnlssArguments& options, Terminal& terminal)
-{
-    if (options.model.empty() == (options.order == 0))
-        throw Error(Error::Kind::usage, "Give either --order, to fit a model, or --model, to judge one that was kept.");
-    if (!options.model.empty() && !options.out.empty())
-        throw Error(Error::Kind::usage, "--out is for a model that is fitted; --model is kept already.");
-    if (!options.out.empty())
-        requireFilePlace(options.out);
-    if (!options.played.empty())
-        requireFolderPlace(options.played);
-    auto take = readMeasurement(options.response.path);
-    completeExcitation(take);
-    const auto levels = take.excitation ? static_cast<int>(take.excitation->levels.size()) : 0;
-    if (options.response.level >= std::max(levels, 1))
-        throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
-
+    const auto& [estimation, validation] = data.records;
+    PnlssOutcome outcome;
     NamedPnlss named;
-    PnlssFit fit;
     if (!options.model.empty()) {
         named = readPnlss(options.model);
-        if (named.inputs.size() != 1 || named.outputs.size() != 1)
-            throw Error(Error::Kind::data, "The model has several inputs or outputs; a take is judged with one of each.");
-        if (named.model.linear.sampleRate != take.sampleRate)
+        if (named.model.linear.sampleRate != data.take.sampleRate)
             throw Error(Error::Kind::data, "The model is one at " + significant(named.model.linear.sampleRate, 8) + " Hz, the take at "
-                                               + significant(take.sampleRate, 8) + " Hz.");
+                                               + significant(data.take.sampleRate, 8) + " Hz.");
+        outcome.estimationDb = relativeErrorDb(named.model, estimation);
+        outcome.validationDb = relativeErrorDb(named.model, validation);
+        outcome.stable = isStable(named.model.linear) && std::isfinite(outcome.estimationDb);
     } else {
-        named.inputs = {std::string(name(take.input().quantity))};
-        std::string output = options.response.output;
-        for (const auto& channel : take.channels)
-            if (output.empty() && channel.quantity != take.input().quantity)
-                output = name(channel.quantity);
-        named.outputs = {output};
-        named.name = std::filesystem::path(options.response.path).stem().string();
-    }
-    const auto& input = channelNamed(take, named.inputs[0]);
-    const auto& output = channelNamed(take, named.outputs[0]);
-    const auto records = recordsOf(take, input, output, options.response.level);
-    if (options.model.empty()) {
-        const auto start = startFor(options, take, options.response.level);
+        const auto start = startFor(options, data.take);
         PnlssFitOptions fitting;
         fitting.maximumIterations = options.iterations;
         if (options.guided)
             fitting.guideGains = {1.0, 0.3, 0.1};
-        const double before = relativeErrorDb(start, records.validation.empty() ? records.estimation : records.validation);
-        fit = fitPnlss(start, records.estimation, records.validation, fitting, terminal.progress());
-        named.model = fit.model;
-        terminal.say("linear part alone: " + decibels(before) + " dB; " + std::to_string(fit.iterations) + " iterations: " + fit.reason + ".");
-    } else {
-        fit.model = named.model;
-        fit.reason = "a model that was kept";
-        fit.estimationDb = relativeErrorDb(named.model, records.estimation);
-        fit.validationDb = relativeErrorDb(named.model, records.validation);
-        fit.stable = isStable(named.model.linear) && std::isfinite(fit.estimationDb);
+        const auto fit = fitPnlss(start, estimation, validation, fitting, terminal.progress());
+        outcome = {relativeErrorDb(start, validation.empty() ? estimation : validation), fit.estimationDb, fit.validationDb, fit.iterations, fit.stable,
+                   fit.reason, fit.history, "", {}, {}};
+        named = {std::filesystem::path(options.response.path).stem().string(), {std::string(name(data.input->quantity))},
+                 {std::string(name(data.output->quantity))}, fit.model};
     }
-    if (!std::isfinite(fit.estimationDb))
-        throw Error(Error::Kind::numerical, "The model runs away on the records that it was to explain; try --guided, another --order or --mask.");
-    if (!options.out.empty())
-        writePnlss(named, options.out);
+    outcome.model = toJson(named);
     if (!options.played.empty())
-        writePlayed(named.model, take, input, output, options.played);
-
-    terminal.table({"records", "error dB"}, {{"estimation", decibels(fit.estimationDb)},
-                                             {"validation", records.validation.empty() ? "-" : decibels(fit.validationDb)}});
-    if (!fit.stable)
-        terminal.say("The linear part of this model is not stable.");
-    if (!options.out.empty())
-        terminal.say("Wrote " + options.out + ".");
-    if (!options.played.empty())
-        terminal.say("Wrote " + options.played + ".");
-
-    Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", options.response.path}};
-    document["estimationDb"] = fit.estimationDb;
-    document["validationDb"] = records.validation.empty() ? Json() : numberOrNull(fit.validationDb);
-    document["iterations"] = fit.iterations;
-    document["stopped"] = fit.reason;
-    document["stable"] = fit.stable;
-    document["history"] = numbersOrNulls(fit.history);
-    document["model"] = toJson(named);
-    terminal.document(document);
-    if (!fit.stable)
-        terminal.answer = 1;
+        outcome.played = simulate(named.model, data.wholeInput());
+    return outcome;
 }
-
-} // namespace
 
 void addPnlss(CLI::App& app, Terminal& terminal)
 {
@@ -206,6 +201,8 @@ void addPnlss(CLI::App& app, Terminal& terminal)
         masks.emplace_back(name(mask));
     verb->add_option("TAKE", o->response.path, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--order", o->order, "number of states")->check(CLI::Range(1, 100));
+    verb->add_option("--alpha", o->alpha, "states of fractional order alpha, a number below 1, or free: one that starts there and moves");
+    verb->add_flag("--mixed", o->mixed, "with --alpha, for a current under a voltage: only the coil's state is of fractional order");
     verb->add_option("--degree", o->degree, "highest degree of the monomials")->capture_default_str()->check(CLI::Range(2, 9));
     verb->add_option("--mask", o->mask, "which monomials")->capture_default_str()->check(CLI::IsMember(masks));
     verb->add_flag("--linear-output", o->noOutputTerms, "no monomials in the output equation");

@@ -30,3 +30,39 @@ TEST_CASE("pnlss explains more than its linear start, keeps the model, and judge
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--level", "7"}).code == 2);
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--model", chain.model()}).code == 3);
 }
+
+TEST_CASE("pnlss of fractional order explains a take, keeps the model with its order, and judges and plays it again")
+{
+    const Scratch scratch;
+    const auto& chain = Chain::get();
+    const auto model = (scratch / "fractional.json").string(), played = (scratch / "played").string();
+    const auto told = runProgram(scratch.folder(), {"pnlss", chain.take(), "--output", "current", "--alpha", "0.95", "--mixed", "--mask", "states-only",
+                                                    "--iterations", "4", "--out", model, "--json"});
+    INFO(told.err);
+    REQUIRE(told.code == 0);
+    const auto document = nlohmann::json::parse(told.out);
+    CHECK(document.at("history").back().get<double>() < document.at("history").front().get<double>() - 6.0);
+    CHECK(nlohmann::json::parse(bytesOf(model)) == document.at("model"));
+    CHECK(document.at("model").at("alpha") == 0.95);
+
+    const auto judged = runProgram(scratch.folder(), {"pnlss", chain.take(), "--model", model, "--played", played, "--json"});
+    REQUIRE(judged.code == 0);
+    CHECK(nlohmann::json::parse(judged.out).at("estimationDb").get<double>() == Approx(document.at("estimationDb").get<double>()).epsilon(1e-9));
+    CHECK(runProgram(scratch.folder(), {"check", played}).code <= 1);
+
+    auto broken = nlohmann::json::parse(bytesOf(model));
+    broken["alpha"] = 1.5;
+    std::ofstream(scratch / "broken.json") << broken;
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--model", (scratch / "broken.json").string()}).code == 3);
+    broken = nlohmann::json::parse(bytesOf(model));
+    broken["fractional"] = {true, true};
+    std::ofstream(scratch / "broken.json") << broken;
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--model", (scratch / "broken.json").string()}).code == 3);
+    // This driver's coil is one of whole order.
+    const auto whole = runProgram(scratch.folder(), {"pnlss", chain.take(), "--output", "current", "--alpha", "free", "--mixed"});
+    CHECK(whole.code == 4);
+    CHECK(whole.err.find("integer order") != std::string::npos);
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--mixed"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--mixed", "--alpha", "much"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--alpha", "1.2"}).code == 2);
+}

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Fractional/FractionalStateSpace.h"
-#include "Engine/Fractional/Ladder.h"
+#include "Engine/Fractional/DiffusiveLadder.h"
 
 namespace excursion {
 

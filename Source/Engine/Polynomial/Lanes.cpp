@@ -161,4 +161,21 @@ void toColumns(double* columns, Index columnStride, const double* rows, Index st
             columns[c * columnStride + t] = rows[t * stride + c];
 }
 
+EXCURSION_DISPATCH
+void advance(double* z, Index cells, Index P, const double* decay, const double* weight, const std::array<const double*, 4>& v, const double* readout,
+             const double* direct, double* held)
+{
+    const double *v0 = v[0], *v1 = v[1], *v2 = v[2], *v3 = v[3];
+    for (Index c = 0; c < P; ++c)
+        held[c] = direct[1] * v0[c] + direct[2] * v1[c] + direct[3] * v2[c];
+    for (Index k = 0; k < cells; ++k, z += P) {
+        const double e = decay[k], b0 = weight[k], b1 = weight[k + cells], b2 = weight[k + 2 * cells], b3 = weight[k + 3 * cells];
+        const double out = readout[k] * e;
+        for (Index c = 0; c < P; ++c) {
+            z[c] = e * z[c] + b0 * v0[c] + b1 * v1[c] + b2 * v2[c] + b3 * v3[c];
+            held[c] += out * z[c];
+        }
+    }
+}
+
 } // namespace excursion::lanes

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include <array>
+
 /// The arithmetic of a PNLSS model's Jacobian: plain loops over a block of time steps, or over eight parameters side by side, compiled for any
 /// processor and for those with AVX2.
 namespace excursion::lanes {
@@ -29,5 +31,10 @@ void combine(double* target, const double* W, const double* r, Eigen::Index rows
 /// Eight columns, each contiguous along time, to rows of eight, and `count` of them back: a line of the cache at a time.
 void toRows(double* rows, Eigen::Index stride, const double* const* columns, Eigen::Index T);
 void toColumns(double* columns, Eigen::Index columnStride, const double* rows, Eigen::Index stride, Eigen::Index count, Eigen::Index T);
+
+/// The cells of a fractional integral (see FractionalIntegrator) and its past, for P parameters side by side: z_k <- e_k z_k + sum_j b_kj v_j,
+/// held <- sum_k R_k e_k z_k + d_1 v_0 + d_2 v_1 + d_3 v_2. @param z  [cell][parameter] @param weight  b, column after column @param v  newest first
+void advance(double* z, Eigen::Index cells, Eigen::Index P, const double* decay, const double* weight, const std::array<const double*, 4>& v,
+             const double* readout, const double* direct, double* held);
 
 } // namespace excursion::lanes

@@ -36,6 +36,15 @@ Polynomial product(const Polynomial& a, const Polynomial& b)
 
 bool Pnlss::isValid(std::string* reason) const
 {
+    if (!fits(reason))
+        return false;
+    if (linear.continuous() && reason)
+        *reason = "a PNLSS model is one of discrete time, but its sample rate is 0";
+    return !linear.continuous();
+}
+
+bool Pnlss::fits(std::string* reason) const
+{
     if (!linear.isValid(reason))
         return false;
     const auto refuse = [reason](const char* sentence) {
@@ -43,8 +52,6 @@ bool Pnlss::isValid(std::string* reason) const
             *reason = sentence;
         return false;
     };
-    if (linear.continuous())
-        return refuse("a PNLSS model is one of discrete time, but its sample rate is 0");
     const auto n = linear.order(), m = linear.inputs(), p = linear.outputs(), K = terms();
     if (K > 0 && exponents.cols() != n + m)
         return refuse("the exponents of a monomial must be as many as states and inputs");

@@ -20,8 +20,11 @@ struct Pnlss {
 
     Eigen::Index terms() const { return exponents.rows(); }
 
-    /// @param reason  where not null: one sentence that says what is wrong
+    /// Shapes fit and all is finite, in discrete time. @param reason  where not null: one sentence that says what is wrong
     bool isValid(std::string* reason = nullptr) const;
+
+    /// The same in any time: of a model of continuous time as FractionalPnlss keeps it.
+    bool fits(std::string* reason = nullptr) const;
 };
 
 /// The linear model with all monomials of degree 2 .. degree that the mask allows, at coefficients of zero. Monomials that no row may

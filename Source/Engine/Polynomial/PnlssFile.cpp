@@ -32,27 +32,26 @@ Json termJson(const Pnlss& model, Index k)
 
 } // namespace
 
+Json termsJson(const Pnlss& model)
+{
+    Json terms = Json::array();
+    for (Index k = 0; k < model.terms(); ++k)
+        terms.push_back(termJson(model, k));
+    return terms;
+}
+
 Json toJson(const NamedPnlss& named)
 {
     Json document {{"format", formatName}, {"version", formatVersion}, {"name", named.name}};
     document["linear"] = toJson(NamedStateSpace {named.name, named.inputs, named.outputs, named.model.linear});
-    document["terms"] = Json::array();
-    for (Index k = 0; k < named.model.terms(); ++k)
-        document["terms"].push_back(termJson(named.model, k));
+    document["terms"] = termsJson(named.model);
     return document;
 }
 
-NamedPnlss pnlssFromJson(const JsonField& field)
+void readTerms(const JsonField& field, Pnlss& model)
 {
-    field.requireFormat(formatName, formatVersion);
-    auto linear = stateSpaceFromJson(field.at("linear"));
-    NamedPnlss named {field.at("name").text(), linear.inputs, linear.outputs, {}};
-    auto& model = named.model;
-    model.linear = std::move(linear.model);
-    if (model.linear.continuous())
-        field.at("linear").at("sampleRate").refuse("a sample rate above 0 Hz: these models are of discrete time");
     const auto n = model.linear.order(), m = model.linear.inputs(), p = model.linear.outputs();
-    const auto terms = field.at("terms").items();
+    const auto terms = field.items();
     const auto K = static_cast<Index>(terms.size());
     model.exponents.resize(K, n + m);
     model.E.resize(n, K);
@@ -84,6 +83,18 @@ NamedPnlss pnlssFromJson(const JsonField& field)
         for (Index r = 0; r < n + p; ++r)
             model.free(r, k) = free[static_cast<std::size_t>(r)].flag();
     }
+}
+
+NamedPnlss pnlssFromJson(const JsonField& field)
+{
+    field.requireFormat(formatName, formatVersion);
+    auto linear = stateSpaceFromJson(field.at("linear"));
+    NamedPnlss named {field.at("name").text(), linear.inputs, linear.outputs, {}};
+    auto& model = named.model;
+    model.linear = std::move(linear.model);
+    if (model.linear.continuous())
+        field.at("linear").at("sampleRate").refuse("a sample rate above 0 Hz: these models are of discrete time");
+    readTerms(field.at("terms"), model);
     return named;
 }
 

@@ -17,6 +17,10 @@ struct NamedPnlss {
     Pnlss model;
 };
 
+/// The field "terms": exponents, coefficients and what is free, an object a monomial. Reading takes the shapes from model.linear.
+nlohmann::ordered_json termsJson(const Pnlss&);
+void readTerms(const JsonField&, Pnlss& model);
+
 nlohmann::ordered_json toJson(const NamedPnlss&);
 
 /// Throws Error (input) naming the field when the document is none of these, or its shapes do not fit.

@@ -214,26 +214,6 @@ private:
     std::vector<MatrixXd> states_, outputs_;
 };
 
-void require(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options)
-{
-    std::string reason;
-    if (!start.isValid(&reason) || !options.isValid(&reason))
-        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
-    if (estimation.empty())
-        throw Error(Error::Kind::data, "The model cannot be fitted: there is no record to fit it to.");
-    for (const auto* records : {&estimation, &validation})
-        for (const auto& record : *records) {
-            if (record.input.cols() != start.linear.inputs() || record.output.cols() != start.linear.outputs()
-                || record.input.rows() != record.output.rows() || record.skip < 0 || record.skip >= record.input.rows())
-                throw Error(Error::Kind::data, "A record does not fit the model: its inputs, outputs or length are others.");
-            if (!record.input.allFinite() || !record.output.allFinite())
-                throw Error(Error::Kind::data, "A record holds a sample that is not finite.");
-            if (records == &estimation && options.lineWeights.size() != 0
-                && (!record.periodic || (record.input.rows() - record.skip) / 2 + 1 != options.lineWeights.size()))
-                throw Error(Error::Kind::data, "Weights of the spectrum need periodic records, and as many numbers as a record has lines.");
-        }
-}
-
 } // namespace
 
 bool PnlssFitOptions::isValid(std::string* reason) const
@@ -253,6 +233,20 @@ bool PnlssFitOptions::isValid(std::string* reason) const
     if (lineWeights.size() != 0 && (!lineWeights.allFinite() || lineWeights.minCoeff() < 0.0 || lineWeights.maxCoeff() == 0.0))
         return refuse("weights of the spectrum must be at least 0, and not all 0");
     return true;
+}
+
+void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Index inputs, Index outputs)
+{
+    if (estimation.empty())
+        throw Error(Error::Kind::data, "The model cannot be fitted: there is no record to fit it to.");
+    for (const auto* records : {&estimation, &validation})
+        for (const auto& record : *records) {
+            if (record.input.cols() != inputs || record.output.cols() != outputs || record.input.rows() != record.output.rows() || record.skip < 0
+                || record.skip >= record.input.rows())
+                throw Error(Error::Kind::data, "A record does not fit the model: its inputs, outputs or length are others.");
+            if (!record.input.allFinite() || !record.output.allFinite())
+                throw Error(Error::Kind::data, "A record holds a sample that is not finite.");
+        }
 }
 
 PnlssRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index before)
@@ -291,7 +285,14 @@ double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& recor
 PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
                   const PnlssFitOptions& options, const Progress& progress)
 {
-    require(start, estimation, validation, options);
+    std::string reason;
+    if (!start.isValid(&reason) || !options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
+    requireFitting(estimation, validation, start.linear.inputs(), start.linear.outputs());
+    for (const auto& record : estimation)
+        if (options.lineWeights.size() != 0
+            && (!record.periodic || (record.input.rows() - record.skip) / 2 + 1 != options.lineWeights.size()))
+            throw Error(Error::Kind::data, "Weights of the spectrum need periodic records, and as many numbers as a record has lines.");
     SimulationError problem(estimation, options, start);
     VectorXd values = problem.valuesOf(start);
     PnlssFit result;

@@ -20,6 +20,9 @@ struct PnlssRecord {
 /// A record of one steady period: `before` of its last samples are put in front, again and again if need be, to let the transient die.
 PnlssRecord periodicRecord(const Eigen::MatrixXd& input, const Eigen::MatrixXd& output, Eigen::Index before);
 
+/// Throws Error (data) unless there is something to estimate from, and all records fit a model of these inputs and outputs and are finite.
+void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Eigen::Index inputs, Eigen::Index outputs);
+
 struct PnlssFitOptions {
     int maximumIterations = 100;
     double costTolerance = 1e-8;        ///< stop when three accepted steps in a row lower the cost by less than this fraction

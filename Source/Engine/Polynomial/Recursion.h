@@ -23,6 +23,12 @@ public:
     /// @param linearFree  A, B, C, D are parameters too, not E and F alone
     Recursion(const Pnlss& structure, bool linearFree);
 
+    /// What a parameter is: the coefficient of a regressor in a row.
+    struct Column {
+        Eigen::Index row;         ///< states first, then outputs
+        Eigen::Index regressor;   ///< x, u, monomials
+    };
+    const std::vector<Column>& columns() const { return columns_; }
     Eigen::Index parameters() const { return static_cast<Eigen::Index>(columns_.size()); }
     Eigen::VectorXd valuesOf(const Pnlss&) const;
     void setValues(Pnlss&, const Eigen::VectorXd&) const;
@@ -45,10 +51,6 @@ public:
     void differentiate(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states, const Taker&, const Guide* guide = nullptr) const;
 
 private:
-    struct Column {
-        Eigen::Index row;         // states first, then outputs
-        Eigen::Index regressor;   // x, u, monomials
-    };
     struct Group {   // columns of one row, side by side
         Eigen::Index row, first, count;
     };

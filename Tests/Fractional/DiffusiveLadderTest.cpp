@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder against s^a and s^(a-1) on the imaginary axis.
-#include "Engine/Fractional/Ladder.h"
+#include "Engine/Fractional/DiffusiveLadder.h"
 #include "Measurement/Scratch.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace excursion::test;
 namespace {
 
 /// The largest relative error on a band, of the power and of the integral.
-double worstError(const Ladder& ladder, double low, double high)
+double worstError(const DiffusiveLadder& ladder, double low, double high)
 {
     double worst = 0.0;
     for (int k = 0; k <= 2000; ++k) {

@@ -16,7 +16,7 @@ namespace excursion {
 ///     R_k = (sin(pi a)/pi) p_k^a ln q,     relative error 2 exp(-pi^2/ln q): a factor of 73 with each cell a decade.
 /// The rule's tails, below and above the cells kept, are series in p/s and s/p whose first three moments (geometric series) R, L and
 /// one more cell on each side match; cells beyond the band make up for the rest, some 10 000 times less a decade. All numbers are positive: a passive network.
-struct Ladder {
+struct DiffusiveLadder {
     double exponent = 0.5;             ///< a
     double resistance = 0.0;           ///< R
     double inductance = 0.0;           ///< L
@@ -42,6 +42,6 @@ struct LadderOptions {
 };
 
 /// Throws Error (usage) unless 0 < exponent < 1 and the options are valid.
-Ladder ladderFor(double exponent, const LadderOptions&);
+DiffusiveLadder ladderFor(double exponent, const LadderOptions&);
 
 } // namespace excursion

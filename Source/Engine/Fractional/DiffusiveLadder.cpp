@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Fractional/Ladder.h"
+#include "Engine/Fractional/DiffusiveLadder.h"
 
 #include "Engine/Error.h"
 
@@ -37,7 +37,7 @@ Tail tailAbove(double edge, double a, double step)
 
 } // namespace
 
-Complex Ladder::power(Complex s) const
+Complex DiffusiveLadder::power(Complex s) const
 {
     Complex sum = resistance + inductance * s;
     for (Eigen::Index k = 0; k < cells(); ++k)
@@ -45,7 +45,7 @@ Complex Ladder::power(Complex s) const
     return sum;
 }
 
-Complex Ladder::integral(Complex s) const
+Complex DiffusiveLadder::integral(Complex s) const
 {
     Complex sum = inductance + resistance / s;
     for (Eigen::Index k = 0; k < cells(); ++k)
@@ -62,7 +62,7 @@ bool LadderOptions::isValid(std::string* reason) const
     return valid;
 }
 
-Ladder ladderFor(double exponent, const LadderOptions& options)
+DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -76,7 +76,7 @@ Ladder ladderFor(double exponent, const LadderOptions& options)
     const auto inner = static_cast<Eigen::Index>(std::ceil((high - low) / step));
     const double start = 0.5 * (low + high - step * static_cast<double>(inner - 1));
 
-    Ladder ladder;
+    DiffusiveLadder ladder;
     ladder.exponent = exponent;
     ladder.rates.resize(inner + 2);
     for (Eigen::Index k = 0; k < inner; ++k)

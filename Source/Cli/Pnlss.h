@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Cli/OpenResponse.h"
+#include "Cli/Terminal.h"
+
+#include "Engine/Polynomial/TakeRecords.h"
+
+#include <nlohmann/json.hpp>
+
+namespace excursion::cli {
+
+struct PnlssArguments {
+    ResponseChoice response;
+    std::string model, out, played, mask = "full", alpha;
+    int order = 0, degree = 3, iterations = 50;
+    bool noOutputTerms = false, offset = false, guided = false, mixed = false;
+};
+
+/// What the two kinds of polynomial models tell alike.
+struct PnlssOutcome {
+    double startDb = 0.0;   ///< validation error of the linear part alone; not of a model that was kept
+    double estimationDb = 0.0, validationDb = 0.0;
+    int iterations = 0;
+    bool stable = false;
+    std::string reason = "a model that was kept";
+    std::vector<double> history;
+    std::string alpha;                  ///< in words; empty for integer order
+    nlohmann::ordered_json model;       ///< its document
+    Eigen::MatrixXd played;             ///< the output on the whole take, where asked for
+};
+
+/// A take with what is to be explained by what.
+struct PnlssTake {
+    Measurement take;
+    const Channel* input = nullptr;
+    const Channel* output = nullptr;
+    PnlssRecords records;
+
+    Eigen::MatrixXd wholeInput() const;
+};
+
+TermMask maskNamed(const std::string&);
+
+/// A model of integer, or of fractional order: fitted, or read and judged; kept where --out says.
+PnlssOutcome integerPnlss(const PnlssArguments&, const PnlssTake&, Terminal&);
+PnlssOutcome fractionalPnlss(const PnlssArguments&, const PnlssTake&, Terminal&);
+
+} // namespace excursion::cli

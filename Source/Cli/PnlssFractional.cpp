@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Alpha.h"
+#include "Cli/Pnlss.h"
+
+#include "Engine/Error.h"
+#include "Engine/Fractional/FractionalIdentify.h"
+#include "Engine/Polynomial/FractionalPnlssFile.h"
+#include "Engine/Polynomial/FractionalPnlssFit.h"
+
+#include <cmath>
+#include <filesystem>
+
+namespace excursion::cli {
+namespace {
+
+FractionalPnlss mixedStart(const PnlssArguments& options, const PnlssTake& data, std::optional<double> alpha)
+{
+    if (data.input->quantity != Quantity::voltage || data.output->quantity != Quantity::current)
+        throw Error(Error::Kind::usage, "--mixed explains a current by a voltage, and this take, or the choice of channels, is of others.");
+    auto impedance = options.response;
+    std::swap(impedance.input, impedance.output);
+    impedance.input = name(Quantity::current);
+    impedance.output = name(Quantity::voltage);
+    MixedImpedanceOptions wanted;
+    wanted.alpha = alpha;
+    return withTerms(fitMixedImpedance(frequencyDataOf(openResponse(impedance).frf), wanted).model, options.degree, maskNamed(options.mask),
+                     options.offset);
+}
+
+FractionalPnlss commensurateStart(const PnlssArguments& options, std::optional<double> alpha)
+{
+    FractionalOptions wanted;
+    wanted.order = options.order;
+    wanted.alpha = alpha;
+    wanted.mostAlpha = 0.98;
+    const auto linear = identifyFractional(frequencyDataOf(openResponse(options.response).frf), wanted).model;
+    return withTerms(linear, options.degree, maskNamed(options.mask), options.offset);
+}
+
+} // namespace
+
+PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& data, Terminal& terminal)
+{
+    const auto& [estimation, validation] = data.records;
+    PnlssOutcome outcome;
+    NamedFractionalPnlss named;
+    if (!options.model.empty()) {
+        named = readFractionalPnlss(options.model);
+        if (named.grid.sampleRate != data.take.sampleRate)
+            throw Error(Error::Kind::data, "The model was made for " + significant(named.grid.sampleRate, 8) + " Hz, the take is at "
+                                               + significant(data.take.sampleRate, 8) + " Hz.");
+        outcome.estimationDb = relativeErrorDb(named.model, named.grid, estimation);
+        outcome.validationDb = relativeErrorDb(named.model, named.grid, validation);
+        outcome.stable = stabilityMargin(expandedLinear(named.model, named.grid)) > -1e-9 && std::isfinite(outcome.estimationDb);
+        outcome.alpha = significant(named.model.alpha, 5);
+    } else {
+        const auto alpha = alphaFrom(options.alpha);
+        if (alpha && *alpha >= 1.0)
+            throw Error(Error::Kind::usage, "A polynomial model has states of an order --alpha below 1; leave --alpha out for whole orders.");
+        auto start = options.mixed ? mixedStart(options, data, alpha) : commensurateStart(options, alpha);
+        if (options.noOutputTerms)
+            start.form.free.bottomRows(start.form.linear.outputs()).rightCols(start.form.terms() - (options.offset ? 1 : 0)).setConstant(false);
+        const double seconds = static_cast<double>(estimation.front().input.rows()) / data.take.sampleRate;
+        const auto grid = gridFor(start, data.take.sampleRate, openResponse(options.response).frf.frequency, seconds);
+        FractionalPnlssOptions fitting;
+        fitting.maximumIterations = options.iterations;
+        fitting.alphaFree = !alpha;
+        const auto fit = fitFractionalPnlss(start, grid, estimation, validation, fitting, terminal.progress());
+        outcome = {relativeErrorDb(start, grid, validation.empty() ? estimation : validation), fit.estimationDb, fit.validationDb, fit.iterations,
+                   fit.stable, fit.reason, fit.history, withError(fit.model.alpha, fit.alphaDeviation), {}, {}};
+        named = {std::filesystem::path(options.response.path).stem().string(), {std::string(name(data.input->quantity))},
+                 {std::string(name(data.output->quantity))}, fit.model, grid};
+    }
+    outcome.model = toJson(named);
+    if (!options.played.empty())
+        outcome.played = simulate(named.model, data.wholeInput(), named.grid);
+    return outcome;
+}
+
+} // namespace excursion::cli
