@@ -3,7 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Fractional/Gamma.h"
-#include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Convolution.h"
 
 #include <cmath>
 #include <limits>
@@ -15,27 +15,6 @@ void require(bool valid, const char* what)
 {
     if (!valid)
         throw Error(Error::Kind::usage, what);
-}
-
-/// sum_j w_j f_{n-j}, n = 0 .. N-1.
-std::vector<double> convolved(const std::vector<double>& w, std::span<const double> f)
-{
-    const auto N = f.size();
-    if (N == 0)
-        return {};
-    std::size_t length = 1;
-    while (length < 2 * N)
-        length *= 2;
-    std::vector<double> a(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(N)), b(f.begin(), f.end());
-    a.resize(length);
-    b.resize(length);
-    auto X = fft(a);
-    const auto Y = fft(b);
-    for (std::size_t k = 0; k < X.size(); ++k)
-        X[k] *= Y[k];
-    auto y = inverseFft(X, length);
-    y.resize(N);
-    return y;
 }
 
 /// (n+1)^p - 2 n^p + (n-1)^p; far out by its series, as the difference loses n^2 in digits.
