@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/Named.h"
+
+#include <nlohmann/json.hpp>
+
+namespace excursion {
+
+nlohmann::ordered_json modelHeader(std::string_view format, int version, const std::string& name, double sampleRate,
+                                   const std::string& input, const std::string& output)
+{
+    return {{"format", format}, {"version", version}, {"name", name}, {"sampleRate", sampleRate}, {"input", input}, {"output", output}};
+}
+
+} // namespace excursion
