@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/NarxFit.h"
+
+#include "Engine/Error.h"
+#include "Engine/Linear/TallQr.h"
+#include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Polynomial/NarxRecursion.h"
+#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/Search.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace excursion {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Narx allTerms(double sampleRate, const NarxFitOptions& options)
+{
+    const int variables = options.outputLags + options.inputLags + 1;
+    const auto all = monomials(variables, 1, options.degree);
+    std::vector<Index> kept;
+    for (Index k = 0; k < all.rows(); ++k)
+        if (options.direct || all(k, variables - 1) == 0)
+            kept.push_back(k);
+    const Index constant = options.constant ? 1 : 0, K = constant + static_cast<Index>(kept.size());
+    if (K > 1000)
+        throw Error(Error::Kind::usage, "The model cannot be fitted: there are " + std::to_string(K)
+                                            + " monomials to choose from, more than 1000; lower the degree or the lags.");
+    Narx model {sampleRate, options.outputLags, options.inputLags, Exponents::Zero(K, variables), VectorXd::Zero(K)};
+    model.exponents.bottomRows(K - constant) = all(kept, Eigen::all);
+    return model;
+}
+
+/// The triangular factor of [regressors, output] over the judged samples of all records.
+MatrixXd predictionFactor(const Narx& model, const std::vector<PnlssRecord>& records)
+{
+    const NarxRecursion recursion(model);
+    const auto K = model.parameters();
+    TallQr qr(K + 1);
+    for (const auto& record : records) {
+        const VectorXd u = record.input.col(0), y = record.output.col(0);
+        constexpr Index stretch = 1024;
+        for (Index first = std::max<Index>(record.skip, std::max(model.outputLags, model.inputLags)); first < y.size(); first += stretch) {
+            const Index rows = std::min(stretch, y.size() - first);
+            MatrixXd block(rows, K + 1);
+            block << recursion.regressors(u, y, first, rows), y.segment(first, rows);
+            qr.fold(block);
+        }
+    }
+    return qr.R();
+}
+
+/// Columns of the factor, and what each explains, in the order of their choice.
+struct Choice {
+    std::vector<Index> columns;
+    std::vector<double> errorReduction;
+};
+
+Choice chosenForward(const MatrixXd& R, int most)
+{
+    const auto K = R.cols() - 1;
+    MatrixXd Q = R.leftCols(K);   // what is left of each column, orthogonal to those chosen
+    VectorXd rest = R.col(K);
+    const VectorXd whole = Q.colwise().squaredNorm();
+    const double power = rest.squaredNorm();
+    Choice choice;
+    while (static_cast<int>(choice.columns.size()) < most) {
+        Index best = -1;
+        double largest = 0.0;
+        for (Index k = 0; k < K; ++k) {
+            const double size = Q.col(k).squaredNorm();
+            if (size <= 1e-12 * whole[k])   // a combination of those chosen, or chosen itself
+                continue;
+            const double along = Q.col(k).dot(rest);
+            if (const double reduction = along * along / (size * power); reduction > largest) {
+                largest = reduction;
+                best = k;
+            }
+        }
+        if (best < 0 || largest < 1e-15)
+            break;
+        const VectorXd q = Q.col(best).normalized();
+        Q -= q * (q.transpose() * Q).eval();
+        rest -= q * q.dot(rest);
+        Q.col(best).setZero();
+        choice.columns.push_back(best);
+        choice.errorReduction.push_back(largest);
+    }
+    return choice;
+}
+
+class NarxError final : public SearchProblem {
+public:
+    NarxError(const Narx& structure, const std::vector<PnlssRecord>& records)
+        : recursion_(structure), records_(records), outputs_(records.size())
+    {
+        for (const auto& record : records) {
+            power_ += record.output.bottomRows(record.output.rows() - record.skip).squaredNorm();
+            bound_ = std::max(bound_, 1e3 * record.output.cwiseAbs().maxCoeff());
+        }
+    }
+
+    double cost(const VectorXd& values) override
+    {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < records_.size(); ++k) {
+            const auto N = records_[k].output.rows();
+            if (recursion_.run(values, records_[k].input.col(0), bound_, outputs_[k]) < N)
+                return std::numeric_limits<double>::infinity();
+            sum += (records_[k].output - outputs_[k]).bottomRows(N - records_[k].skip).squaredNorm();
+        }
+        return sum / power_;
+    }
+
+    MatrixXd factor(const VectorXd& values) override
+    {
+        cost(values);
+        const auto K = values.size();
+        TallQr qr(K + 1);
+        for (std::size_t k = 0; k < records_.size(); ++k) {
+            const auto& record = records_[k];
+            recursion_.differentiate(values, record.input.col(0), outputs_[k], [&](Index first, const MatrixXd& derivatives) {
+                const Index drop = std::clamp<Index>(record.skip - first, 0, derivatives.rows()), rows = derivatives.rows() - drop;
+                if (rows == 0)
+                    return;
+                MatrixXd block(rows, K + 1);
+                block << derivatives.bottomRows(rows), (record.output - outputs_[k]).middleRows(first + drop, rows);
+                qr.fold(block);
+            });
+        }
+        return qr.R() / std::sqrt(power_);
+    }
+
+private:
+    NarxRecursion recursion_;
+    const std::vector<PnlssRecord>& records_;
+    std::vector<VectorXd> outputs_;
+    double power_ = 0.0, bound_ = 0.0;
+};
+
+} // namespace
+
+bool NarxFitOptions::isValid(std::string* reason) const
+{
+    const auto refuse = [reason](const char* sentence) {
+        if (reason)
+            *reason = sentence;
+        return false;
+    };
+    if (outputLags < 0 || inputLags < 0 || outputLags > 100 || inputLags > 100)
+        return refuse("the lags of a NARX model must be 0 to 100");
+    if (!direct && inputLags == 0)
+        return refuse("a NARX model without an input of its own time needs input lags");
+    if (degree < 1 || degree > 9)
+        return refuse("the degree of a NARX model must be 1 to 9");
+    if (maximumTerms < 1 || maximumIterations < 0)
+        return refuse("a NARX model has at least one term, and is refined in no less than 0 iterations");
+    return true;
+}
+
+NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+                const NarxFitOptions& options, const Progress& progress)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
+    if (!(std::isfinite(sampleRate) && sampleRate > 0.0))
+        throw Error(Error::Kind::usage, "The model cannot be fitted: its sample rate must be above 0 Hz.");
+    requireFitting(estimation, validation, 1, 1);
+    progress.at(0.0, "choosing terms");
+    const auto all = allTerms(sampleRate, options);
+    const MatrixXd R = predictionFactor(all, estimation);
+    const auto choice = chosenForward(R, options.maximumTerms);
+    if (choice.columns.empty())
+        throw Error(Error::Kind::data, "The model cannot be fitted: no term explains anything of the output.");
+
+    const auto& judging = validation.empty() ? estimation : validation;
+    NarxFit result;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < choice.columns.size(); ++k) {
+        progress.at(0.1 + 0.2 * static_cast<double>(k) / static_cast<double>(choice.columns.size()), "simulating with more terms");
+        const std::vector<Index> columns(choice.columns.begin(), choice.columns.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+        Narx model = all;
+        model.exponents = all.exponents(columns, Eigen::all);
+        model.coefficients = truncatedSolve(R(Eigen::all, columns), R.col(R.cols() - 1));
+        const double db = simulationErrorDb(model, judging);
+        result.steps.push_back({all.exponents.row(columns.back()), choice.errorReduction[k], db});
+        if (db < least) {
+            least = db;
+            result.model = model;
+        }
+    }
+    if (!std::isfinite(least))
+        throw Error(Error::Kind::numerical, "The model cannot be fitted: with any number of terms its simulation runs away; other lags or "
+                                            "a lower sample rate may help.");
+
+    result.reason = "the number of terms with the least simulation error, not refined";
+    double bestJudged = std::numeric_limits<double>::infinity();
+    NarxError problem(result.model, estimation);
+    if (options.maximumIterations > 0 && std::isfinite(problem.cost(result.model.coefficients))) {
+        SearchOptions searching;
+        searching.maximumIterations = options.maximumIterations;
+        searching.begun = [&] { progress.at(0.3 + 0.7 * result.iterations++ / options.maximumIterations, "refining the simulation"); };
+        searching.accepted = [&, structure = result.model](const VectorXd& values, double cost) {
+            auto model = structure;
+            model.coefficients = values;
+            const double judged = validation.empty() ? cost : simulationErrorDb(model, validation);
+            if (judged < bestJudged) {
+                bestJudged = judged;
+                result.model = model;
+            }
+        };
+        const auto summary = search(problem, VectorXd(result.model.coefficients), searching);
+        result.converged = summary.converged;
+        result.reason = summary.reason;
+    }
+    result.estimationDb = simulationErrorDb(result.model, estimation);
+    result.validationDb = simulationErrorDb(result.model, validation);
+    result.stable = isStable(result.model) && std::isfinite(result.estimationDb)
+                 && result.validationDb != std::numeric_limits<double>::infinity();
+    return result;
+}
+
+} // namespace excursion
