@@ -10,7 +10,6 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace excursion {
 namespace {
@@ -18,6 +17,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+constexpr double nowhere = std::numeric_limits<double>::infinity();
 
 Narx allTerms(double sampleRate, const NarxFitOptions& options)
 {
@@ -111,7 +112,7 @@ public:
         for (std::size_t k = 0; k < records_.size(); ++k) {
             const auto N = records_[k].output.rows();
             if (recursion_.run(values, records_[k].input.col(0), bound_, outputs_[k]) < N)
-                return std::numeric_limits<double>::infinity();
+                return nowhere;
             sum += (records_[k].output - outputs_[k]).bottomRows(N - records_[k].skip).squaredNorm();
         }
         return sum / power_;
@@ -142,6 +143,44 @@ private:
     std::vector<VectorXd> outputs_;
     double power_ = 0.0, bound_ = 0.0;
 };
+
+/// How many terms are worth a refinement: those that simulate best as they are, and, where records tell which is best, some others.
+std::vector<std::size_t> sizesToRefine(std::size_t most, std::size_t best, bool several)
+{
+    std::vector<std::size_t> sizes {best};
+    for (double size = static_cast<double>(most); several && size >= 2.0; size /= 1.5)
+        if (static_cast<std::size_t>(size) != best)
+            sizes.push_back(static_cast<std::size_t>(size));
+    return sizes;
+}
+
+/// Refines one model. @param judged  the least error so far, of the model that `result` holds; both follow when a better one comes by
+void refine(const Narx& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, int iterations,
+            const Progress& progress, double& judged, NarxFit& result)
+{
+    NarxError problem(start, estimation);
+    bool better = false;
+    int done = 0;
+    SearchOptions searching;
+    searching.maximumIterations = iterations;
+    searching.begun = [&] { progress.at(static_cast<double>(done++) / iterations, "refining the simulation"); };
+    searching.accepted = [&](const VectorXd& values, double cost) {
+        auto model = start;
+        model.coefficients = values;
+        const double error = validation.empty() ? cost : simulationErrorDb(model, validation);
+        if (error < judged) {
+            judged = error;
+            result.model = model;
+            better = true;
+        }
+    };
+    const auto summary = search(problem, start.coefficients, searching);
+    if (!better)
+        return;
+    result.iterations = summary.iterations;
+    result.converged = summary.converged;
+    result.reason = summary.reason;
+}
 
 } // namespace
 
@@ -181,48 +220,40 @@ NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation, c
 
     const auto& judging = validation.empty() ? estimation : validation;
     NarxFit result;
-    double least = std::numeric_limits<double>::infinity();
+    std::vector<Narx> path;
+    std::size_t best = 0;
+    double least = nowhere;
     for (std::size_t k = 0; k < choice.columns.size(); ++k) {
         progress.at(0.1 + 0.2 * static_cast<double>(k) / static_cast<double>(choice.columns.size()), "simulating with more terms");
         const std::vector<Index> columns(choice.columns.begin(), choice.columns.begin() + static_cast<std::ptrdiff_t>(k) + 1);
-        Narx model = all;
+        auto& model = path.emplace_back(all);
         model.exponents = all.exponents(columns, Eigen::all);
         model.coefficients = truncatedSolve(R(Eigen::all, columns), R.col(R.cols() - 1));
         const double db = simulationErrorDb(model, judging);
         result.steps.push_back({all.exponents.row(columns.back()), choice.errorReduction[k], db});
         if (db < least) {
             least = db;
-            result.model = model;
+            best = k;
         }
     }
     if (!std::isfinite(least))
         throw Error(Error::Kind::numerical, "The model cannot be fitted: with any number of terms its simulation runs away; other lags or "
                                             "a lower sample rate may help.");
-
+    result.model = path[best];
     result.reason = "the number of terms with the least simulation error, not refined";
-    double bestJudged = std::numeric_limits<double>::infinity();
-    NarxError problem(result.model, estimation);
-    if (options.maximumIterations > 0 && std::isfinite(problem.cost(result.model.coefficients))) {
-        SearchOptions searching;
-        searching.maximumIterations = options.maximumIterations;
-        searching.begun = [&] { progress.at(0.3 + 0.7 * result.iterations++ / options.maximumIterations, "refining the simulation"); };
-        searching.accepted = [&, structure = result.model](const VectorXd& values, double cost) {
-            auto model = structure;
-            model.coefficients = values;
-            const double judged = validation.empty() ? cost : simulationErrorDb(model, validation);
-            if (judged < bestJudged) {
-                bestJudged = judged;
-                result.model = model;
-            }
-        };
-        const auto summary = search(problem, VectorXd(result.model.coefficients), searching);
-        result.converged = summary.converged;
-        result.reason = summary.reason;
+    if (options.maximumIterations > 0) {
+        const auto sizes = sizesToRefine(path.size(), best + 1, !validation.empty());
+        double judged = nowhere;
+        for (std::size_t k = 0; k < sizes.size(); ++k) {
+            const auto part = progress.part(0.3 + 0.7 * static_cast<double>(k) / static_cast<double>(sizes.size()),
+                                            0.3 + 0.7 * static_cast<double>(k + 1) / static_cast<double>(sizes.size()));
+            refine(path[sizes[k] - 1], estimation, validation, options.maximumIterations, part, judged, result);
+        }
     }
     result.estimationDb = simulationErrorDb(result.model, estimation);
     result.validationDb = simulationErrorDb(result.model, validation);
     result.stable = isStable(result.model) && std::isfinite(result.estimationDb)
-                 && result.validationDb != std::numeric_limits<double>::infinity();
+                 && result.validationDb != nowhere;
     return result;
 }
 
