@@ -10,10 +10,12 @@
 #include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Polynomial/PnlssFile.h"
+#include "Engine/Ranking/Agreement.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 namespace excursion::cli {
@@ -29,8 +31,6 @@ const Channel& channelNamed(const Measurement& take, const std::string& quantity
         throw Error(Error::Kind::usage, "The take has no channel \"" + quantity + "\".");
     return *channel;
 }
-
-std::string decibels(double db) { return std::isfinite(db) ? fixed(db, 1) : "runs away"; }
 
 /// The take as the model plays it: the input as it is, the output from rest.
 void writePlayed(const PnlssTake& data, const Eigen::MatrixXd& y, const std::string& folder)
@@ -116,21 +116,28 @@ void run(PnlssArguments options, Terminal& terminal)
     if (!options.out.empty())
         writeJson(outcome.model, options.out);
     if (!options.played.empty())
-        writePlayed(data, outcome.played, options.played);
+        writePlayed(data, outcome.play(data.wholeInput()), options.played);
 
     if (options.model.empty())
-        terminal.say("linear part alone: " + decibels(outcome.startDb) + " dB; " + std::to_string(outcome.iterations) + " iterations: "
+        terminal.say("linear part alone: " + errorText(outcome.startDb) + " dB; " + std::to_string(outcome.iterations) + " iterations: "
                      + outcome.reason + ".");
     if (!outcome.alpha.empty())
         terminal.say("alpha " + outcome.alpha);
     const bool validated = !data.records.validation.empty();
-    terminal.table({"records", "error dB"}, {{"estimation", decibels(outcome.estimationDb)},
-                                             {"validation", validated ? decibels(outcome.validationDb) : "-"}});
+    terminal.table({"records", "error dB"}, {{"estimation", errorText(outcome.estimationDb)},
+                                             {"validation", errorText(validated ? outcome.validationDb : std::numeric_limits<double>::quiet_NaN())}});
     if (!outcome.stable)
         terminal.say("The linear part of this model is not stable.");
     for (const auto& written : {options.out, options.played})
         if (!written.empty())
             terminal.say("Wrote " + written + ".");
+
+    std::optional<Agreement> found;
+    if (options.laws) {
+        found = agreement(data.take, data.output->quantity, outcome.play, terminal.progress());
+        terminal.say(found->sentence + " The driver without effects leaves " + errorText(found->baseDb) + " dB of what the model plays, with them "
+                     + errorText(found->leftDb) + " dB.");
+    }
 
     Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", options.response.path}};
     document["estimationDb"] = outcome.estimationDb;
@@ -139,6 +146,7 @@ void run(PnlssArguments options, Terminal& terminal)
     document["stopped"] = outcome.reason;
     document["stable"] = outcome.stable;
     document["history"] = numbersOrNulls(outcome.history);
+    document["laws"] = found ? Json {{"effects", found->effects}, {"baseDb", found->baseDb}, {"leftDb", found->leftDb}, {"sentence", found->sentence}} : Json();
     document["model"] = outcome.model;
     terminal.document(document);
     if (!outcome.stable)
@@ -186,8 +194,7 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
                  {std::string(name(data.output->quantity))}, fit.model};
     }
     outcome.model = toJson(named);
-    if (!options.played.empty())
-        outcome.played = simulate(named.model, data.wholeInput());
+    outcome.play = [model = named.model](const Eigen::MatrixXd& u) { return simulate(model, u); };
     return outcome;
 }
 
@@ -214,6 +221,7 @@ void addPnlss(CLI::App& app, Terminal& terminal)
     verb->add_option("--model", o->model, "judge this model, which was kept, instead of fitting one")->type_name("FILE");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->add_option("--played", o->played, "also write the take as the model plays it")->type_name("DIR");
+    verb->add_flag("--laws", o->laws, "also tell which physical laws the model agrees with: what it plays is diagnosed as a loudspeaker");
     verb->footer("Exit code 1: the linear part of the model is not stable.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

@@ -8,13 +8,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include <functional>
+
 namespace excursion::cli {
 
 struct PnlssArguments {
     ResponseChoice response;
     std::string model, out, played, mask = "full", alpha;
     int order = 0, degree = 3, iterations = 50;
-    bool noOutputTerms = false, offset = false, guided = false, mixed = false;
+    bool noOutputTerms = false, offset = false, guided = false, mixed = false, laws = false;
 };
 
 /// What the two kinds of polynomial models tell alike.
@@ -27,7 +29,7 @@ struct PnlssOutcome {
     std::vector<double> history;
     std::string alpha;                  ///< in words; empty for integer order
     nlohmann::ordered_json model;       ///< its document
-    Eigen::MatrixXd played;             ///< the output on the whole take, where asked for
+    std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;   ///< the output from rest
 };
 
 /// A take with what is to be explained by what.

@@ -72,8 +72,7 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
                  {std::string(name(data.output->quantity))}, fit.model, grid};
     }
     outcome.model = toJson(named);
-    if (!options.played.empty())
-        outcome.played = simulate(named.model, data.wholeInput(), named.grid);
+    outcome.play = [model = named.model, grid = named.grid](const Eigen::MatrixXd& u) { return simulate(model, u, grid); };
     return outcome;
 }
 

@@ -172,6 +172,8 @@ std::string fixed(double value, int decimals)
     return text;
 }
 
+std::string errorText(double db) { return std::isnan(db) ? "-" : std::isfinite(db) ? fixed(db, 1) : "runs away"; }
+
 std::string significant(double value, int digits)
 {
     const double size = std::abs(value);

@@ -60,6 +60,9 @@ private:
 /// "-61.0": a number with a fixed count of decimals, for tables. Locale-free.
 std::string fixed(double value, int decimals);
 
+/// "-61.0": the error of a simulation in dB; "-" where it is not known, "runs away" where it is infinite.
+std::string errorText(double db);
+
 /// "1.43e-05", "22000" or "3.3": a number with that many significant digits (whole parts in full),
 /// without zeros at its end; for tables. Locale-free.
 std::string significant(double value, int digits = 4);

@@ -34,6 +34,7 @@ void addCompare(CLI::App&, Terminal&);
 void addDiagnose(CLI::App&, Terminal&);
 void addAdd(CLI::App&, Terminal&);
 void addImprove(CLI::App&, Terminal&);
+void addRank(CLI::App&, Terminal&);
 void addReport(CLI::App&, Terminal&);
 void addEffects(CLI::App&, Terminal&);
 void addSimulate(CLI::App&, Terminal&);

@@ -124,7 +124,8 @@ int main(int argc, char** argv)
     cli::addDiagnose(app, terminal);
     cli::addAdd(app, terminal);
     cli::addImprove(app, terminal);
-    cli::addReport(app, terminal);
+    cli::addRank(app, terminal);
+    addReport(app, terminal);
     cli::addEffects(app, terminal);
     cli::addSimulate(app, terminal);
     cli::addPredistort(app, terminal);

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The classes that know no loudspeaker.
+#include "Engine/Ranking/ModelClasses.h"
+
+#include "Engine/Error.h"
+#include "Engine/Fractional/MixedImpedance.h"
+#include "Engine/Linear/Identify.h"
+#include "Engine/Linear/Simulation.h"
+#include "Engine/Polynomial/FractionalPnlssFit.h"
+#include "Engine/Polynomial/FractionalRecursion.h"
+#include "Engine/Polynomial/HammersteinFit.h"
+#include "Engine/Polynomial/NarxFit.h"
+#include "Engine/Polynomial/Recursion.h"
+
+#include <array>
+#include <cstdio>
+
+namespace excursion {
+namespace {
+
+std::string ofOrder(const char* words, Eigen::Index order, int degree)
+{
+    return std::string(words) + "order " + std::to_string(order) + (degree > 1 ? ", degree " + std::to_string(degree) : "");
+}
+
+std::string withAlpha(double alpha)
+{
+    std::array<char, 32> text {};
+    std::snprintf(text.data(), text.size(), ", alpha %.3f", alpha);
+    return text.data();
+}
+
+/// A driver's coil of fractional order beside a resonance, monomials at zero.
+FractionalPnlss fractionalStart(const RankedTake& data, int degree)
+{
+    if (data.input.quantity != Quantity::voltage || data.output.quantity != Quantity::current)
+        throw Error(Error::Kind::data, "The class is one of a current under a voltage.");
+    auto impedance = data.response;
+    for (Eigen::Index k = 0; k < impedance.lines(); ++k) {
+        const auto Y = impedance.value(k, 0);
+        if (impedance.deviation.size() != 0)
+            impedance.deviation(k, 0) /= std::norm(Y);
+        impedance.value(k, 0) = 1.0 / Y;
+    }
+    return withTerms(fitMixedImpedance(impedance).model, degree);
+}
+
+FractionalGrid gridOf(const RankedTake& data, const FractionalPnlss& model)
+{
+    return gridFor(model, data.take.sampleRate, data.response.frequency,
+                   static_cast<double>(data.records.estimation.front().input.rows()) / data.take.sampleRate, 1e-3);
+}
+
+FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& grid, int degree, int parameters)
+{
+    const auto play = [model, grid](const PnlssRecord& record) {
+        FractionalRecursion::Trajectory run;
+        if (!FractionalRecursion(model, grid, false, false).run(model, fineInput(record.input, grid.substeps, record.periodic, record.skip), 1e100, run))
+            run.output = Eigen::MatrixXd::Constant(record.input.rows(), 1, std::numeric_limits<double>::quiet_NaN());
+        return run.output;
+    };
+    return {play, ofOrder("", model.form.linear.order(), degree) + withAlpha(model.alpha), parameters,
+            stabilityMargin(expandedLinear(model, grid)) > -1e-9};
+}
+
+} // namespace
+
+FittedClass fitLinearClass(const RankedTake& data, const Progress&)
+{
+    const auto n = data.linear.order();
+    return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); }, ofOrder("", n, 1), static_cast<int>(2 * n + 1),
+            isStable(data.linear)};
+}
+
+FittedClass fitFractionalClass(const RankedTake& data, const Progress&)
+{
+    auto model = fractionalStart(data, 2);
+    model.form.exponents.resize(0, model.form.exponents.cols());
+    model.form.E.resize(model.form.E.rows(), 0);
+    model.form.F.resize(model.form.F.rows(), 0);
+    model.form.free.resize(model.form.free.rows(), 0);
+    return fractionalClass(model, gridOf(data, model), 1, MixedImpedance::parameters);
+}
+
+FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress)
+{
+    HammersteinFitOptions fitting;
+    fitting.degree = data.options.degree;
+    const auto fit = fitHammerstein(data.take.sampleRate, data.records.estimation, data.records.validation, fitting, progress);
+    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
+            "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
+            static_cast<int>(fit.model.parameters()), true};
+}
+
+FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
+{
+    NarxFitOptions fitting;
+    fitting.outputLags = fitting.inputLags = data.order;
+    fitting.degree = data.options.degree;
+    fitting.maximumIterations = data.options.iterations;
+    const auto fit = fitNarx(data.take.sampleRate, data.records.estimation, data.records.validation, fitting, progress);
+    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
+            std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree " + std::to_string(fitting.degree),
+            static_cast<int>(fit.model.parameters()), fit.stable};
+}
+
+FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
+{
+    IdentifyOptions identifying;
+    identifying.sampleRate = data.take.sampleRate;
+    PnlssFitOptions fitting;
+    fitting.maximumIterations = data.options.iterations;
+    PnlssFit best;
+    const auto error = [](const PnlssFit& f) { return std::isnan(f.validationDb) ? f.estimationDb : f.validationDb; };
+    // A pole that only the linear model needed may hold the search up, so a driver's three states are tried as well; and a search that stands still may
+    // go on from a model that followed the output first.
+    for (const int order : data.options.order > 0 || data.order == 3 ? std::vector {data.order} : std::vector {3, data.order}) {
+        identifying.order = order;
+        const auto start = withTerms(identify(data.response, identifying).model, data.options.degree);
+        for (const auto& gains : {std::vector<double> {}, std::vector {1.0, 0.3, 0.1}}) {
+            if (best.model.linear.order() > 0 && error(best) < data.noiseDb.value_or(-1000.0) + 3.0)
+                continue;
+            fitting.guideGains = gains;
+            auto fit = fitPnlss(start, data.records.estimation, data.records.validation, fitting, progress);
+            if (best.model.linear.order() == 0 || error(fit) < error(best))
+                best = std::move(fit);
+        }
+    }
+    return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
+            ofOrder("", best.model.linear.order(), data.options.degree), static_cast<int>(Recursion(best.model, true).parameters()), best.stable};
+}
+
+FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& progress)
+{
+    const auto start = fractionalStart(data, data.options.degree);
+    const auto grid = gridOf(data, start);
+    FractionalPnlssOptions fitting;
+    fitting.maximumIterations = std::min(data.options.iterations, 10);
+    fitting.costTolerance = 1e-3;
+    const auto fit = fitFractionalPnlss(start, grid, data.records.estimation, data.records.validation, fitting, progress);
+    auto fitted = fractionalClass(fit.model, grid, data.options.degree, static_cast<int>(FractionalRecursion(fit.model, grid, true, true).parameters()));
+    fitted.stable = fit.stable;
+    return fitted;
+}
+
+} // namespace excursion

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Ranking/Rank.h"
+
+#include "Engine/Error.h"
+#include "Engine/Linear/OrderSweep.h"
+#include "Engine/Measurement/Bla.h"
+#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/Periods.h"
+#include "Engine/Measurement/Welch.h"
+#include "Engine/Ranking/ModelClasses.h"
+#include "Engine/Signal/Level.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+namespace excursion {
+namespace {
+
+struct Fitting {
+    ModelClass told;
+    FittedClass (*fit)(const RankedTake&, const Progress&);
+    double share;   // of the whole work, about
+};
+
+const std::vector<Fitting>& fittings()
+{
+    static const std::vector<Fitting> all {
+        {{"linear", "linear state space, order by minimum description length"}, fitLinearClass, 0.01},
+        {{"fractional", "linear, R + L s^alpha and a resonance"}, fitFractionalClass, 0.01},
+        {{"hammerstein", "powers of the input through filters"}, fitHammersteinClass, 0.08},
+        {{"narx", "a polynomial in past inputs and outputs"}, fitNarxClass, 0.15},
+        {{"pnlss", "polynomial state space"}, fitPnlssClass, 0.15},
+        {{"fractional-pnlss", "polynomial state space, the coil's state of fractional order"}, fitFractionalPnlssClass, 0.25},
+        {{"driver", "the physical driver without effects"}, fitDriverClass, 0.05},
+        {{"driver-with-effects", "the physical driver with the effects that were found missing"}, fitDriverWithEffectsClass, 0.3}};
+    return all;
+}
+
+double errorDb(const FittedClass& fitted, const std::vector<PnlssRecord>& records)
+{
+    double error = 0.0, power = 0.0;
+    for (const auto& record : records) {
+        const auto rows = record.output.rows() - record.skip;
+        error += (record.output.bottomRows(rows) - fitted.play(record).bottomRows(rows)).squaredNorm();
+        power += record.output.bottomRows(rows).squaredNorm();
+    }
+    return !std::isfinite(error) ? std::numeric_limits<double>::infinity() : decibelsOf(error / power);
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress& progress)
+{
+    RankedModel model;
+    model.name = fitting.told.name;
+    try {
+        const auto start = std::chrono::steady_clock::now();
+        const auto fitted = fitting.fit(data, progress);
+        model.fitSeconds = secondsSince(start);
+        model.description = fitted.description;
+        model.parameters = fitted.parameters;
+        model.estimationDb = errorDb(fitted, data.records.estimation);
+        const auto& judges = data.records.validation.empty() ? data.records.estimation : data.records.validation;
+        const auto playing = std::clock();
+        const double judged = errorDb(fitted, judges);
+        double samples = 0.0;
+        for (const auto& record : judges)
+            samples += static_cast<double>(record.input.rows());
+        model.load = static_cast<double>(std::clock() - playing) / CLOCKS_PER_SEC * data.take.sampleRate / samples;
+        model.validationDb = data.records.validation.empty() ? std::numeric_limits<double>::quiet_NaN() : judged;
+        model.stable = fitted.stable && std::isfinite(model.estimationDb) && std::isfinite(judged);
+    } catch (const Error& e) {
+        model.trouble = e.what();
+    }
+    return model;
+}
+
+/// Of the averaged periods that errors are told of: their scatter.
+std::optional<double> noiseOf(const Measurement& take, const Channel& output, int level)
+{
+    if (!take.excitation || take.excitation->lines.empty() || take.excitation->periods < 2)
+        return std::nullopt;
+    const auto& excitation = *take.excitation;
+    double scatter = 0.0, power = 0.0;
+    for (int r = 0; r < excitation.realizations; ++r) {
+        const auto mean = averagePeriod(take, output, level, r);
+        for (const double y : mean)
+            power += y * y;
+        for (int p = 0; p < excitation.periods; ++p) {
+            const auto period = onePeriod(take, output, level, r, p);
+            for (std::size_t t = 0; t < mean.size(); ++t)
+                scatter += std::pow(period[t] - mean[t], 2);
+        }
+    }
+    const double P = excitation.periods;
+    return decibelsOf(scatter / (P * (P - 1.0)) / power);
+}
+
+} // namespace
+
+bool RankOptions::isValid(std::string* reason) const
+{
+    const auto refuse = [reason](const std::string& sentence) {
+        if (reason)
+            *reason = sentence;
+        return false;
+    };
+    if (order < 0 || order > 20 || degree < 2 || degree > 7 || iterations < 1)
+        return refuse("an order of at most 20, a degree of 2 to 7 and at least one iteration are needed");
+    for (const auto& wanted : classes)
+        if (std::none_of(fittings().begin(), fittings().end(), [&](const Fitting& f) { return f.told.name == wanted; }))
+            return refuse("there is no class of models \"" + wanted + "\"");
+    return true;
+}
+
+const std::vector<ModelClass>& modelClasses()
+{
+    static const std::vector<ModelClass> all = [] {
+        std::vector<ModelClass> classes;
+        for (const auto& fitting : fittings())
+            classes.push_back(fitting.told);
+        return classes;
+    }();
+    return all;
+}
+
+Ranking rank(const Measurement& given, const RankOptions& options, const Progress& progress)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "Models cannot be ranked: " + reason + ".");
+    auto take = given;
+    completeExcitation(take);
+    const auto& input = take.input();
+    const Channel* output = nullptr;
+    for (const auto& channel : take.channels)
+        if (options.output ? channel.quantity == *options.output : !output && channel.quantity != input.quantity)
+            output = &channel;
+    if (!output || output == &input)
+        throw Error(Error::Kind::data, "The take has no such channel beside its input.");
+    const bool periodic = take.excitation && !take.excitation->lines.empty();
+    const int levels = periodic ? static_cast<int>(take.excitation->levels.size()) : 0;
+    const int level = options.level >= 0 ? options.level : levels - 1;
+    if (level >= std::max(levels, 1))
+        throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
+
+    progress.at(0.0, "the linear model");
+    const auto response = frequencyDataOf(periodic ? bla(take, output->quantity, level).frf : welch(take, output->quantity).frf);
+    OrderSweepOptions sweeping;
+    sweeping.orders = {2, 3, 4, 5, 6, 8};
+    sweeping.identify.sampleRate = take.sampleRate;
+    const auto sweep = sweepOrders(response, sweeping);
+    const auto linear = sweep.entries[sweep.chosen].found.model;
+    const int order = options.order > 0 ? options.order : std::min(4, static_cast<int>(linear.order()));
+    const RankedTake data {take, input, *output, level, recordsOf(take, input, *output, level), response, options, order, linear,
+                          noiseOf(take, *output, level)};
+
+    Ranking ranking;
+    ranking.input = input.quantity;
+    ranking.output = output->quantity;
+    ranking.noiseDb = data.noiseDb;
+    double done = 0.02;
+    for (const auto& fitting : fittings()) {
+        const bool wanted = options.classes.empty() || std::find(options.classes.begin(), options.classes.end(), fitting.told.name) != options.classes.end();
+        if (wanted)
+            ranking.models.push_back(judge(fitting, data, progress.part(done, std::min(1.0, done + 0.98 * fitting.share))));
+        done += 0.98 * fitting.share;
+    }
+    const auto error = [](const RankedModel& m) { return std::isnan(m.validationDb) ? m.estimationDb : m.validationDb; };
+    std::stable_sort(ranking.models.begin(), ranking.models.end(), [&](const RankedModel& a, const RankedModel& b) {
+        return a.trouble.empty() != b.trouble.empty() ? a.trouble.empty() : error(a) < error(b);
+    });
+    // A tenth of a decibel is no reason: among equals the smallest is told.
+    const RankedModel* chosen = nullptr;
+    for (const auto& model : ranking.models)
+        if (model.trouble.empty() && model.stable && error(model) < error(ranking.models.front()) + 0.5 && (!chosen || model.parameters < chosen->parameters))
+            chosen = &model;
+    ranking.sentence = chosen ? "\"" + chosen->name + "\" explains most with " + std::to_string(chosen->parameters) + " parameters."
+                              : "No stable model explains the take best.";
+    progress.at(1.0, "done");
+    return ranking;
+}
+
+} // namespace excursion

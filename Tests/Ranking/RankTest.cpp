@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All classes of models side by side on drivers that another program simulates, and what a model without physics is told to have found.
+#include "Bench/Draw.h"
+#include "Engine/Error.h"
+#include "Engine/Linear/Identify.h"
+#include "Engine/Measurement/Bla.h"
+#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Ranking/Agreement.h"
+#include "Engine/Ranking/Rank.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace excursion;
+
+namespace {
+
+Measurement takeOf(std::uint64_t seed, const char* hidden, const std::vector<Quantity>& channels)
+{
+    bench::DrawOptions options;
+    options.driver = "seed";
+    if (*hidden)
+        options.hidden = std::vector<bench::HiddenEffect> {{hidden, 0.3}};
+    else
+        options.hidden = std::vector<bench::HiddenEffect> {};
+    options.noiseDb = -70.0;
+    options.sampleRate = 48000.0;
+    options.channels = channels;
+    options.seconds = 2.0;
+    const auto drawn = bench::draw(seed, options);
+    return bench::measure(drawn.speaker, drawn.setup);
+}
+
+const RankedModel& named(const Ranking& ranking, const std::string& name)
+{
+    return *std::find_if(ranking.models.begin(), ranking.models.end(), [&](const RankedModel& m) { return m.name == name; });
+}
+
+} // namespace
+
+TEST_CASE("Classes of models are ranked by what they leave of records that they have not seen", "[slow]")
+{
+    const auto take = takeOf(11, "stiffness", {Quantity::voltage, Quantity::current, Quantity::displacement});
+    RankOptions options;
+    options.output = Quantity::displacement;
+    options.classes = {"linear", "hammerstein", "narx", "pnlss", "driver", "driver-with-effects"};
+    const auto ranking = rank(take, options);
+    REQUIRE(ranking.models.size() == 6);
+    for (const auto& model : ranking.models) {
+        CAPTURE(model.name, model.trouble, model.description, model.estimationDb, model.validationDb, model.parameters);
+        CHECK(model.trouble.empty());
+        CHECK((model.stable || model.name == "narx"));   // whose linear part may be unstable, and is told so
+        CHECK(model.load > 0.0);
+        CHECK(model.load < 1.0);
+        CHECK(model.fitSeconds > 0.0);
+    }
+    CHECK(std::is_sorted(ranking.models.begin(), ranking.models.end(), [](const auto& a, const auto& b) { return a.validationDb < b.validationDb; }));
+    REQUIRE(ranking.noiseDb);
+    // Two classes can be right, and are to within the noise; what has no feedback, or no effects, is not.
+    CHECK(named(ranking, "driver-with-effects").validationDb < *ranking.noiseDb + 3.0);
+    CHECK(named(ranking, "driver-with-effects").description == "Stiffness K(x)");
+    CHECK(named(ranking, "pnlss").validationDb < *ranking.noiseDb + 6.0);
+    CHECK(named(ranking, "linear").validationDb > *ranking.noiseDb + 20.0);
+    CHECK(named(ranking, "driver").validationDb > *ranking.noiseDb + 20.0);
+    CHECK(named(ranking, "hammerstein").validationDb > *ranking.noiseDb + 15.0);
+    CHECK(ranking.sentence.find("driver-with-effects") != std::string::npos);
+}
+
+TEST_CASE("A ranking of what cannot be ranked is refused, and a class that does not fit the take is told so")
+{
+    const auto take = takeOf(12, "", {Quantity::voltage, Quantity::displacement});
+    RankOptions options;
+    options.classes = {"linear", "fractional"};
+    const auto ranking = rank(take, options);
+    REQUIRE(ranking.models.size() == 2);
+    CHECK(ranking.models.front().name == "linear");
+    CHECK(ranking.models.front().validationDb < *ranking.noiseDb + 3.0);   // nothing is hidden
+    CHECK(ranking.models.back().trouble == "The class is one of a current under a voltage.");
+    options.classes = {"oracle"};
+    CHECK_THROWS_AS(rank(take, options), Error);
+    options = {};
+    options.output = Quantity::pressure;
+    CHECK_THROWS_AS(rank(take, options), Error);
+    options = {};
+    options.level = 9;
+    CHECK_THROWS_AS(rank(take, options), Error);
+    for (const auto& known : modelClasses())
+        CHECK_FALSE(known.sentence.empty());
+}
+
+TEST_CASE("What a polynomial model has found without physics is told as the law that was hidden", "[slow]")
+{
+    for (const auto& [hidden, output] : {std::pair {"stiffness", Quantity::displacement}, std::pair {"force-factor", Quantity::current}}) {
+        CAPTURE(hidden);
+        const auto take = takeOf(21, hidden, {Quantity::voltage, output});
+        const auto records = recordsOf(take, take.input(), *take.find(output));
+        IdentifyOptions identifying;
+        identifying.order = 3;
+        identifying.sampleRate = take.sampleRate;
+        PnlssFitOptions fitting;
+        fitting.maximumIterations = 25;
+        const auto linear = identify(frequencyDataOf(bla(take, output, 2).frf), identifying).model;
+        const auto fit = fitPnlss(withTerms(linear, 3), records.estimation, records.validation, fitting);
+        const auto found = agreement(take, output, [&](const Eigen::MatrixXd& u) { return simulate(fit.model, u); });
+        CAPTURE(fit.validationDb, found.sentence, found.baseDb, found.leftDb);
+        REQUIRE_FALSE(found.effects.empty());
+        CHECK(found.effects.front() == hidden);
+        CHECK(found.leftDb < found.baseDb - 15.0);
+    }
+    const auto take = takeOf(22, "", {Quantity::voltage, Quantity::displacement});
+    CHECK_THROWS_AS(agreement(take, Quantity::displacement, [](const Eigen::MatrixXd& u) -> Eigen::MatrixXd { return u / 0.0; }), Error);
+    CHECK_THROWS_AS(agreement(take, Quantity::pressure, [](const Eigen::MatrixXd& u) { return u; }), Error);
+}
