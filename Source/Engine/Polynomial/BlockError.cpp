@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/BlockError.h"
+
+#include "Engine/Linear/Simulation.h"
+#include "Engine/Linear/TallQr.h"
+
+#include <cmath>
+#include <limits>
+
+namespace excursion {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+Pnlss withoutTerms(const StateSpace& linear)
+{
+    Pnlss model;
+    model.linear = linear;
+    model.exponents.resize(0, linear.order() + 1);
+    model.E.resize(linear.order(), 0);
+    model.F.resize(1, 0);
+    model.free.resize(linear.order() + 1, 0);
+    return model;
+}
+
+} // namespace
+
+MatrixXd powersOf(const VectorXd& v, Index count)
+{
+    MatrixXd powers(v.size(), count);
+    for (Index k = 0; k < count; ++k)
+        powers.col(k) = k == 0 ? v.cwiseAbs2() : VectorXd(powers.col(k - 1).cwiseProduct(v));
+    return powers;
+}
+
+MatrixXd filtered(const StateSpace& G, const MatrixXd& columns)
+{
+    MatrixXd result(columns.rows(), columns.cols());
+    for (Index c = 0; c < columns.cols(); ++c)
+        result.col(c) = simulate(G, MatrixXd(columns.col(c)));
+    return result;
+}
+
+BlockError::BlockError(const BlockModel& structure, const std::vector<PnlssRecord>& records)
+    : structure_(structure), recursion_(withoutTerms(structure.linear), true), records_(records)
+{
+    for (const auto& record : records)
+        power_ += record.output.bottomRows(record.output.rows() - record.skip).squaredNorm();
+}
+
+VectorXd BlockError::valuesOf(const BlockModel& model) const
+{
+    const VectorXd ofG = recursion_.valuesOf(withoutTerms(model.linear));
+    VectorXd values(ofG.size() + model.hammerstein.size() + model.wiener.size() + model.feedback.size() + 1);
+    values << ofG, model.hammerstein, model.wiener, model.feedback, model.offset;
+    return values;
+}
+
+BlockModel BlockError::modelAt(const VectorXd& values) const
+{
+    auto linear = withoutTerms(structure_.linear);
+    auto model = structure_;
+    Index at = recursion_.parameters();
+    recursion_.setValues(linear, values.head(at));
+    model.linear = linear.linear;
+    for (const auto branch : blockBranches()) {
+        VectorXd& c = model.of(branch);
+        c = values.segment(at, c.size()).eval();
+        at += c.size();
+    }
+    model.offset = values[at];
+    return model;
+}
+
+double BlockError::cost(const VectorXd& values)
+{
+    const auto model = modelAt(values);
+    if (!isStable(model.linear))
+        return std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    for (const auto& record : records_)
+        sum += (record.output - simulate(model, record.input)).bottomRows(record.output.rows() - record.skip).squaredNorm();
+    return std::isfinite(sum) ? sum / power_ : std::numeric_limits<double>::infinity();
+}
+
+MatrixXd BlockError::factor(const VectorXd& values)
+{
+    const auto model = modelAt(values);
+    TallQr qr(values.size() + 1);
+    for (const auto& record : records_) {
+        const VectorXd u = record.input.col(0), w = simulate(model.linear, u);
+        const MatrixXd dw = derivatives(model, u);
+        MatrixXd dG = (1.0 + polynomialSlope(model.wiener, w.array())).matrix().asDiagonal() * dw;
+        if (model.feedback.size() > 0)
+            dG += filtered(model.linear, polynomialSlope(model.feedback, w.array()).matrix().asDiagonal() * dw);
+        if (model.hammerstein.size() + model.feedback.size() > 0)
+            dG += derivatives(model, polynomial(model.hammerstein, u.array()) + polynomial(model.feedback, w.array()));
+        MatrixXd rows(u.size(), values.size() + 1);
+        rows << dG, filtered(model.linear, powersOf(u, model.hammerstein.size())), powersOf(w, model.wiener.size()),
+            filtered(model.linear, powersOf(w, model.feedback.size())), VectorXd::Ones(u.size()),
+            record.output - simulate(model, record.input);
+        MatrixXd judged = rows.bottomRows(rows.rows() - record.skip);
+        qr.fold(judged);
+    }
+    return qr.R() / std::sqrt(power_);
+}
+
+MatrixXd BlockError::derivatives(const BlockModel& model, const VectorXd& v) const
+{
+    const auto linear = withoutTerms(model.linear);
+    MatrixXd states, outputs, J(v.size(), recursion_.parameters());
+    recursion_.run(linear, v, VectorXd::Zero(model.linear.order()), std::numeric_limits<double>::max(), states, outputs);
+    recursion_.differentiate(linear, v, states, [&](Index first, std::vector<MatrixXd>& d) {
+        J.middleRows(first, d[0].rows()) = d[0].leftCols(J.cols());
+    });
+    return J;
+}
+
+} // namespace excursion
