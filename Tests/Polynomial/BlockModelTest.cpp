@@ -5,6 +5,7 @@
 #include "Engine/Polynomial/RecordError.h"
 #include "Linear/Problem.h"
 #include "Polynomial/LinearStart.h"
+#include "Polynomial/Silverbox.h"
 
 #include <nlohmann/json.hpp>
 
@@ -181,6 +182,26 @@ TEST_CASE("A hardening spring is seen as feedback")
     CHECK(fit.steps[1].errorDb < fit.steps[0].errorDb - 6.0);
     CHECK(fit.validationDb <= fit.steps[1].errorDb);
     CHECK(fit.validationDb < (amplitude < 0.1 ? -40.0 : -22.0));
+    CHECK(fit.stable);
+}
+
+TEST_CASE("The Silverbox, a circuit with a hardening spring, is seen as feedback")
+{
+    const Silverbox box;
+    if (box.input.size() == 0)
+        return;
+    std::vector<Eigen::VectorXd> inputs, outputs;
+    for (Index k = 0; k < 8; ++k) {
+        inputs.emplace_back(box.input.segment(40580 + 8000 * k, 8000));
+        outputs.emplace_back(box.output.segment(40580 + 8000 * k, 8000));
+    }
+    const auto linear = linearStart(meanResponse(inputs, outputs, box.rate), 2, box.rate);
+    const auto fit = fitBlockModel(linear, {box.multisines()}, {box.lastMultisine()});
+    REQUIRE(fit.steps.size() >= 2);
+    CHECK(fit.steps[1].branch == BlockBranch::feedback);
+    CHECK(fit.steps[1].errorDb < fit.steps[0].errorDb - 4.0);
+    for (const auto branch : {BlockBranch::hammerstein, BlockBranch::wiener})
+        CHECK(fit.steps[1].errorDbOf.at(branch) > fit.steps[0].errorDb - 0.5);
     CHECK(fit.stable);
 }
 

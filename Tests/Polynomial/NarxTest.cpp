@@ -6,6 +6,7 @@
 #include "Engine/Polynomial/NarxRecursion.h"
 #include "Engine/Polynomial/RecordError.h"
 #include "Linear/Problem.h"
+#include "Polynomial/Silverbox.h"
 
 #include <nlohmann/json.hpp>
 
@@ -165,34 +166,13 @@ TEST_CASE("Refinement takes away the bias that noise in the past outputs makes")
 
 TEST_CASE("A NARX fit of the Silverbox is told by its simulation")
 {
-    const auto folder = dataFolder("silverbox");
-    if (folder.empty())
+    const Silverbox box;
+    if (box.input.size() == 0)
         return;
-    std::ifstream file(folder / "SNLS80mV.csv");
-    std::string line;
-    std::vector<double> u, y;
-    while (std::getline(file, line)) {
-        std::istringstream cells(line);
-        std::string a, b;
-        if (std::getline(cells, a, ',') && std::getline(cells, b, ','))
-            try {
-                const double v1 = std::stod(a), v2 = std::stod(b);
-                u.push_back(v1);
-                y.push_back(v2);
-            } catch (const std::exception&) {
-            }
-    }
-    REQUIRE(u.size() == 131072);
-    Eigen::VectorXd U = Eigen::Map<Eigen::VectorXd>(u.data(), 131072), Y = Eigen::Map<Eigen::VectorXd>(y.data(), 131072);
-    U.array() -= U.mean();
-    Y.array() -= Y.mean();
-    const auto record = [&](Index from, Index to, Index skip) {
-        return PnlssRecord {U.segment(from, to - from), Y.segment(from, to - from), skip, false};
-    };
-    const auto fit = fitNarx(1e7 / 16384, {record(40580, 80000, 200)}, {record(118800, 127400, 200)},
-                             {.outputLags = 2, .inputLags = 2, .maximumTerms = 20});
-    const double relative = std::pow(10.0, simulationErrorDb(fit.model, {record(0, 40000, 1000)}) / 20.0);   // on the arrow
-    const double millivolts = 1e3 * relative * Y.segment(1000, 39000).norm() / std::sqrt(39000.0);
+    const auto fit = fitNarx(box.rate, {box.multisines()}, {box.lastMultisine()}, {.outputLags = 2, .inputLags = 2, .maximumTerms = 20});
+    const auto arrow = box.arrow();
+    const double relative = std::pow(10.0, simulationErrorDb(fit.model, {arrow}) / 20.0);
+    const double millivolts = 1e3 * relative * arrow.output.bottomRows(39000).norm() / std::sqrt(39000.0);
     CHECK(fit.stable);
     CHECK(fit.validationDb < -45.0);
     CHECK(millivolts < 0.45);
