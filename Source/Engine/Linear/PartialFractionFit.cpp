@@ -2,13 +2,14 @@
 #include "Engine/Linear/PartialFractionFit.h"
 
 #include "Engine/Error.h"
+#include "Engine/Linear/DampedSteps.h"
 #include "Engine/Linear/RealRows.h"
+#include "Engine/Linear/RelativeDegree.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include <cmath>
 #include <numbers>
@@ -47,18 +48,21 @@ Problem problemOf(const FrequencyData& data, const Sections& sections)
     if (data.inputs != 1)
         throw Error(Error::Kind::data, "Partial fractions are fitted to responses to one input; these are to "
                                            + std::to_string(data.inputs) + ".");
+    if (sections.relativeDegree < 0 || sections.relativeDegree > std::min<Index>(3, sections.order()))
+        throw Error(Error::Kind::usage, "The relative degree of partial fractions lies between 0 and 3, and is at most their order.");
     return Problem(data, sections);
 }
 
-/// C and D of one output from the triangular factor of [basis, 1 | .. | y], and what the truncated solution leaves behind.
-double solveOutput(const MatrixXd& R, Index n, Index o, PartialFractionFit& fit)
+/// C and D of one output from the triangular factor of [basis, 1 | .. | y] times `permitted`, and what the truncated solution leaves behind.
+double solveOutput(const MatrixXd& R, const MatrixXd& permitted, Index o, PartialFractionFit& fit)
 {
-    const MatrixXd top = R.topLeftCorner(n + 1, n + 1);
-    const VectorXd q = R.col(R.cols() - 1).head(n + 1);
-    const VectorXd x = truncatedSolve(top, q, rounding);
+    const auto free = permitted.cols(), n = permitted.rows() - 1;
+    const MatrixXd top = R.topLeftCorner(free, free);
+    const VectorXd q = R.col(R.cols() - 1).head(free);
+    const VectorXd y = truncatedSolve(top, q, rounding), x = permitted * y;
     fit.C.row(o) = x.head(n);
     fit.D[o] = x[n];
-    return (q - top * x).squaredNorm();
+    return (q - top * y).squaredNorm();
 }
 
 PartialFractionFit emptyFit(const Sections& sections, Index outputs)
@@ -70,20 +74,32 @@ PartialFractionFit emptyFit(const Sections& sections, Index outputs)
     return fit;
 }
 
+/// The columns of [basis, 1] that may be combined freely.
+void placePermitted(const MatrixXd& rows, const MatrixXd& permitted, MatrixXd& folded)
+{
+    if (permitted.cols() == rows.cols())
+        folded.leftCols(rows.cols()) = rows;
+    else
+        folded.leftCols(permitted.cols()) = rows * permitted;
+}
+
 PartialFractionFit fitAt(const Sections& sections, const Problem& problem)
 {
     const auto n = sections.order(), K = problem.lambda.size();
     auto fit = emptyFit(sections, problem.value.cols());
     const MatrixXcd basis = partialFractions(sections, problem.lambda);
-    MatrixXd rows(2 * K, n + 2);
+    const MatrixXd permitted = permittedCoefficients(sections);
+    const auto free = permitted.cols();
+    MatrixXd rows(2 * K, n + 1), folded(2 * K, free + 1);
     for (Index o = 0; o < problem.value.cols(); ++o) {
         placeRealRows(rows, 0, basis, problem.weights.col(o));
         rows.col(n) << problem.weights.col(o), VectorXd::Zero(K);
-        rows.col(n + 1) << problem.value.col(o).real(), problem.value.col(o).imag();
-        TallQr qr(n + 2);
-        qr.fold(rows);
-        const double left = qr.R()(n + 1, n + 1);
-        fit.cost += (left * left + solveOutput(qr.R(), n, o, fit)) / problem.power;
+        placePermitted(rows, permitted, folded);
+        folded.col(free) << problem.value.col(o).real(), problem.value.col(o).imag();
+        TallQr qr(free + 1);
+        qr.fold(folded);
+        const double left = qr.R()(free, free);
+        fit.cost += (left * left + solveOutput(qr.R(), permitted, o, fit)) / problem.power;
     }
     return fit;
 }
@@ -99,15 +115,21 @@ Projected projectedJacobian(const PartialFractionFit& fit, const Problem& proble
     const auto& sections = fit.sections;
     const auto n = sections.order(), K = problem.lambda.size();
     const MatrixXcd basis = partialFractions(sections, problem.lambda);
-    MatrixXd rows(2 * K, 2 * n + 2);
+    const MatrixXd permitted = permittedCoefficients(sections);
+    const auto free = permitted.cols();
+    MatrixXd rows(2 * K, n + 1), folded(2 * K, free + n + 1);
     TallQr all(n + 1);
     for (Index o = 0; o < problem.value.cols(); ++o) {
         placeRealRows(rows, 0, basis, problem.weights.col(o));
         rows.col(n) << problem.weights.col(o), VectorXd::Zero(K);
-        placeRealRows(rows, n + 1, partialFractionSlopes(sections, problem.lambda, basis, fit.C.row(o).transpose()), problem.weights.col(o));
-        rows.col(2 * n + 1) << problem.value.col(o).real(), problem.value.col(o).imag();
-        TallQr qr(2 * n + 2);
-        qr.fold(rows);
+        placePermitted(rows, permitted, folded);
+        const VectorXd c = fit.C.row(o).transpose();
+        placeRealRows(folded, free, partialFractionSlopes(sections, problem.lambda, basis, c), problem.weights.col(o));
+        if (sections.relativeDegree > 2)
+            folded.middleCols(free, n) += rows * coefficientSlopes(sections, c);
+        folded.col(free + n) << problem.value.col(o).real(), problem.value.col(o).imag();
+        TallQr qr(free + n + 1);
+        qr.fold(folded);
         MatrixXd corner = qr.R().bottomRightCorner(n + 1, n + 1);
         all.fold(corner);
     }
@@ -201,8 +223,7 @@ PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, con
         result.reason = "there is no pole to move";
         return result;
     }
-    double damping = 1e-3;
-    int still = 0;
+    DampedSteps steps(options);
     while (result.iterations < options.maximumIterations) {
         progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "refining the poles");
         if (result.fit.cost < 1e-28) {
@@ -212,32 +233,21 @@ PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, con
         }
         ++result.iterations;
         const auto projected = projectedJacobian(result.fit, problem);
-        const VectorXd scale
-            = projected.J.colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
-        bool accepted = false;
-        double gain = 0.0;
-        for (int attempt = 0; attempt < 12 && !accepted; ++attempt) {
-            MatrixXd system(2 * n, n);
-            system << projected.J * scale.asDiagonal(), std::sqrt(damping) * MatrixXd::Identity(n, n);
-            VectorXd right = VectorXd::Zero(2 * n);
-            right.head(n) = projected.rest;
-            const VectorXd step = scale.cwiseProduct(Eigen::HouseholderQR<MatrixXd>(system).solve(right));
+        steps.take(projected.J, projected.rest, [&](const VectorXd& step) {
             Sections moved = result.fit.sections;
             moved.factors += step;
-            if (step.allFinite() && (!options.stable || isStable(moved))) {
-                const auto trial = fitAt(moved, problem);
-                if (trial.cost < result.fit.cost) {
-                    gain = (result.fit.cost - trial.cost) / result.fit.cost;
-                    result.fit = trial;
-                    accepted = true;
-                }
-            }
-            damping = accepted ? std::max(0.2 * damping, 1e-14) : 6.0 * damping;
-        }
-        still = accepted && gain < options.costTolerance ? still + 1 : 0;
-        if (!accepted || still >= 2) {
+            if (options.stable && !isStable(moved))
+                return 0.0;
+            const auto trial = fitAt(moved, problem);
+            if (!(trial.cost < result.fit.cost))
+                return 0.0;
+            const double gain = (result.fit.cost - trial.cost) / result.fit.cost;
+            result.fit = trial;
+            return gain;
+        });
+        if (steps.ended()) {
             result.converged = true;
-            result.reason = accepted ? "the error no longer falls" : "no step lowers the error any further";
+            result.reason = steps.reason();
             return result;
         }
     }

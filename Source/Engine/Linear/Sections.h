@@ -19,6 +19,7 @@ struct Sections {
     double sampleRate = 0.0;     ///< Hz; 0: continuous time
     double scale = 1.0;          ///< rad/s (to the power alpha) in continuous time, else 1
     double alpha = 1.0;          ///< order of differentiation, between 0 and 2; 1 in discrete time
+    int relativeDegree = 0;    ///< 0 to 3: coefficients are fitted so that G falls as lambda^-relativeDegree at least, see RelativeDegree.h
 
     Eigen::Index order() const { return factors.size(); }
     Eigen::Index pairs() const { return factors.size() / 2; }
