@@ -31,11 +31,10 @@ int main(int argc, char** argv)
         double best = 0.0;
         for (const auto& family : families) {
             std::printf("\n%-14s", family.name.c_str());
-            int last = 0;
             for (int P = 3; P <= 21; ++P) {
-                const auto* member = family.within(P);
-                if (member && member->parameters > last && P >= family.members.front().parameters
-                    && std::any_of(family.members.begin(), family.members.end(), [P](const auto& m) { return m.parameters == P; }))
+                const auto member = std::find_if(family.members.begin(), family.members.end(),
+                                                 [P](const auto& m) { return m.parameters == P; });
+                if (member != family.members.end())
                     std::printf("%7.1f", member->errorDb);
                 else
                     std::printf("%7s", "");
@@ -44,8 +43,7 @@ int main(int argc, char** argv)
                 best = std::min(best, member.errorDb);
                 if (csv)
                     csv << driver.stem().string() << ',' << family.name << ',' << member.parameters << ',' << member.alpha << ','
-                        << member.errorDb << ','
-                        << member.stable << '\n';
+                        << member.errorDb << ',' << member.stable << '\n';
             }
         }
         std::printf("\nwithin 1 dB of the best, %.1f dB:", best);

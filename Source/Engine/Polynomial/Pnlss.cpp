@@ -3,11 +3,12 @@
 
 #include "Engine/Error.h"
 
-#include <cmath>
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 
 namespace excursion {
 namespace {
@@ -30,6 +31,12 @@ Polynomial product(const Polynomial& a, const Polynomial& b)
             result[e] += ca * cb;
         }
     return result;
+}
+
+void requireDiscrete(const StateSpace& linear)
+{
+    if (linear.continuous())
+        throw Error(Error::Kind::usage, "A polynomial state-space model is built on a linear model of discrete time; transform it first.");
 }
 
 } // namespace
@@ -64,10 +71,28 @@ bool Pnlss::fits(std::string* reason) const
     return true;
 }
 
+Pnlss withTerms(const StateSpace& linear, const Exponents& chosen)
+{
+    requireDiscrete(linear);
+    Pnlss model;
+    model.linear = linear;
+    model.exponents = chosen;
+    model.E = MatrixXd::Zero(linear.order(), chosen.rows());
+    model.F = MatrixXd::Zero(linear.outputs(), chosen.rows());
+    model.free.setConstant(linear.order() + linear.outputs(), chosen.rows(), true);
+    std::string reason;
+    if (!model.isValid(&reason))
+        throw Error(Error::Kind::usage, "These monomials make no model: " + reason + ".");
+    std::set<std::vector<int>> seen;
+    for (Index k = 0; k < chosen.rows(); ++k)
+        if (const Eigen::RowVectorXi row = chosen.row(k); !seen.emplace(row.begin(), row.end()).second)
+            throw Error(Error::Kind::usage, "These monomials make no model: number " + std::to_string(k + 1) + " of the list occurs twice.");
+    return model;
+}
+
 Pnlss withTerms(const StateSpace& linear, int degree, TermMask mask, bool offset)
 {
-    if (linear.continuous())
-        throw Error(Error::Kind::usage, "A polynomial state-space model is built on a linear model of discrete time; transform it first.");
+    requireDiscrete(linear);
     if (degree < 2)
         throw Error(Error::Kind::usage, "The degree of a polynomial state-space model must be at least 2.");
     const auto n = static_cast<int>(linear.order()), p = static_cast<int>(linear.outputs());
@@ -77,16 +102,12 @@ Pnlss withTerms(const StateSpace& linear, int degree, TermMask mask, bool offset
     for (Index k = 0; k < all.rows(); ++k)
         if (use.col(k).any())
             kept.push_back(k);
-    Pnlss model;
-    model.linear = linear;
     const Index constant = offset ? 1 : 0, count = static_cast<Index>(kept.size());
-    model.exponents = Exponents::Zero(constant + count, all.cols());
-    model.exponents.bottomRows(count) = all(kept, Eigen::all);
-    model.free.setConstant(n + p, constant + count, true);
+    Exponents chosen = Exponents::Zero(constant + count, all.cols());
+    chosen.bottomRows(count) = all(kept, Eigen::all);
+    auto model = withTerms(linear, chosen);
     for (Index k = 0; k < count; ++k)
         model.free.col(constant + k) = use.col(kept[static_cast<std::size_t>(k)]);
-    model.E = MatrixXd::Zero(n, model.terms());
-    model.F = MatrixXd::Zero(p, model.terms());
     return model;
 }
 

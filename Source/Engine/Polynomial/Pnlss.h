@@ -32,6 +32,14 @@ struct Pnlss {
 /// @param offset  also a constant, the monomial of degree 0, in every row: for sensors and amplifiers that have an offset
 Pnlss withTerms(const StateSpace&, int degree, TermMask = TermMask::full, bool offset = false);
 
+/// The linear model with a chosen list of monomials, all free in every row, at coefficients of zero: for models of high order, where even
+/// the monomials without cross products are too many (seed 4.4.2), and for terms that physics tells. What a row is not to use is taken out
+/// of `free`.
+/// @param chosen  their exponents, K x (n + m), of degree 2 and above, or one row of zeros for an offset; in this order
+/// Throws Error (usage) when the model is continuous, and for a list with another number of columns, negative exponents, degree 1, or a
+/// monomial twice.
+Pnlss withTerms(const StateSpace&, const Exponents& chosen);
+
 /// The output, N x p, for an input of N samples, N x m. @param initial  empty: from rest
 /// A model that runs away leaves the finite numbers; what comes after is not finite either.
 /// Throws Error (usage) for an input that does not fit.
