@@ -4,6 +4,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/LadderFile.h"
+#include "Report/ModelReport.h"
 #include "Report/Report.h"
 
 #include <nlohmann/json.hpp>
@@ -14,7 +15,7 @@
 namespace excursion::cli {
 namespace {
 
-void run(const std::string& folder, Terminal& terminal)
+void drawLadder(const std::string& folder, Terminal& terminal)
 {
     const auto ladder = (std::filesystem::path(folder) / "ladder.json").string();
     const auto page = (std::filesystem::path(folder) / "report.html").string();
@@ -30,14 +31,34 @@ void run(const std::string& folder, Terminal& terminal)
                        {"sentence", file.ladder.sentence}});
 }
 
+void drawDocument(const std::string& path, Terminal& terminal)
+{
+    const auto document = readJson(path);
+    const auto page = std::filesystem::path(path).replace_extension(".html").string();
+    requireFilePlace(page);
+    writeDocumentPage(JsonField(document, "", path), page);
+    terminal.say("Wrote " + page + ".");
+    terminal.document({{"format", "excursion-report"}, {"version", 1}, {"document", path}, {"report", page}});
+}
+
+void run(const std::string& place, Terminal& terminal)
+{
+    std::error_code ignored;
+    (std::filesystem::is_regular_file(place, ignored) ? drawDocument : drawLadder)(place, terminal);
+}
+
 } // namespace
 
 void addReport(CLI::App& app, Terminal& terminal)
 {
-    auto folder = std::make_shared<std::string>();
-    auto* verb = app.add_subcommand("report", "Draw the report of a ladder again, as one page that needs nothing else")->group(step::diagnose);
-    verb->add_option("DIR", *folder, "folder of an earlier improve: ladder.json is read, report.html written")->required();
-    verb->callback([folder, &terminal] { run(*folder, terminal); });
+    auto place = std::make_shared<std::string>();
+    auto* verb = app.add_subcommand("report", "Draw a ladder again, or a document of identify, pnlss or rank, as one page that needs nothing else")
+                     ->group(step::diagnose);
+    verb->add_option("PLACE", *place,
+                     "folder of an earlier improve: ladder.json is read, report.html written; or a .json: a model of identify, reduce or stabilize, or what --json "
+                     "FILE of identify, pnlss or rank wrote, beside which the page is put")
+        ->required();
+    verb->callback([place, &terminal] { run(*place, terminal); });
 }
 
 } // namespace excursion::cli

@@ -44,9 +44,9 @@ TEST_CASE("Classes of models are ranked by what they leave of records that they 
     const auto take = takeOf(11, "stiffness", {Quantity::voltage, Quantity::current, Quantity::displacement});
     RankOptions options;
     options.output = Quantity::displacement;
-    options.classes = {"linear", "hammerstein", "narx", "pnlss", "driver", "driver-with-effects"};
+    options.classes = {"linear", "hammerstein", "block", "narx", "pnlss", "driver", "driver-with-effects"};
     const auto ranking = rank(take, options);
-    REQUIRE(ranking.models.size() == 6);
+    REQUIRE(ranking.models.size() == 7);
     for (const auto& model : ranking.models) {
         CAPTURE(model.name, model.trouble, model.description, model.estimationDb, model.validationDb, model.parameters);
         CHECK(model.trouble.empty());
@@ -64,6 +64,7 @@ TEST_CASE("Classes of models are ranked by what they leave of records that they 
     CHECK(named(ranking, "linear").validationDb > *ranking.noiseDb + 20.0);
     CHECK(named(ranking, "driver").validationDb > *ranking.noiseDb + 20.0);
     CHECK(named(ranking, "hammerstein").validationDb > *ranking.noiseDb + 15.0);
+    CHECK(named(ranking, "block").validationDb < named(ranking, "linear").validationDb - 6.0);
     CHECK(ranking.sentence.find("driver-with-effects") != std::string::npos);
 }
 

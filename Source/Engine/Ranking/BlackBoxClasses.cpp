@@ -6,6 +6,7 @@
 #include "Engine/Fractional/MixedImpedance.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Simulation.h"
+#include "Engine/Polynomial/BlockModelFit.h"
 #include "Engine/Polynomial/FractionalPnlssFit.h"
 #include "Engine/Polynomial/FractionalRecursion.h"
 #include "Engine/Polynomial/HammersteinFit.h"
@@ -90,6 +91,20 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
             static_cast<int>(fit.model.parameters()), true};
+}
+
+FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
+{
+    BlockModelFitOptions fitting;
+    fitting.degree = data.options.degree;
+    fitting.maximumIterations = data.options.iterations;
+    const auto fit = fitBlockModel(data.linear, data.records.estimation, data.records.validation, fitting, progress);
+    auto description = ofOrder("", data.linear.order(), fitting.degree);
+    for (const auto& step : fit.steps)
+        if (step.branch)
+            description += ", " + std::string(name(*step.branch));
+    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); }, description,
+            static_cast<int>(fit.model.parameters()), fit.stable};
 }
 
 FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)

@@ -34,6 +34,7 @@ struct FittedClass {
 FittedClass fitLinearClass(const RankedTake&, const Progress&);
 FittedClass fitFractionalClass(const RankedTake&, const Progress&);
 FittedClass fitHammersteinClass(const RankedTake&, const Progress&);
+FittedClass fitBlockClass(const RankedTake&, const Progress&);
 FittedClass fitNarxClass(const RankedTake&, const Progress&);
 FittedClass fitPnlssClass(const RankedTake&, const Progress&);
 FittedClass fitFractionalPnlssClass(const RankedTake&, const Progress&);

@@ -31,9 +31,10 @@ const std::vector<Fitting>& fittings()
         {{"linear", "linear state space, order by minimum description length"}, fitLinearClass, 0.01},
         {{"fractional", "linear, R + L s^alpha and a resonance"}, fitFractionalClass, 0.01},
         {{"hammerstein", "powers of the input through filters"}, fitHammersteinClass, 0.08},
-        {{"narx", "a polynomial in past inputs and outputs"}, fitNarxClass, 0.15},
-        {{"pnlss", "polynomial state space"}, fitPnlssClass, 0.15},
-        {{"fractional-pnlss", "polynomial state space, the coil's state of fractional order"}, fitFractionalPnlssClass, 0.25},
+        {{"block", "linear dynamics with polynomials before, behind and in a loop around them"}, fitBlockClass, 0.08},
+        {{"narx", "a polynomial in past inputs and outputs"}, fitNarxClass, 0.12},
+        {{"pnlss", "polynomial state space"}, fitPnlssClass, 0.2},
+        {{"fractional-pnlss", "polynomial state space, the coil's state of fractional order"}, fitFractionalPnlssClass, 0.15},
         {{"driver", "the physical driver without effects"}, fitDriverClass, 0.05},
         {{"driver-with-effects", "the physical driver with the effects that were found missing"}, fitDriverWithEffectsClass, 0.3}};
     return all;

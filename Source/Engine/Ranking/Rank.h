@@ -47,7 +47,7 @@ struct ModelClass {
     std::string sentence;   ///< what it is
 };
 
-/// "linear", "fractional", "hammerstein", "narx", "pnlss", "fractional-pnlss", "driver" (linear, physical), "driver-with-effects" (as `improve` leaves it).
+/// "linear", "fractional", "hammerstein", "block", "narx", "pnlss", "fractional-pnlss", "driver" (linear, physical), "driver-with-effects" (as `improve` leaves it).
 const std::vector<ModelClass>& modelClasses();
 
 /// All classes on the same records of one take (recordsOf), errors by simulation. The physical driver is fitted to all channels and levels of the take, as always;

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Report/ModelReport.h"
+
+#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Measurement/DraftFile.h"
+#include "Plots/Engineering.h"
+#include "Plots/ModelPlots.h"
+#include "Report/Page.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace excursion {
+namespace {
+
+std::string decibelsIn(const JsonField& object, const char* key)
+{
+    const double value = object.has(key) ? object.at(key).numberOrNaN() : std::numeric_limits<double>::quiet_NaN();
+    return std::isfinite(value) ? fixedText(value, 1) : "\u2013";
+}
+
+void addRoots(Page& page, const StateSpace& model, double alpha)
+{
+    page.section("The model");
+    page.figures({rootsPlot(model, alpha), gainSurfacePlot(model, alpha)}, 2,
+                 "Left: a pole or zero by its frequency and its angle from the positive real axis; poles above the border decay. Right: the gain along rays in the "
+                 "plane of s; the one at 90\u00b0 is the frequency response, and the closer a pole is to a ray the more it stands out on it.");
+}
+
+void addStateSpace(Page& page, const JsonField& document)
+{
+    const auto named = stateSpaceFromJson(document);
+    page.headline(named.name + ": " + std::to_string(named.model.order()) + " states, " + (isStable(named.model) ? "stable" : "not stable"),
+                  isStable(named.model) ? "good" : "bad");
+    addRoots(page, named.model, 1.0);
+}
+
+void addFractionalStateSpace(Page& page, const JsonField& document)
+{
+    const auto named = fractionalStateSpaceFromJson(document);
+    const bool stable = isStable(named.model);
+    page.headline(named.name + ": " + std::to_string(named.model.form.order()) + " states of order " + fixedText(named.model.alpha, 4) + ", "
+                      + (stable ? "stable" : "not stable"),
+                  stable ? "good" : "bad");
+    addRoots(page, named.model.form, named.model.alpha);
+}
+
+/// The sweep of an identification, of whole or fractional orders.
+void addSweep(Page& page, const JsonField& document)
+{
+    ErrorsByOrder errors;
+    std::vector<std::vector<Page::Cell>> rows;
+    std::vector<Plot> plots;
+    for (const auto& entry : document.at("orders").items()) {
+        errors.order.push_back(entry.at("order").number());
+        errors.error.push_back(entry.at("errorDb").numberOrNaN());
+        errors.weighted.push_back(entry.at("weightedErrorDb").numberOrNaN());
+        errors.validation.push_back(entry.has("validationDb") ? entry.at("validationDb").number() : std::numeric_limits<double>::quiet_NaN());
+        rows.push_back({Page::figure(fixedText(errors.order.back(), 0)), Page::figure(decibelsIn(entry, "errorDb")),
+                        Page::figure(decibelsIn(entry, "weightedErrorDb")), Page::figure(decibelsIn(entry, "validationDb")),
+                        entry.at("stable").flag() ? "yes" : "no"});
+        if (!entry.has("curve") || entry.at("curve").items().size() < 2)
+            continue;
+        Plot curve;
+        curve.title = "Likelihood against \u03b1, order " + fixedText(errors.order.back(), 0);
+        curve.x = {"\u03b1", "", false, 0.0, 0.0, {}};
+        curve.y = {"V over its least", "", true, 0.0, 0.0, {}};
+        Series series {"V", Role::model, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& point : entry.at("curve").items()) {
+            const auto pair = point.numbers();
+            if (pair.size() != 2)
+                point.refuse("alpha and V");
+            series.x.push_back(pair[0]);
+            series.y.push_back(pair[1]);
+            least = std::min(least, pair[1]);
+        }
+        for (auto& value : series.y)
+            value /= least;
+        curve.series.push_back(std::move(series));
+        plots.push_back(std::move(curve));
+    }
+    page.headline(document.at("sentence").text().empty() ? "Order " + fixedText(document.at("chosen").number(), 0) : document.at("sentence").text(), "good");
+    if (errors.order.size() > 1)
+        plots.insert(plots.begin(), orderPlot(errors));
+    page.section("The error against the order");
+    page.table({"order", "error dB", "weighted dB", "validation dB", "stable"}, rows);
+    if (!plots.empty())
+        page.figures(plots, plots.size() == 1 ? 1 : 2, "Errors are relative; the weighted one counts each line by what its noise allows.");
+}
+
+void addIdentification(Page& page, const JsonField& document)
+{
+    addSweep(page, document);
+    addRoots(page, stateSpaceFromJson(document.at("model")).model, 1.0);
+}
+
+void addFractionalIdentification(Page& page, const JsonField& document)
+{
+    addSweep(page, document);
+    const auto named = fractionalStateSpaceFromJson(document.at("model"));
+    addRoots(page, named.model.form, named.model.alpha);
+}
+
+void addPnlssFit(Page& page, const JsonField& document)
+{
+    const bool stable = document.at("stable").flag();
+    page.headline("Polynomial state space: " + decibelsIn(document, "estimationDb") + " dB on what it was fitted to, " + decibelsIn(document, "validationDb")
+                      + " dB on what it had not seen" + (stable ? "" : "; its linear part is not stable"),
+                  stable ? "good" : "bad");
+    if (document.has("laws"))
+        page.paragraph(document.at("laws").at("sentence").text());
+    Plot fall;
+    fall.title = "How the error fell";
+    fall.x = {"step", "", false, 0.0, 0.0, {}};
+    fall.y = {"error", "dB", false, 0.0, 0.0, {}};
+    Series series {"", Role::error, {}, document.at("history").numbers(), {}, {}, Series::Shape::pointsAndLine, 0};
+    for (std::size_t k = 0; k < series.y.size(); ++k)
+        series.x.push_back(static_cast<double>(k));
+    fall.series.push_back(std::move(series));
+    fall.key = false;
+    if (document.at("history").items().size() > 1) {
+        page.section("The fit");
+        page.figures({fall}, 1, "On the records that it was fitted to, after each step that was taken; it stopped because " + document.at("stopped").text() + ".");
+    }
+    if (document.at("model").at("format").text() == "excursion-pnlss")
+        addRoots(page, stateSpaceFromJson(document.at("model").at("linear")).model, 1.0);
+}
+
+void addRankingOfClasses(Page& page, const JsonField& document)
+{
+    page.headline(document.at("sentence").text(), "good");
+    page.paragraph(document.at("output").text() + " explained by " + document.at("input").text()
+                   + (document.has("noiseDb") ? "; noise at " + decibelsIn(document, "noiseDb") + " dB" : ""));
+    Plot errors, loads;
+    errors.title = "Error on records not seen";
+    errors.y = {"error", "dB", false, 0.0, 0.0, {}};
+    loads.title = "Error against parameters";
+    loads.x = {"parameters", "", true, 0.0, 0.0, {}};
+    loads.y = {"error", "dB", false, 0.0, 0.0, {}};
+    loads.key = false;
+    Series error {"validation", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+    Series against {"", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+    std::vector<std::vector<Page::Cell>> rows;
+    std::vector<std::string> troubles;
+    for (const auto& model : document.at("models").items()) {
+        const auto name = model.at("class").text();
+        if (model.has("trouble")) {
+            troubles.push_back(name + ": " + model.at("trouble").text());
+            continue;
+        }
+        const double judged = model.has("validationDb") ? model.at("validationDb").number() : model.at("estimationDb").numberOrNaN();
+        const double parameters = model.at("parameters").number();
+        error.x.push_back(static_cast<double>(rows.size()));
+        error.y.push_back(judged);
+        against.x.insert(against.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
+        against.y.insert(against.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
+        errors.x.names.push_back(name);
+        rows.push_back({name, Page::figure(fixedText(parameters, 0)), Page::figure(decibelsIn(model, "estimationDb")),
+                        Page::figure(decibelsIn(model, "validationDb")), Page::figure(fixedText(100.0 * model.at("load").number(), 2) + " %"),
+                        model.at("stable").flag() ? "yes" : "no", model.at("description").text()});
+    }
+    errors.series.push_back(std::move(error));
+    loads.series.push_back(std::move(against));
+    if (document.has("noiseDb") && !rows.empty()) {
+        const double noise = document.at("noiseDb").number();
+        errors.series.push_back({"noise", Role::noise, {0.0, static_cast<double>(rows.size() - 1)}, {noise, noise}, {}, {}, Series::Shape::line, 0});
+    }
+    page.section("Side by side");
+    page.table({"class", "parameters", "estimation dB", "validation dB", "load", "stable", "what it is"}, rows);
+    for (const auto& trouble : troubles)
+        page.note(trouble);
+    if (!rows.empty())
+        page.figures({errors, loads}, 2, "Errors are those of simulations, relative to the output. The load is the time that one core simulates for.");
+}
+
+struct PageOf {
+    const char* format;
+    const char* title;
+    void (*add)(Page&, const JsonField&);
+};
+
+constexpr PageOf pagesOf[] {{"excursion-state-space", "Linear model", addStateSpace},
+                            {"excursion-fractional-state-space", "Fractional model", addFractionalStateSpace},
+                            {"excursion-identification", "Identification", addIdentification},
+                            {"excursion-fractional-identification", "Fractional identification", addFractionalIdentification},
+                            {"excursion-pnlss-fit", "Polynomial model", addPnlssFit},
+                            {"excursion-ranking", "Classes of models", addRankingOfClasses}};
+
+} // namespace
+
+std::string documentHtml(const JsonField& document)
+{
+    std::vector<std::string> known;
+    for (const auto& page : pagesOf)
+        known.emplace_back(page.format);
+    const auto format = document.at("format").oneOf(known);
+    for (const auto& wanted : pagesOf)
+        if (format == wanted.format) {
+            document.requireFormat(format, 1);
+            Page page(std::string("Excursion \u00b7 ") + wanted.title);
+            wanted.add(page, document);
+            return page.html();
+        }
+    document.at("format").refuse("a document that has a page");
+}
+
+void writeDocumentPage(const JsonField& document, const std::filesystem::path& path)
+{
+    const auto html = documentHtml(document);
+    DraftFile draft(path);
+    draft.write(html);
+    draft.publish();
+}
+
+} // namespace excursion

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pages of models: what their pictures hold, against closed forms, and what has no page.
+#include "Engine/Error.h"
+#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Linear/Response.h"
+#include "Plots/ModelPlots.h"
+#include "Report/ModelReport.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <numbers>
+#include <random>
+
+using namespace excursion;
+using std::numbers::pi;
+
+namespace {
+
+/// w0^2/(s^2 + 2 z w0 s + w0^2), in continuous time, or sampled by its poles.
+StateSpace resonance(double f0, double z, double sampleRate = 0.0)
+{
+    const double w0 = 2.0 * pi * f0;
+    StateSpace model;
+    if (sampleRate == 0.0) {
+        model.A = Eigen::MatrixXd {{0.0, 1.0}, {-w0 * w0, -2.0 * z * w0}};
+        model.B = Eigen::MatrixXd {{0.0}, {w0 * w0}};
+    } else {
+        const auto p = std::exp(std::polar(w0, std::acos(-z)) / sampleRate);
+        model.A = Eigen::MatrixXd {{0.0, 1.0}, {-std::norm(p), 2.0 * p.real()}};
+        model.B = Eigen::MatrixXd {{0.0}, {1.0}};
+    }
+    model.C = Eigen::MatrixXd {{1.0, 0.0}};
+    model.D = Eigen::MatrixXd::Zero(1, 1);
+    model.sampleRate = sampleRate;
+    return model;
+}
+
+} // namespace
+
+TEST_CASE("Poles stand at their frequency and angle, in continuous and in discrete time, above the border exactly when they are stable")
+{
+    for (const double rate : {0.0, 48000.0}) {
+        const auto plot = rootsPlot(resonance(80.0, 0.25, rate));
+        CAPTURE(rate);
+        REQUIRE(plot.series[0].title == "poles");
+        REQUIRE(plot.series[0].x.size() == 2);   // one of the pair, and the gap
+        CHECK(plot.series[0].x[0] == Approx(80.0).epsilon(1e-9));
+        CHECK(plot.series[0].y[0] == Approx(180.0 - std::acos(0.25) * 180.0 / pi).epsilon(1e-9));
+    }
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    int stable = 0;
+    for (int k = 0; k < 60; ++k) {
+        FractionalStateSpace model;
+        model.alpha = 0.2 + 0.02 * k;
+        model.form = resonance(50.0, 0.5);
+        for (auto& value : model.form.A.reshaped())
+            value = 200.0 * normal();
+        const auto plot = rootsPlot(model.form, model.alpha);
+        const double border = plot.series.back().y.front();
+        bool above = true;
+        for (const double angle : plot.series[0].y)
+            above = above && !(angle <= border);
+        CAPTURE(model.alpha);
+        CHECK(above == isStable(model));
+        stable += above;
+    }
+    CHECK(stable > 10);
+    CHECK(stable < 50);
+}
+
+TEST_CASE("The first cut of the gain surface is the frequency response, and on the ray of a pole the gain has no bound")
+{
+    const auto model = resonance(80.0, std::cos(pi / 4.0));   // its poles lie on the ray of 135 degrees
+    const auto plot = gainSurfacePlot(model);
+    REQUIRE(plot.series.size() == 4);
+    const auto response = respond(model, plot.series[0].x);
+    for (std::size_t k = 0; k < response.size(); ++k)
+        CHECK(plot.series[0].y[k] == Approx(20.0 * std::log10(std::abs(response[k](0, 0)))).margin(1e-6));
+    const auto largest = [&](std::size_t ray) { return *std::max_element(plot.series[ray].y.begin(), plot.series[ray].y.end()); };
+    CHECK(largest(0) < 1.0);
+    CHECK(largest(2) > 25.0);
+    const auto sampled = gainSurfacePlot(resonance(80.0, 0.25, 8000.0));
+    CHECK(sampled.series[0].x.back() <= 4000.0);
+}
+
+TEST_CASE("Every document that has a page makes one, and others are refused by what they are")
+{
+    const auto page = [](const nlohmann::json& document) { return documentHtml(JsonField(document, "", "test.json")); };
+    const auto linear = nlohmann::json(toJson(NamedStateSpace {"driver", {"voltage"}, {"current"}, resonance(80.0, 0.25), 0.0}));
+    const auto fractional = nlohmann::json(toJson(NamedFractionalStateSpace {"coil", {"current"}, {"voltage"}, {0.5, resonance(80.0, 0.25)}}));
+    nlohmann::json entry {{"order", 2}, {"errorDb", -20.0}, {"weightedErrorDb", -22.0}, {"validationDb", nullptr}, {"stable", true}};
+    nlohmann::json sweep {{"format", "excursion-identification"}, {"version", 1}, {"sentence", "order 2 <it> is"}, {"chosen", 2}, {"model", linear}};
+    sweep["orders"] = {entry, entry};
+    auto other = sweep;
+    other["format"] = "excursion-fractional-identification";
+    other["model"] = fractional;
+    other["orders"][0]["curve"] = {{0.4, 30.0}, {0.5, 10.0}, {0.6, 20.0}};
+    const nlohmann::json fit {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"estimationDb", -40.0}, {"validationDb", nullptr}, {"stable", true},
+                              {"stopped", "the error no longer falls"}, {"history", {-20.0, -35.0, -40.0}}, {"model", {{"format", "excursion-pnlss"}, {"linear", linear}}}};
+    const nlohmann::json good {{"class", "linear"}, {"description", "order 3"}, {"parameters", 7}, {"estimationDb", -30.0}, {"validationDb", -29.0}, {"load", 0.001}, {"stable", true}};
+    const nlohmann::json ranking {{"format", "excursion-ranking"}, {"version", 1}, {"sentence", "s"}, {"input", "voltage"}, {"output", "current"}, {"noiseDb", -70.0},
+                                  {"models", {good, {{"class", "narx"}, {"trouble", "ran & away"}}}}};
+    try {
+        for (const auto& document : {linear, fractional, sweep, other, fit, ranking}) {
+            CAPTURE(document.at("format").get<std::string>());
+            const auto html = page(document);
+            CHECK(html.find("<svg") != std::string::npos);
+            CHECK(html.find("<it>") == std::string::npos);
+        }
+        CHECK(page(ranking).find("ran &amp; away") != std::string::npos);
+    } catch (const Error& e) {
+        if (std::string(e.what()).find("gnuplot") == std::string::npos)
+            throw;
+        WARN("gnuplot is not installed; this test is skipped");
+    }
+    CHECK_THROWS_AS(page({{"format", "excursion-model"}, {"version", 1}}), Error);
+    CHECK_THROWS_AS(page(nlohmann::json::object()), Error);
+    auto newer = ranking;
+    newer["version"] = 2;
+    CHECK_THROWS_AS(page(newer), Error);
+    auto broken = sweep;
+    broken["orders"][0].erase("errorDb");
+    CHECK_THROWS_AS(page(broken), Error);
+}
