@@ -148,6 +148,39 @@ TEST_CASE("A block model answers as its branches do by hand, and so does the PNL
     CHECK((simulate(pnlssOf({G.model(), {}, {}, {}, 0.0}), u) - G(u)).norm() < 1e-12 * w.norm());
 }
 
+TEST_CASE("The feedback branch closed is the loop by hand, and differs by what goes through two polynomials")
+{
+    Normal normal(5);
+    const Resonator G(normal);
+    const double direct = GENERATE(0.0, 0.3);
+    BlockModel model;
+    model.linear = G.model();
+    model.linear.D(0, 0) = direct;
+    model.hammerstein = Eigen::VectorXd::Constant(1, 0.05);
+    model.wiener = Eigen::VectorXd::Constant(1, -0.1);
+    model.feedback = Eigen::Vector2d(0.2, -0.3);
+    model.offset = 0.4;
+    Eigen::VectorXd u(400), truth(400);
+    for (auto& x : u)
+        x = 0.5 * normal();
+    double x1 = 0.0, x2 = 0.0;
+    for (Index t = 0; t < 400; ++t) {
+        const double w = x1 + direct * u[t], bend = 0.05 * u[t] * u[t] + 0.2 * w * w - 0.3 * w * w * w, v = u[t] + bend;
+        truth[t] = 0.4 + w + direct * bend - 0.1 * w * w;
+        const double next = -G.a1 * x1 + x2 + G.b1 * v;
+        x2 = -G.a2 * x1 + G.b2 * v;
+        x1 = next;
+    }
+    CHECK((simulate(closedLoop(model), u) - truth).norm() < 1e-11 * truth.norm());
+    const auto difference = [&](double share) {
+        auto weak = model;
+        for (const auto branch : blockBranches())
+            weak.of(branch) *= share;
+        return (simulate(closedLoop(weak), u) - simulate(weak, u)).norm();
+    };
+    CHECK(std::log2(difference(0.02) / difference(0.01)) == Approx(2.0).margin(0.05));
+}
+
 TEST_CASE("The branch that a system has is chosen first, and the system found")
 {
     const auto kind = GENERATE(BlockBranch::hammerstein, BlockBranch::wiener, BlockBranch::feedback);
@@ -183,6 +216,20 @@ TEST_CASE("A hardening spring is seen as feedback")
     CHECK(fit.validationDb <= fit.steps[1].errorDb);
     CHECK(fit.validationDb < (amplitude < 0.1 ? -40.0 : -22.0));
     CHECK(fit.stable);
+    // The loop closed has no such limit: a fit that begins there finds the spring, at another drive of the same size.
+    const auto fresh = [&] {
+        Eigen::VectorXd u(2048);
+        for (auto& x : u)
+            x = amplitude * normal();
+        return PnlssRecord {u, system(u), 256, false};
+    };
+    const std::vector estimation {fresh()}, validation {fresh()};
+    PnlssFitOptions options;
+    options.maximumIterations = 50;
+    const auto closed = fitPnlss(closedLoop(fit.model), estimation, validation, options);
+    CHECK(closed.validationDb < -80.0);
+    CHECK(simulationErrorDb(fit.model, validation) > -62.0);
+    CHECK(closed.stable);
 }
 
 TEST_CASE("The Silverbox, a circuit with a hardening spring, is seen as feedback")

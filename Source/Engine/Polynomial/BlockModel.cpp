@@ -102,28 +102,31 @@ MatrixXd simulate(const BlockModel& model, const MatrixXd& input)
     return (outputs.linear + outputs.hammerstein + outputs.wiener + outputs.feedback).array() + model.offset;
 }
 
-Pnlss pnlssOf(const BlockModel& model)
+namespace {
+
+/// With the polynomials driving the last of one or two copies of G: one closes the loop.
+Pnlss written(const BlockModel& model, Index copies)
 {
     std::string reason;
     if (!model.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be written as PNLSS: " + reason + ".");
     const auto& G = model.linear;
-    const auto n = G.order();
+    const auto n = G.order(), states = copies * n;
     const auto highest = static_cast<int>(std::max({model.hammerstein.size(), model.wiener.size(), model.feedback.size()})) + 1;
     const Exponents powers = highest > 1 ? monomials(static_cast<int>(n) + 1, 2, highest) : Exponents(0, n + 1);   // of (x, u)
     const auto K = 1 + powers.rows();
     Pnlss result;
     result.linear.sampleRate = G.sampleRate;
-    result.linear.A = MatrixXd::Zero(2 * n, 2 * n);
+    result.linear.A = MatrixXd::Zero(states, states);
     result.linear.A.topLeftCorner(n, n) = result.linear.A.bottomRightCorner(n, n) = G.A;
-    result.linear.B = MatrixXd::Zero(2 * n, 1);
+    result.linear.B = MatrixXd::Zero(states, 1);
     result.linear.B.topRows(n) = G.B;
-    result.linear.C = G.C.replicate(1, 2);
+    result.linear.C = G.C.replicate(1, copies);
     result.linear.D = G.D;
-    result.exponents = Exponents::Zero(K, 2 * n + 1);
+    result.exponents = Exponents::Zero(K, states + 1);
     result.exponents.bottomRows(K - 1).leftCols(n) = powers.leftCols(n);
     result.exponents.bottomRows(K - 1).rightCols(1) = powers.rightCols(1);
-    result.E = MatrixXd::Zero(2 * n, K);
+    result.E = MatrixXd::Zero(states, K);
     result.F = MatrixXd::Zero(1, K);
     result.F(0, 0) = model.offset;
     const auto coefficient = [](const VectorXd& c, int degree) { return degree - 2 < c.size() ? c[degree - 2] : 0.0; };
@@ -139,9 +142,15 @@ Pnlss pnlssOf(const BlockModel& model)
         result.E.col(k).tail(n) = G.B * driving;
         result.F(0, k) = G.D(0, 0) * driving + coefficient(model.wiener, degree) * share;
     }
-    result.free = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>::Constant(2 * n + 1, K, false);
+    result.free = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>::Constant(states + 1, K, false);
     result.free.bottomRows(n + 1).setConstant(true);
     return result;
 }
+
+} // namespace
+
+Pnlss pnlssOf(const BlockModel& model) { return written(model, 2); }
+
+Pnlss closedLoop(const BlockModel& model) { return written(model, 1); }
 
 } // namespace excursion

@@ -55,6 +55,12 @@ Eigen::MatrixXd simulate(const BlockModel&, const Eigen::MatrixXd& input);
 /// The same model as PNLSS: states x of w, then those of the other copy of G, from rest at 0.
 Pnlss pnlssOf(const BlockModel&);
 
+/// The loop that the feedback branch stands for, closed: a PNLSS model with one copy of G's states,
+///     x(t+1) = A x + B v,  w = C x + D u,  y = y0 + w + D (v - u) + P_W(w),  v = u + P_H(u) + P_F(w)
+/// It differs from the block model by what goes through two polynomials, one after the other. Its linear part is G's, but of large signals
+/// such a loop can run away. With half the states it is a start for fitPnlss() that holds the nonlinearity already.
+Pnlss closedLoop(const BlockModel&);
+
 /// c_2 v^2 + c_3 v^3 + .. of each element, and its derivative.
 Eigen::ArrayXd polynomial(const Eigen::VectorXd& coefficients, const Eigen::ArrayXd& v);
 Eigen::ArrayXd polynomialSlope(const Eigen::VectorXd& coefficients, const Eigen::ArrayXd& v);
