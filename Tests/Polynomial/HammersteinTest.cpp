@@ -262,7 +262,7 @@ TEST_CASE("Records that no parallel Hammerstein model can be fitted to are refus
         refused(kind, what, [&] { fitHammerstein(1000.0, records, {}, options); });
     };
     no(Error::Kind::usage, "degree", {{u, u, 0, false}}, {.degree = 0});
-    no(Error::Kind::usage, "8192", {{u, u, 0, false}}, {.degree = 3, .length = 3000});
+    no(Error::Kind::usage, "4096", {{u, u, 0, false}}, {.degree = 3, .length = 1366});
     no(Error::Kind::data, "no record", {}, {});
     no(Error::Kind::data, "does not fit", {{u, u.topRows(5), 0, false}}, {});
     no(Error::Kind::data, "does not fit", {{u, u, 50, false}}, {});

@@ -104,8 +104,8 @@ bool HammersteinFitOptions::isValid(std::string* reason) const
     };
     if (degree < 1 || degree > 20)
         return refuse("the degree of a parallel Hammerstein model must be 1 to 20");
-    if (length < 1 || length * degree > 8192)
-        return refuse("the branches need at least one tap, and at most 8192 taps together");
+    if (length < 1 || length * degree > 4096)
+        return refuse("the branches need at least one tap, and at most 4096 taps together");
     if (!(regularization >= 0.0 && regularization < 1.0))
         return refuse("the regularization must be at least 0 and less than 1");
     return true;

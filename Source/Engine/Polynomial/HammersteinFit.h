@@ -11,7 +11,7 @@ namespace excursion {
 
 struct HammersteinFitOptions {
     int degree = 3;                ///< N, 1 .. 20
-    Eigen::Index length = 512;     ///< K, taps of a branch, at most; N K is at most 8192
+    Eigen::Index length = 512;     ///< K, taps of a branch, at most; N K is at most 4096
     double regularization = 0.0;   ///< r; 0: chosen on the validation records, of 1e-10 .. 1e-2; without them 1e-8
 
     bool isValid(std::string* reason = nullptr) const;
