@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/TallQr.h"
+#include "Engine/Polynomial/LongHammerstein.h"
 #include "Engine/Polynomial/RecordError.h"
 
 #include <Eigen/Cholesky>
@@ -93,6 +94,41 @@ std::vector<Index> lengthsUpTo(Index longest, bool choose)
     return lengths;
 }
 
+constexpr Index mostDense = 4096;   // unknowns: their matrix of normal equations takes 134 MB
+
+HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+                                 const MatrixXd& T, Index K, const HammersteinFitOptions& options, const Progress& progress)
+{
+    constexpr int most = 400, every = 10, patience = 5;   // iterations, between looks at the validation records, looks without a better one
+    HammersteinFit best;
+    best.regularization = options.regularization > 0.0 ? options.regularization : 1e-8;
+    double least = std::numeric_limits<double>::infinity();
+    int waited = 0;
+    const auto modelOf = [&](const VectorXd& unknowns) {
+        return ParallelHammerstein {sampleRate, Eigen::Map<const MatrixXd>(unknowns.data() + 1, K, T.cols()) * T.transpose(), unknowns[0]};
+    };
+    const LongHammerstein problem(estimation, T, K);
+    const auto last = problem.solve(best.regularization, most, every, [&](const VectorXd& unknowns, int k) {
+        progress.at(static_cast<double>(k) / most, "iterating for the branch filters");
+        if (validation.empty())
+            return true;
+        auto model = modelOf(unknowns);
+        const double error = simulationErrorDb(model, validation);
+        waited = error < least - 0.01 ? 0 : waited + 1;
+        if (error < least) {
+            least = error;
+            best.model = std::move(model);
+        }
+        return waited < patience;
+    });
+    if (best.model.filters.size() == 0)
+        best.model = modelOf(last);
+    best.estimationDb = simulationErrorDb(best.model, estimation);
+    best.validationDb = simulationErrorDb(best.model, validation);
+    best.reason = validation.empty() ? "as many iterations as are worthwhile" : "the iteration with the least validation error";
+    return best;
+}
+
 } // namespace
 
 bool HammersteinFitOptions::isValid(std::string* reason) const
@@ -104,8 +140,8 @@ bool HammersteinFitOptions::isValid(std::string* reason) const
     };
     if (degree < 1 || degree > 20)
         return refuse("the degree of a parallel Hammerstein model must be 1 to 20");
-    if (length < 1 || length * degree > 4096)
-        return refuse("the branches need at least one tap, and at most 4096 taps together");
+    if (length < 1 || length * degree > 262144)
+        return refuse("the branches need at least one tap, and at most 262144 taps together");
     if (!(regularization >= 0.0 && regularization < 1.0))
         return refuse("the regularization must be at least 0 and less than 1");
     return true;
@@ -127,6 +163,8 @@ HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>&
     const Index K = std::min(options.length, longest);
 
     const MatrixXd T = orthonormalPolynomials(estimation, options.degree);
+    if (N * K > mostDense)
+        return fittedByIteration(sampleRate, estimation, validation, T, K, options, progress);
     NormalEquations equations(N, K);
     for (std::size_t r = 0; r < estimation.size(); ++r) {
         progress.at(0.3 * static_cast<double>(r) / static_cast<double>(estimation.size()), "correlating powers of the input");
