@@ -20,13 +20,14 @@ Complex lambdaOf(Complex root, const StateSpace& model) { return model.continuou
 
 double frequencyOf(Complex lambda, double alpha) { return std::pow(std::abs(lambda), 1.0 / alpha) / (2.0 * pi); }
 
-/// The frequencies over which a model has something to tell: a decade around its poles, within the Nyquist frequency.
+/// The frequencies over which a loudspeaker's model has something to tell: up to a decade around its poles below 100 kHz, within the Nyquist frequency. Poles
+/// beyond stand for what a fit could not resolve.
 std::array<double, 2> bandOf(const StateSpace& model, double alpha)
 {
     double low = std::numeric_limits<double>::infinity(), high = 0.0;
     for (const auto pole : poles(model)) {
         const double f = frequencyOf(lambdaOf(pole, model), alpha);
-        if (f > 0.0 && std::isfinite(f)) {
+        if (f > 0.0 && f < 1e5) {
             low = std::min(low, f);
             high = std::max(high, f);
         }
@@ -36,7 +37,7 @@ std::array<double, 2> bandOf(const StateSpace& model, double alpha)
         high = 1000.0;
     }
     low = std::max(low / 10.0, 0.1);
-    high = std::min(high * 10.0, model.continuous() ? 1e6 : 0.49 * model.sampleRate);
+    high = std::min(high * 10.0, model.continuous() ? 1e5 : 0.49 * model.sampleRate);
     return {std::min(low, high / 10.0), high};
 }
 
@@ -67,6 +68,8 @@ Plot rootsPlot(const StateSpace& model, double alpha)
     if (model.inputs() == model.outputs())
         plot.series.push_back(points("zeros", Role::error, zeros(model), model, alpha));
     const auto band = bandOf(model, alpha);
+    plot.x.least = band[0];
+    plot.x.most = band[1];
     plot.series.push_back({"border of stability", Role::reference, {band[0], band[1]}, {90.0 * alpha, 90.0 * alpha}, {}, {}, Series::Shape::line, 0});
     return plot;
 }

@@ -82,7 +82,9 @@ void addSweep(Page& page, const JsonField& document)
         curve.series.push_back(std::move(series));
         plots.push_back(std::move(curve));
     }
-    page.headline(document.at("sentence").text().empty() ? "Order " + fixedText(document.at("chosen").number(), 0) : document.at("sentence").text(), "good");
+    page.headline("Order " + fixedText(document.at("chosen").number(), 0), "good");
+    if (!document.at("sentence").text().empty())
+        page.paragraph(document.at("sentence").text());
     if (errors.order.size() > 1)
         plots.insert(plots.begin(), orderPlot(errors));
     page.section("The error against the order");
@@ -134,15 +136,12 @@ void addRankingOfClasses(Page& page, const JsonField& document)
     page.headline(document.at("sentence").text(), "good");
     page.paragraph(document.at("output").text() + " explained by " + document.at("input").text()
                    + (document.has("noiseDb") ? "; noise at " + decibelsIn(document, "noiseDb") + " dB" : ""));
-    Plot errors, loads;
-    errors.title = "Error on records not seen";
-    errors.y = {"error", "dB", false, 0.0, 0.0, {}};
-    loads.title = "Error against parameters";
-    loads.x = {"parameters", "", true, 0.0, 0.0, {}};
-    loads.y = {"error", "dB", false, 0.0, 0.0, {}};
-    loads.key = false;
-    Series error {"validation", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
-    Series against {"", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+    Plot plot;
+    plot.title = "Error on records not seen against parameters";
+    plot.x = {"parameters", "", true, 0.0, 0.0, {}};
+    plot.y = {"error", "dB", false, 0.0, 0.0, {}};
+    Series classes {"a class", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+    double fewest = std::numeric_limits<double>::infinity(), most = 0.0;
     std::vector<std::vector<Page::Cell>> rows;
     std::vector<std::string> troubles;
     for (const auto& model : document.at("models").items()) {
@@ -153,27 +152,25 @@ void addRankingOfClasses(Page& page, const JsonField& document)
         }
         const double judged = model.has("validationDb") ? model.at("validationDb").number() : model.at("estimationDb").numberOrNaN();
         const double parameters = model.at("parameters").number();
-        error.x.push_back(static_cast<double>(rows.size()));
-        error.y.push_back(judged);
-        against.x.insert(against.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
-        against.y.insert(against.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
-        errors.x.names.push_back(name);
+        classes.x.insert(classes.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
+        classes.y.insert(classes.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
+        fewest = std::min(fewest, parameters);
+        most = std::max(most, parameters);
         rows.push_back({name, Page::figure(fixedText(parameters, 0)), Page::figure(decibelsIn(model, "estimationDb")),
                         Page::figure(decibelsIn(model, "validationDb")), Page::figure(fixedText(100.0 * model.at("load").number(), 2) + " %"),
                         model.at("stable").flag() ? "yes" : "no", model.at("description").text()});
     }
-    errors.series.push_back(std::move(error));
-    loads.series.push_back(std::move(against));
+    plot.series.push_back(std::move(classes));
     if (document.has("noiseDb") && !rows.empty()) {
         const double noise = document.at("noiseDb").number();
-        errors.series.push_back({"noise", Role::noise, {0.0, static_cast<double>(rows.size() - 1)}, {noise, noise}, {}, {}, Series::Shape::line, 0});
+        plot.series.push_back({"noise", Role::noise, {fewest, most}, {noise, noise}, {}, {}, Series::Shape::line, 0});
     }
     page.section("Side by side");
     page.table({"class", "parameters", "estimation dB", "validation dB", "load", "stable", "what it is"}, rows);
     for (const auto& trouble : troubles)
         page.note(trouble);
     if (!rows.empty())
-        page.figures({errors, loads}, 2, "Errors are those of simulations, relative to the output. The load is the time that one core simulates for.");
+        page.figures({plot}, 1, "Errors are those of simulations, relative to the output. The load is the time that one core simulates for.");
 }
 
 struct PageOf {

@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A driver with one voice coil and a cone that breaks up: lumped elements and modes.
 struct Loudspeaker {

@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double uniform(Normal& normal, double least, double most) { return least + (most - least) * 0.5 * std::erfc(-normal() / std::numbers::sqrt2); }
 

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// dz/dt of state and input.
 using Flow = std::function<Vector2d(const Vector2d&, double)>;

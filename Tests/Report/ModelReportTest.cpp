@@ -56,7 +56,7 @@ TEST_CASE("Poles stand at their frequency and angle, in continuous and in discre
         model.alpha = 0.2 + 0.02 * k;
         model.form = resonance(50.0, 0.5);
         for (auto& value : model.form.A.reshaped())
-            value = 200.0 * normal();
+            value = 200.0 * normal(random);
         const auto plot = rootsPlot(model.form, model.alpha);
         const double border = plot.series.back().y.front();
         bool above = true;
