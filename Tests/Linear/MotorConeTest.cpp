@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-using std::numbers::pi;
+constexpr double fullTurn = 2.0 * std::numbers::pi;
 
 /// A driver with one voice coil and a cone that breaks up: lumped elements and modes.
 struct Loudspeaker {
@@ -28,14 +28,14 @@ struct Loudspeaker {
 
     Complex displacement(Complex s) const
     {
-        const double w = 2.0 * pi * 150.0;
+        const double w = fullTurn * 150.0;
         return (1.0 + box * w * w / (s * s + w / 6.0 * s + w * w)) * Bl / ((Le * s + Re) * (m * s * s + r * s + k) + Bl * Bl * s);
     }
     Complex cone(Complex s) const
     {
         Complex sum = 1.0;
         for (const auto& mode : modes) {
-            const double w = 2.0 * pi * mode.frequency;
+            const double w = fullTurn * mode.frequency;
             sum += mode.share * s * s / (s * s + w / mode.quality * s + w * w);
         }
         return air * sum;
@@ -52,7 +52,7 @@ Loudspeaker random(Normal& normal)
     l.Le = between(normal, 1e-4, 1e-3);
     l.Bl = between(normal, 4.0, 11.0);
     l.m = between(normal, 5e-3, 40e-3);
-    const double w0 = 2.0 * pi * between(normal, 30.0, 90.0);
+    const double w0 = fullTurn * between(normal, 30.0, 90.0);
     l.k = l.m * w0 * w0;
     l.r = l.m * w0 / between(normal, 2.0, 7.0);
     for (int i = 0; i < 4; ++i)
@@ -61,17 +61,17 @@ Loudspeaker random(Normal& normal)
     return l;
 }
 
-Complex axis(double f) { return {0.0, 2.0 * pi * f}; }
+Complex axis(double f) { return {0.0, fullTurn * f}; }
 
-struct Measured {
+struct TakenResponses {
     FrequencyData displacement, pressure;
 };
 
 /// 10 Hz to 10 kHz. The displacement's noise is even, 10 dB below the displacement at `drowned` Hz; the pressure's -60 dB of its rms. 0:
 /// no noise.
-Measured measured(const Loudspeaker& l, double drowned, Normal& normal, int lines = 400)
+TakenResponses measured(const Loudspeaker& l, double drowned, Normal& normal, int lines = 400)
 {
-    Measured result;
+    TakenResponses result;
     for (int i = 0; i < lines; ++i)
         result.displacement.frequency.push_back(10.0 * std::pow(1000.0, static_cast<double>(i) / (lines - 1)));
     result.pressure.frequency = result.displacement.frequency;
@@ -292,7 +292,7 @@ TEST_CASE("Partial fractions of a relative degree have Markov parameters of zero
     for (const int degree : {1, 2, 3}) {
         const auto l = random(normal);
         const auto data = measured(l, 800.0, normal, 120).displacement;
-        const double unit = 2.0 * pi * data.frequency.back();
+        const double unit = fullTurn * data.frequency.back();
         auto sections = sectionsOf({unit * Complex(-0.01, 0.02), unit * Complex(-0.01, -0.02), -0.3 * unit}, 0.0, unit);
         sections.relativeDegree = degree;
         const auto fit = fitPartialFractions(sections, data);
@@ -329,7 +329,7 @@ TEST_CASE("A cascade is refined to a minimum, from halves that are off, and refu
     Normal normal(8);
     const auto l = random(normal);
     const auto data = measured(l, 800.0, normal);
-    const double unit = 2.0 * pi * 1e4;
+    const double unit = fullTurn * 1e4;
     const auto start = [&](const StateSpace& model, int relativeDegree, const FrequencyData& response) {
         auto sections = sectionsOf(poles(model), 0.0, unit);
         sections.factors *= 1.02;

@@ -19,7 +19,7 @@ double mdlOf(const LinearIdentification& found, const FrequencyData& data)
     return values * std::log(std::max(found.cost, 1e-26)) + price;   // below that there is rounding only
 }
 
-std::string decibelsText(double db)
+std::string inDecibels(double db)
 {
     const auto tenths = static_cast<long>(std::lround(10.0 * db));
     return (tenths < 0 ? "-" : "") + std::to_string(std::labs(tenths) / 10) + "." + std::to_string(std::labs(tenths) % 10) + " dB";
@@ -39,7 +39,7 @@ void choose(OrderSweep& sweep, bool validated, bool deviations)
             if (*entries[k].validationDb <= *entries[best].validationDb + 0.5)
                 sweep.chosen = k;
         sweep.sentence = "Order " + text(sweep.chosen) + " is the smallest within 0.5 dB of the lowest validation error ("
-                       + decibelsText(*entries[best].validationDb) + " at order " + text(best) + ").";
+                       + inDecibels(*entries[best].validationDb) + " at order " + text(best) + ").";
         return;
     }
     for (std::size_t k = 1; k < entries.size(); ++k)
