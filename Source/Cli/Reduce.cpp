@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/OpenModel.h"
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
@@ -9,11 +10,11 @@
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/PoleZeroReduction.h"
 #include "Engine/Linear/Reduction.h"
-#include "Engine/Linear/StateSpaceFile.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -31,10 +32,14 @@ struct ReduceArguments {
     bool settled = false;
 };
 
-void balance(const ReduceArguments& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+void balance(const ReduceArguments& options, OpenModel& open, Json& document, Terminal& terminal)
 {
     if (options.order < 0)
         throw Error(Error::Kind::usage, "Give the --order to reduce the model to, a --ripple to allow, or a --response to prune it by.");
+    if (open.fractional)
+        throw Error(Error::Kind::usage,
+                    "A model of fractional order has no Gramians to balance it by: give the --ripple to allow, or a --response to prune it by.");
+    auto& named = open.named;
     const auto all = balanced(named.model);
     const double bound = truncationBound(all, options.order);
     named.model = truncated(all, options.order, options.settled ? Truncation::singularPerturbation : Truncation::direct);
@@ -45,8 +50,9 @@ void balance(const ReduceArguments& options, NamedStateSpace& named, Json& docum
                  + significant(bound, 3) + " at any frequency.");
 }
 
-void pruneBy(const ReduceArguments& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+void pruneBy(const ReduceArguments& options, OpenModel& open, Json& document, Terminal& terminal)
 {
+    auto& named = open.named;
     if (named.model.inputs() != 1 || named.model.outputs() != 1)
         throw Error(Error::Kind::data, "Only models with one input and one output are pruned by a response.");
     if (options.order < 0 && options.errorDb == 0.0)
@@ -56,8 +62,8 @@ void pruneBy(const ReduceArguments& options, NamedStateSpace& named, Json& docum
     choice.output = named.outputs[0];
     const auto data = frequencyDataOf(openResponse(choice).frf);
     const double rate = named.model.sampleRate;
-    const auto start = fitPartialFractions(
-        sectionsOf(poles(named.model), rate, rate > 0.0 ? 1.0 : 2.0 * std::numbers::pi * data.frequency.back()), data);
+    const double scale = rate > 0.0 ? 1.0 : std::pow(2.0 * std::numbers::pi * data.frequency.back(), open.alpha);
+    const auto start = fitPartialFractions(sectionsOf(poles(named.model), rate, scale, open.alpha), data);
     PruningOptions pruning;
     pruning.order = std::max(options.order, 0);
     pruning.errorDb = options.errorDb;
@@ -71,7 +77,7 @@ void pruneBy(const ReduceArguments& options, NamedStateSpace& named, Json& docum
         document["steps"].push_back({{"order", step.order}, {"weightedErrorDb", step.errorDb}});
         rows.push_back({std::to_string(step.order), fixed(step.errorDb, 1)});
     }
-    document["errorDb"] = judged(named.model, data).errorDb;
+    document["errorDb"] = judged(named.model, data, open.alpha).errorDb;
     terminal.table({"order", "weighted error dB"}, rows);
     terminal.say("Ended: " + result.reason + ".");
 }
@@ -84,9 +90,11 @@ Json rootsJson(const std::vector<std::complex<double>>& roots, double origin)
     return list;
 }
 
-void takeOut(const ReduceArguments& options, NamedStateSpace& named, Json& document, Terminal& terminal)
+void takeOut(const ReduceArguments& options, OpenModel& open, Json& document, Terminal& terminal)
 {
+    auto& named = open.named;
     PoleZeroReductionOptions reduction;
+    reduction.alpha = open.alpha;
     reduction.rippleDb = options.rippleDb;
     reduction.order = std::max(options.order, 0);
     if (!options.band.empty()) {
@@ -94,7 +102,7 @@ void takeOut(const ReduceArguments& options, NamedStateSpace& named, Json& docum
         reduction.high = options.band[1];
     }
     const auto result = reduceByPolesAndZeros(named.model, reduction);
-    const double origin = named.model.continuous() ? 0.0 : 1.0;   // roots are told as the model's own, z or s
+    const double origin = named.model.continuous() ? 0.0 : 1.0;   // roots are told as the model's own, z, s or s^alpha
     named.model = result.model;
     named.delay += result.delay;
     document["method"] = "poles-and-zeros";
@@ -117,19 +125,21 @@ void takeOut(const ReduceArguments& options, NamedStateSpace& named, Json& docum
 void run(const ReduceArguments& options, Terminal& terminal)
 {
     requireFilePlace(options.out);
-    auto named = readStateSpace(options.model);
-    Json document {{"format", "excursion-reduction"}, {"version", 1}, {"source", options.model}, {"from", named.model.order()}};
+    auto open = openModel(options.model);
+    const auto& model = open.named.model;
+    Json document {{"format", "excursion-reduction"}, {"version", 1}, {"source", options.model}, {"from", model.order()}};
     if (options.rippleDb > 0.0)
-        takeOut(options, named, document, terminal);
+        takeOut(options, open, document, terminal);
     else if (options.response.path.empty())
-        balance(options, named, document, terminal);
+        balance(options, open, document, terminal);
     else
-        pruneBy(options, named, document, terminal);
-    document["order"] = named.model.order();
-    document["stable"] = isStable(named.model);
-    writeStateSpace(named, options.out);
+        pruneBy(options, open, document, terminal);
+    document["order"] = model.order();
+    document["stable"] = isStable(open);
+    const auto kept = documentOf(open);
+    writeJson(kept, options.out);
     terminal.say("Wrote " + options.out + ".");
-    document["model"] = toJson(named);
+    document["model"] = kept;
     terminal.document(document);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/OpenModel.h"
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
@@ -7,7 +8,6 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/Stabilization.h"
-#include "Engine/Linear/StateSpaceFile.h"
 
 #include <nlohmann/json.hpp>
 
@@ -34,10 +34,11 @@ struct StabilizeArguments {
     bool unfitted = false;
 };
 
-FrequencyData dataFor(const StabilizeArguments& options, const NamedStateSpace& named)
+FrequencyData dataFor(const StabilizeArguments& options, const OpenModel& open)
 {
+    const auto& named = open.named;
     if (options.response.path.empty())
-        return sampled(named.model);
+        return sampled(named.model, 1000, open.alpha);
     if (named.model.inputs() != 1 || named.model.outputs() != 1)
         throw Error(Error::Kind::data, "Only models with one input and one output are stabilized by a response; leave --frf out.");
     auto choice = options.response;
@@ -46,16 +47,17 @@ FrequencyData dataFor(const StabilizeArguments& options, const NamedStateSpace& 
     return delayed(frequencyDataOf(openResponse(choice).frf), named.delay);
 }
 
-Stabilization stabilizeBy(const StabilizeArguments& options, const StateSpace& model, const FrequencyData& data, Terminal& terminal)
+Stabilization stabilizeBy(const StabilizeArguments& options, const OpenModel& open, const FrequencyData& data, Terminal& terminal)
 {
     StabilizeOptions stabilizing;
+    stabilizing.alpha = open.alpha;
     for (const auto& [name, method] : methods)
         if (options.method == name)
             stabilizing.method = method;
     stabilizing.refit = !options.unfitted;
     if (std::isfinite(options.seconds))
         stabilizing.seconds = options.seconds;
-    return stabilized(model, data, stabilizing, terminal.progress());
+    return stabilized(open.named.model, data, stabilizing, terminal.progress());
 }
 
 void print(const Stabilization& result, Terminal& terminal)
@@ -70,14 +72,15 @@ void print(const Stabilization& result, Terminal& terminal)
     terminal.say("Ended: " + result.reason + ".");
 }
 
-void writeUnstable(const StabilizeArguments& options, NamedStateSpace named, const Decomposition& parts, Json& document, Terminal& terminal)
+void writeUnstable(const StabilizeArguments& options, OpenModel open, const Decomposition& parts, Json& document, Terminal& terminal)
 {
-    named.model = parts.unstable;
+    open.named.model = parts.unstable;
+    const auto kept = documentOf(open);
     document["coupling"] = parts.coupling;
-    document["unstable"] = toJson(named);
+    document["unstable"] = kept;
     if (options.unstable.empty())
         return;
-    writeStateSpace(named, options.unstable);
+    writeJson(kept, options.unstable);
     terminal.say("Wrote " + options.unstable + ", the unstable part of order " + std::to_string(parts.unstable.order()) + ".");
 }
 
@@ -91,15 +94,17 @@ void run(const StabilizeArguments& options, Terminal& terminal)
     }
     if (std::isfinite(options.seconds) && options.method != "delay")
         throw Error(Error::Kind::usage, "--seconds goes with --method delay.");
-    auto named = readStateSpace(options.model);
-    const auto data = dataFor(options, named);
+    auto open = openModel(options.model);
+    if (open.fractional && options.method == "delay")
+        throw Error(Error::Kind::usage, "No delay is fitted with a model of fractional order; mirror, project or decompose it.");
+    const auto data = dataFor(options, open);
     Json document {{"format", "excursion-stabilization"}, {"version", 1}, {"source", options.model}, {"method", options.method}};
     document["response"] = options.response.path.empty() ? Json() : Json(options.response.path);
-    const auto result = stabilizeBy(options, named.model, data, terminal);
+    const auto result = stabilizeBy(options, open, data, terminal);
     if (result.parts)
-        writeUnstable(options, named, *result.parts, document, terminal);
-    named.model = result.model;
-    named.delay += result.delay;
+        writeUnstable(options, open, *result.parts, document, terminal);
+    open.named.model = result.model;
+    open.named.delay += result.delay;
     document["steps"] = Json::array();
     for (const auto& step : result.steps)
         document["steps"].push_back({{"step", step.what}, {"order", step.order}, {"stable", step.stable}, {"errorDb", step.errorDb},
@@ -107,11 +112,12 @@ void run(const StabilizeArguments& options, Terminal& terminal)
     document["delay"] = result.delay;
     document["delayDeviation"] = numberOrNull(result.delayDeviation.value_or(unknown));
     document["stopped"] = result.reason;
-    document["stable"] = isStable(named.model);
-    writeStateSpace(named, options.out);
+    document["stable"] = isStable(open);
+    const auto kept = documentOf(open);
+    writeJson(kept, options.out);
     print(result, terminal);
     terminal.say("Wrote " + options.out + ".");
-    document["model"] = toJson(named);
+    document["model"] = kept;
     terminal.document(document);
 }
 

@@ -70,3 +70,90 @@ TEST_CASE("identify --alpha fits a mixed-order impedance and models in s^alpha")
     CHECK(identify({}).code == 2);
     CHECK(runProgram(scratch.folder(), {"identify", file, "--alpha", "free", "--mixed"}).code == 2);
 }
+
+TEST_CASE("reduce and stabilize read models in s^alpha, and write them again")
+{
+    const Scratch scratch;
+    const auto file = scratch.file("z.zma", impedanceText()).string(), model = (scratch / "model.json").string(),
+        bad = (scratch / "bad.json").string(),
+               out = (scratch / "out.json").string(), rest = (scratch / "rest.json").string();
+    const auto run = [&](std::vector<std::string> arguments) { return runProgram(scratch.folder(), arguments); };
+    REQUIRE(run({"identify", file, "--output", "voltage", "--input", "current", "--alpha", "0.5", "--order", "8", "--quick", "--out",
+                 model}).code == 0);
+    const auto identified = nlohmann::json::parse(bytesOf(model));
+
+    const auto reduced = run({"reduce", model, "--ripple", "3", "--band", "10,20000", "--out", out, "--json"});
+    INFO(reduced.err);
+    REQUIRE(reduced.code == 0);
+    const auto told = nlohmann::json::parse(reduced.out);
+    CHECK(told.at("method") == "poles-and-zeros");
+    CHECK(told.at("stable") == true);
+    for (const auto& step : told.at("steps")) {
+        CHECK(step.at("boundDb").get<double>() <= 3.0);
+        CHECK(step.at("rippleDb").get<double>() <= step.at("boundDb").get<double>());
+    }
+    CHECK(told.at("model").at("format") == "excursion-fractional-state-space");
+    CHECK(told.at("model").at("alpha") == 0.5);
+    CHECK(told.at("model").at("form").at("order") == told.at("order"));
+    CHECK(nlohmann::json::parse(bytesOf(out)) == told.at("model"));
+
+    // The response is of a mixed order, which order 5 in s^1/2 meets to -31 dB and better.
+    const auto pruned = run({"reduce", model, "--response", file, "--order", "5", "--out", out, "--json"});
+    INFO(pruned.err);
+    REQUIRE(pruned.code == 0);
+    CHECK(nlohmann::json::parse(pruned.out).at("order").get<int>() <= 6);
+    CHECK(nlohmann::json::parse(pruned.out).at("errorDb").get<double>() < -30.0);
+    CHECK(nlohmann::json::parse(pruned.out).at("stable") == true);
+
+    CHECK(run({"reduce", model, "--order", "4", "--out", out}).code == 2);    // no Gramians
+    CHECK(run({"reduce", model, "--ripple", "1", "--out", out}).code == 2);   // no band
+
+    // A pair at 30 degrees, within the sector of 45
+    auto spoiled = identified;
+    auto& form = spoiled.at("form");
+    const auto n = form.at("order").get<std::size_t>();
+    for (auto& row : form.at("A"))
+        row.insert(row.end(), {0.0, 0.0});
+    for (const auto& pair : {std::pair {86.6, -50.0}, std::pair {50.0, 86.6}}) {
+        auto row = nlohmann::json(std::vector<double>(n, 0.0));
+        row.insert(row.end(), {pair.first, pair.second});
+        form.at("A").push_back(row);
+    }
+    form.at("B").push_back({10.0});
+    form.at("B").push_back({0.0});
+    form.at("C").at(0).push_back(0.02);
+    form.at("C").at(0).push_back(0.01);
+    form.at("order") = n + 2;
+    scratch.file("bad.json", spoiled.dump());
+    for (const std::string method : {"mirror", "project", "decompose"}) {
+        std::vector<std::string> arguments {"stabilize", bad, "--method", method, "--frf", file, "--out", out, "--json"};
+        if (method == "decompose")
+            arguments.insert(arguments.end(), {"--unstable", rest});
+        const auto done = run(arguments);
+        INFO(method << ": " << done.err);
+        REQUIRE(done.code == 0);
+        const auto document = nlohmann::json::parse(done.out);
+        CHECK(document.at("stable") == true);
+        CHECK(document.at("steps").at(0).at("stable") == false);
+        CHECK(document.at("steps").back().at("stable") == true);
+        CHECK(document.at("model").at("format") == "excursion-fractional-state-space");
+        CHECK(nlohmann::json::parse(bytesOf(out)) == document.at("model"));
+        CHECK(document.at("model").at("form").at("order") == (method == "mirror" ? n + 2 : n));
+        if (method == "decompose") {
+            CHECK(nlohmann::json::parse(bytesOf(rest)).at("alpha") == 0.5);
+            CHECK(nlohmann::json::parse(bytesOf(rest)).at("form").at("order") == 2);
+        }
+        // What is stable already is left alone.
+        const auto again = run({"stabilize", out, "--frf", file, "--out", (scratch / "again.json").string(), "--json"});
+        REQUIRE(again.code == 0);
+        CHECK(nlohmann::json::parse(again.out).at("steps").size() == 1);
+    }
+    CHECK(run({"stabilize", bad, "--method", "delay", "--frf", file, "--out", out}).code == 2);
+    auto broken = identified;
+    broken.at("alpha") = 2.5;
+    scratch.file("bad.json", broken.dump());
+    CHECK(run({"reduce", bad, "--ripple", "1", "--band", "10,20000", "--out", out}).code == 3);
+    broken.erase("alpha");
+    scratch.file("bad.json", broken.dump());
+    CHECK(run({"stabilize", bad, "--out", out}).code == 3);
+}

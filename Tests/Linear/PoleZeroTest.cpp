@@ -3,6 +3,7 @@
 #include "Engine/Linear/PoleZero.h"
 #include "Engine/Linear/PoleZeroReduction.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Linear/RootDistance.h"
 #include "Linear/Problem.h"
 
 #include <cmath>

@@ -7,6 +7,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include <cmath>
+#include <numbers>
+
 namespace excursion {
 namespace {
 
@@ -19,22 +22,24 @@ struct Block {
     bool stable = false;
 };
 
-bool stableBlock(const MatrixXd& L, bool continuous)
+bool stableBlock(const MatrixXd& L, bool continuous, double alpha)
 {
     const double half = 0.5 * L.trace();
-    if (continuous)
+    if (continuous && (alpha == 1.0 || L.rows() == 1))
         return half < 0.0;
+    if (continuous)   // outside of the sector: cos(arg) = half/sqrt(determinant)
+        return half < std::cos(0.5 * std::numbers::pi * alpha) * std::sqrt(L.determinant());
     // |1 + l|^2 - 1, with no digit lost at l far below 1; of a pair it is the determinant that counts.
     return L.rows() == 1 ? L(0, 0) * (2.0 + L(0, 0)) < 0.0 : 2.0 * half + L.determinant() < 0.0;
 }
 
 /// Eigen leaves real pairs as two blocks of one, so a block of two is a complex pair.
-std::vector<Block> blocksOf(const MatrixXd& T, bool continuous)
+std::vector<Block> blocksOf(const MatrixXd& T, bool continuous, double alpha)
 {
     std::vector<Block> blocks;
     for (Index k = 0; k < T.rows();) {
         const Index size = k + 1 < T.rows() && T(k + 1, k) != 0.0 ? 2 : 1;
-        blocks.push_back({size, stableBlock(T.block(k, k, size, size), continuous)});
+        blocks.push_back({size, stableBlock(T.block(k, k, size, size), continuous, alpha)});
         k += size;
     }
     return blocks;
@@ -54,9 +59,9 @@ void exchange(MatrixXd& T, MatrixXd& U, Index at, Index p, Index q)
 }
 
 /// Bubbles the stable blocks to the top. @return their rows
-Index stableToTop(MatrixXd& T, MatrixXd& U, bool continuous)
+Index stableToTop(MatrixXd& T, MatrixXd& U, bool continuous, double alpha)
 {
-    auto blocks = blocksOf(T, continuous);
+    auto blocks = blocksOf(T, continuous, alpha);
     Index rows = 0;
     for (std::size_t k = 0; k < blocks.size(); ++k) {
         if (!blocks[k].stable)
@@ -77,11 +82,14 @@ Index stableToTop(MatrixXd& T, MatrixXd& U, bool continuous)
 
 } // namespace
 
-Decomposition decomposed(const StateSpace& model)
+Decomposition decomposed(const StateSpace& model, double alpha)
 {
     std::string reason;
     if (!model.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be decomposed: " + reason + ".");
+    if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && !model.continuous()))
+        throw Error(Error::Kind::usage,
+                    "The model cannot be decomposed: its order of differentiation lies between 0 and 2, and is 1 in discrete time.");
     const auto n = model.order();
     Decomposition result {model, model, 0.0};
     MatrixXd T = model.A, U = MatrixXd::Identity(n, n);
@@ -92,7 +100,7 @@ Decomposition decomposed(const StateSpace& model)
         T = schur.matrixT();
         U = schur.matrixU();
     }
-    const auto k = stableToTop(T, U, model.continuous()), r = n - k;
+    const auto k = stableToTop(T, U, model.continuous(), alpha), r = n - k;
     const MatrixXd X = solveSylvester(T.topLeftCorner(k, k), T.bottomRightCorner(r, r), -T.topRightCorner(k, r));
     if (!X.allFinite())
         throw Error(Error::Kind::numerical, "Stable and unstable poles of the model lie too close together to be told apart.");

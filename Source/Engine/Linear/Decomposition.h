@@ -17,7 +17,9 @@ struct Decomposition {
 /// form comes down to with many single poles, are useless where poles of one kind lie close together; this form asks only that the two
 /// kinds lie apart. Discrete time works on A - I, where low frequencies keep their digits (see Response.h).
 /// Throws Error (usage) when the model is not valid, (numerical) when the two kinds cannot be told apart in double precision.
-Decomposition decomposed(const StateSpace&);
+/// @param alpha  order of differentiation: of a model in lambda = s^alpha those poles are stable that lie outside of the sector
+///               |arg| <= alpha pi/2
+Decomposition decomposed(const StateSpace&, double alpha = 1.0);
 
 /// Both models side by side: the sum of their responses. Throws Error (usage) when rates, inputs or outputs differ.
 StateSpace sum(const StateSpace&, const StateSpace&);

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Linear/RootDistance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
 double decibels(double ratio) { return 20.0 * std::log10(ratio); }
@@ -51,7 +52,7 @@ public:
         // Where the response bends: at the angle of every root within the band.
         for (const auto* roots : {&g_.poles, &g_.zeros})
             for (const auto& root : *roots) {
-                const double f = frequencyOf(root);
+                const double f = nearestFrequency(root, g_.sampleRate, options.alpha);
                 if (f > low_ && f < high_)
                     frequency_.push_back(f);
             }
@@ -59,7 +60,7 @@ public:
         frequency_.erase(std::unique(frequency_.begin(), frequency_.end()), frequency_.end());
         const Resolvent resolvent(model);
         for (const double f : frequency_)
-            first_.push_back(resolvent.response(evaluationPoint(f, model.sampleRate))(0, 0));
+            first_.push_back(resolvent.response(evaluationPoint(f, model.sampleRate, options.alpha))(0, 0));
         PoleZeroReductionStep asFound;
         measure(realize(g_), asFound);
         rounding_ = asFound.error;
@@ -109,10 +110,10 @@ public:
     void measure(const StateSpace& model, PoleZeroReductionStep& step) const
     {
         const Resolvent resolvent(model);
-        double least = infinite, most = 0.0;
+        double least = unbounded, most = 0.0;
         step.error = 0.0;
         for (std::size_t k = 0; k < frequency_.size(); ++k) {
-            auto ratio = resolvent.response(evaluationPoint(frequency_[k], model.sampleRate))(0, 0) / first_[k];
+            auto ratio = resolvent.response(evaluationPoint(frequency_[k], model.sampleRate, options_.alpha))(0, 0) / first_[k];
             if (!std::isfinite(std::abs(ratio)))
                 continue;   // at a zero on the axis there is no ratio
             if (!model.continuous())
@@ -133,11 +134,6 @@ private:
     std::vector<double> frequency_;
     std::vector<Complex> first_;
 
-    double frequencyOf(Complex root) const
-    {
-        return g_.sampleRate > 0.0 ? std::abs(std::arg(1.0 + root)) / (2.0 * pi) * g_.sampleRate : std::abs(root.imag()) / (2.0 * pi);
-    }
-
     std::size_t saves(const Edit& edit) const
     {
         std::size_t count = 0;
@@ -146,12 +142,12 @@ private:
         return count;
     }
 
-    RootDistance distance(Complex root) const { return distanceToBand(root, g_.sampleRate, low_, high_); }
+    RootDistance distance(Complex root) const { return distanceToBand(root, g_.sampleRate, low_, high_, options_.alpha); }
 
     double remoteness(Complex root) const
     {
         if (g_.sampleRate == 0.0)
-            return 2.0 * pi * high_ / std::abs(root);
+            return std::abs(evaluationPoint(high_, 0.0, options_.alpha)) / std::abs(root);
         const double radius = std::abs(1.0 + root);
         return std::min(radius, 1.0 / radius);
     }
@@ -166,7 +162,7 @@ private:
     {
         const double epsilon = std::abs(g_.poles[p] - g_.zeros[q]) / distance(g_.poles[p]).least;
         const auto size = static_cast<double>(sizeAt(g_.poles, p));
-        Edit edit {{p}, {q}, true, infinite, infinite};
+        Edit edit {{p}, {q}, true, unbounded, unbounded};
         if (epsilon < 1.0) {
             edit.rippleDb = size * decibels((1.0 + epsilon) / (1.0 - epsilon));
             edit.growth = std::pow(1.0 - epsilon, -size);
@@ -179,7 +175,7 @@ private:
         const auto size = static_cast<double>(sizeAt(roots, k));
         const double rho = remoteness(roots[k]);
         edit.rippleDb += size * rippleOf(roots[k]);
-        edit.growth *= rho < 1.0 ? std::pow(pole ? 1.0 + rho : 1.0 / (1.0 - rho), size) : infinite;
+        edit.growth *= rho < 1.0 ? std::pow(pole ? 1.0 + rho : 1.0 / (1.0 - rho), size) : unbounded;
         (pole ? edit.poles : edit.zeros).push_back(k);
     }
 
@@ -236,29 +232,6 @@ std::vector<Complex> rootsOf(const std::vector<Complex>& roots, const std::vecto
 
 } // namespace
 
-RootDistance distanceToBand(Complex root, double sampleRate, double low, double high)
-{
-    RootDistance distance {infinite, 0.0};
-    for (const double f : {low, high, -low, -high}) {
-        const double d = std::abs(evaluationPoint(f, sampleRate) - root);
-        distance.least = std::min(distance.least, d);
-        distance.most = std::max(distance.most, d);
-    }
-    if (sampleRate == 0.0) {
-        const double f = std::abs(root.imag()) / (2.0 * pi);
-        if (f >= low && f <= high)
-            distance.least = std::abs(root.real());
-        return distance;
-    }
-    const Complex z = 1.0 + root;
-    const double radius = std::abs(z), f = std::abs(std::arg(z)) / (2.0 * pi) * sampleRate, across = 0.5 * sampleRate - f;
-    if (f >= low && f <= high)   // 1 - |z|, with the digits of a root near 1
-        distance.least = std::abs(2.0 * root.real() + std::norm(root)) / (1.0 + radius);
-    if (across >= low && across <= high)
-        distance.most = 1.0 + radius;
-    return distance;
-}
-
 bool PoleZeroReductionOptions::isValid(std::string* reason) const
 {
     const auto refuse = [reason](const char* sentence) {
@@ -272,6 +245,8 @@ bool PoleZeroReductionOptions::isValid(std::string* reason) const
         return refuse("neither remote roots nor pairs may be taken out");
     if (!(low >= 0.0) || !std::isfinite(high) || (high != 0.0 ? !(low < high) : low != 0.0))
         return refuse("the band must begin at 0 Hz or above and below its end");
+    if (!(alpha > 0.0 && alpha < 2.0))
+        return refuse("the order of differentiation must lie between 0 and 2");
     return true;
 }
 
@@ -284,6 +259,8 @@ PoleZeroReduction reduceByPolesAndZeros(const StateSpace& model, const PoleZeroR
         throw Error(Error::Kind::usage, "A model of continuous time is reduced within a band: no pole is remote from all frequencies.");
     if (!model.continuous() && options.high > 0.5 * model.sampleRate)
         throw Error(Error::Kind::usage, "The band goes beyond half the sample rate of the model.");
+    if (!model.continuous() && options.alpha != 1.0)
+        throw Error(Error::Kind::usage, "The order of differentiation of a model of discrete time is 1.");
     Editor editor(model, options);
     PoleZeroReduction result;
     result.model = model;

@@ -23,7 +23,7 @@ namespace excursion {
 /// The angle is bounded by asin(eps_sup); the seed's (6.10) prints the arc tangent, which is a little less than what can happen.
 ///
 /// Conjugates go together, their ripples added. The relative change of the complex response, delay apart, is bounded, too: remote roots by
-/// rho = min(|r|, 1/|r|), or w_max/|r| in continuous time,
+/// rho = min(|r|, 1/|r|), or w_max^alpha/|r| in continuous time,
 ///     |G_reduced / G - 1| <= prod(1 + rho_pole) / (prod(1 - rho_zero) prod(1 - eps_sup)) - 1
 /// Both bounds include what the roots as they were found miss of the response before any goes: rounding, which is not small where poles lie close together
 /// or the band far below the response's peak. Another 1e-6 may be rounding in the model that is realized.
@@ -32,6 +32,7 @@ struct PoleZeroReductionOptions {
     int order = 0;                      ///< go no lower than this
     bool remote = true, pairs = true;   ///< which kinds to use
     double low = 0.0, high = 0.0;       ///< Hz, the band that counts; both 0: up to half the sample rate. Continuous time needs one
+    double alpha = 1.0;                 ///< order of differentiation: the model is one in lambda = s^alpha, seen on (j w)^alpha (seed 6.2.6)
 
     bool isValid(std::string* reason = nullptr) const;
 };
@@ -57,11 +58,5 @@ struct PoleZeroReduction {
 /// could not go otherwise: without it there would be more zeros than poles.
 /// Throws Error (usage) for options that make no sense, (numerical) when the roots miss a tenth of the response in the band, and as poleZeroGainOf() does.
 PoleZeroReduction reduceByPolesAndZeros(const StateSpace&, const PoleZeroReductionOptions&);
-
-/// The least and the largest distance of a root (lambda) to the response's points of a band, Hz.
-struct RootDistance {
-    double least = 0.0, most = 0.0;
-};
-RootDistance distanceToBand(std::complex<double> root, double sampleRate, double low, double high);
 
 } // namespace excursion

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Identify.h"
+#include "Engine/Linear/PoleZero.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
 #include "Engine/Linear/Sylvester.h"
@@ -111,28 +112,28 @@ StateSpace timesAllPass(const StateSpace& model)
     return result;
 }
 
-StabilizationStep stepOf(const char* what, const StateSpace& model, const FrequencyData& data)
+StabilizationStep stepOf(const char* what, const StateSpace& model, const FrequencyData& data, double alpha)
 {
-    const auto found = judged(model, data);
+    const auto found = judged(model, data, alpha);
     return {what, model.order(), found.stable, found.errorDb, decibelsOf(found.cost)};
 }
 
-double scaleFor(const StateSpace& model, const FrequencyData& data)
+double scaleFor(const StateSpace& model, const FrequencyData& data, double alpha)
 {
-    return model.continuous() ? 2.0 * std::numbers::pi * data.frequency.back() : 1.0;
+    return model.continuous() ? std::pow(2.0 * std::numbers::pi * data.frequency.back(), alpha) : 1.0;
 }
 
 /// The constrained fit that starts from a stable model. @return why it stopped
 std::string refit(StateSpace& model, const FrequencyData& data, const StabilizeOptions& options, const Progress& progress)
 {
     if (data.inputs > 1) {
-        fitInputs(model, data);
+        fitInputs(model, data, options.alpha);
         return "B and D were fitted again; models with several inputs keep their poles";
     }
     auto refinement = options.refinement;
     refinement.stable = true;
     // The factors round the poles: what lies on the border to the last digit would not count as stable.
-    const auto start = mirrored(sectionsOf(poles(model), model.sampleRate, scaleFor(model, data)));
+    const auto start = mirrored(sectionsOf(poles(model), model.sampleRate, scaleFor(model, data, options.alpha), options.alpha));
     const auto refined = refinePoles(start, data, refinement, progress);
     model = realize(refined.fit.sections, refined.fit.C, refined.fit.D);
     return refined.reason;
@@ -150,7 +151,7 @@ void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeO
     if (!options.seconds)
         result.delayDeviation = found.deviation;
     result.reason = found.reason;
-    result.steps.push_back(stepOf("delayed", result.model, delayed(data, found.delay)));
+    result.steps.push_back(stepOf("delayed", result.model, delayed(data, found.delay), 1.0));
 }
 
 } // namespace
@@ -158,6 +159,16 @@ void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeO
 StateSpace mirroredByAllPass(const StateSpace& model)
 {
     return model.inputs() <= model.outputs() ? timesAllPass(model) : transposed(timesAllPass(transposed(model)));
+}
+
+StateSpace mirroredAtSector(const StateSpace& model, double alpha)
+{
+    auto g = poleZeroGainOf(model);
+    double size = 0.0;
+    for (const auto& pole : g.poles)
+        size = std::max(size, std::abs(pole));
+    g.poles = poles(mirrored(sectionsOf(g.poles, 0.0, size > 0.0 ? size : 1.0, alpha)));
+    return realize(g);
 }
 
 StateSpace stableProjection(const StateSpace& model, Index delay)
@@ -207,6 +218,11 @@ bool StabilizeOptions::isValid(std::string* reason) const
             *reason = "the delay must be a finite number of seconds";
         return false;
     }
+    if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && method == StabilizingMethod::delay)) {
+        if (reason)
+            *reason = "the order of differentiation must lie between 0 and 2, and be 1 where a delay is fitted";
+        return false;
+    }
     return refinement.isValid(reason);
 }
 
@@ -219,9 +235,11 @@ Stabilization stabilized(const StateSpace& model, const FrequencyData& data, con
         throw Error(Error::Kind::data, "The model cannot be stabilized: " + reason + ".");
     if (data.inputs != model.inputs() || data.outputs != model.outputs())
         throw Error(Error::Kind::usage, "The frequency response is not one of the inputs and outputs of the model.");
+    if (options.alpha != 1.0 && !model.continuous())
+        throw Error(Error::Kind::usage, "The order of differentiation of a model of discrete time is 1.");
     Stabilization result;
     result.model = model;
-    result.steps.push_back(stepOf("as it came", model, data));
+    result.steps.push_back(stepOf("as it came", model, data, options.alpha));
     if (result.steps.back().stable) {
         result.reason = "the model is stable already";
         return result;
@@ -231,28 +249,31 @@ Stabilization stabilized(const StateSpace& model, const FrequencyData& data, con
         return result;
     }
     if (options.method == StabilizingMethod::decompose) {
-        result.parts = decomposed(model);
+        result.parts = decomposed(model, options.alpha);
         result.model = result.parts->stable;
-        result.steps.push_back(stepOf("stable part", result.model, data));
+        result.steps.push_back(stepOf("stable part", result.model, data, options.alpha));
         result.reason = "the stable and the unstable part add up to the model";
         return result;
     }
     const bool mirror = options.method == StabilizingMethod::mirror;
-    result.model = mirror ? mirroredByAllPass(model) : stableProjection(model);
-    result.steps.push_back(stepOf(mirror ? "mirrored" : "projected", result.model, data));
+    if (options.alpha == 1.0)
+        result.model = mirror ? mirroredByAllPass(model) : stableProjection(model);
+    else
+        result.model = mirror ? mirroredAtSector(model, options.alpha) : decomposed(model, options.alpha).stable;
+    result.steps.push_back(stepOf(mirror ? "mirrored" : "projected", result.model, data, options.alpha));
     result.reason = "no fit was asked for";
     if (options.refit) {
         result.reason = refit(result.model, data, options, progress);
-        result.steps.push_back(stepOf("refitted", result.model, data));
+        result.steps.push_back(stepOf("refitted", result.model, data, options.alpha));
     }
     return result;
 }
 
-FrequencyData sampled(const StateSpace& model, int lines)
+FrequencyData sampled(const StateSpace& model, int lines, double alpha)
 {
     double slow = std::numeric_limits<double>::infinity(), fast = 0.0;
     for (auto pole : poles(model)) {
-        const double size = model.continuous() ? std::abs(pole) : std::abs(pole - 1.0) * model.sampleRate;
+        const double size = model.continuous() ? std::pow(std::abs(pole), 1.0 / alpha) : std::abs(pole - 1.0) * model.sampleRate;
         if (size > 0.0) {
             slow = std::min(slow, size);
             fast = std::max(fast, size);
@@ -267,10 +288,11 @@ FrequencyData sampled(const StateSpace& model, int lines)
     data.outputs = model.outputs();
     for (int k = 0; k < std::max(lines, 2); ++k)
         data.frequency.push_back(low * std::pow(high / low, static_cast<double>(k) / (std::max(lines, 2) - 1)));
-    const auto responses = respond(model, data.frequency);
-    data.value.resize(static_cast<Index>(responses.size()), data.inputs * data.outputs);
+    const Resolvent resolvent(model);
+    data.value.resize(static_cast<Index>(data.frequency.size()), data.inputs * data.outputs);
     for (Index k = 0; k < data.lines(); ++k)
-        data.value.row(k) = responses[static_cast<std::size_t>(k)].reshaped().transpose();
+        data.value.row(k)
+            = resolvent.response(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha)).reshaped().transpose();
     return data;
 }
 

@@ -27,6 +27,17 @@ namespace excursion {
 /// Throws as decomposed() does.
 StateSpace mirroredByAllPass(const StateSpace&);
 
+/// The same in lambda = s^alpha, of models with one input and output: unstable poles are reflected at the border of the sector,
+/// |arg| = theta = alpha pi/2 (seed 6.2.6), as mirrored(Sections) does; zeros and gain stay. There is no all-pass any more: for
+/// p = rho e^(j phi), phi in [0, theta], the reflection p' is as far from the upper ray as p was, but its conjugate is not. That changes the
+/// magnitude at lambda = r e^(j theta) by
+///     |lambda - conj(p)| / |lambda - conj(p')|
+///         = ((r^2 + rho^2 - 2 r rho cos(theta + phi)) / (r^2 + rho^2 - 2 r rho cos(3 theta - phi)))^1/2,
+/// the most at r = rho, and by nothing for alpha = 1. A pole on the positive axis goes to the negative one, where its magnitude changes by
+/// tan(theta/2) at most.
+/// Throws as poleZeroGainOf() does.
+StateSpace mirroredAtSector(const StateSpace&, double alpha);
+
 /// The causal and stable part of z^-d G: of all stable models with that delay the nearest to the response of z^-d G in the mean square over the whole axis.
 /// With d = 0 it is the stable part alone (seed eq. 6.32); with d samples of delay the response that the unstable part has ahead of time,
 ///     C (zI - A)^-1 B = -sum_{k>=0} z^k C A^-(k+1) B,
@@ -36,7 +47,7 @@ StateSpace mirroredByAllPass(const StateSpace&);
 StateSpace stableProjection(const StateSpace&, Eigen::Index delay = 0);
 
 enum class StabilizingMethod {
-    mirror,      ///< mirroredByAllPass(), then a fit
+    mirror,      ///< mirroredByAllPass() or mirroredAtSector(), then a fit
     project,     ///< stableProjection(), then a fit
     delay,       ///< a fit of a stable model and a delay
     decompose    ///< the stable part of decomposed() and nothing else, so that with the unstable one it adds up to the model
@@ -47,6 +58,7 @@ struct StabilizeOptions {
     bool refit = true;                    ///< after mirror and project; the delay is a fit in itself
     PoleRefinementOptions refinement;     ///< of the refit; always stable
     std::optional<double> seconds;        ///< the delay to add; else the one that fits best is looked for, see DelayedFit.h
+    double alpha = 1.0;                   ///< order of differentiation: the model is one in lambda = s^alpha
 
     bool isValid(std::string* reason = nullptr) const;
 };
@@ -77,6 +89,7 @@ Stabilization stabilized(const StateSpace&, const FrequencyData& data, const Sta
 
 /// The model's own response where its poles show: `lines` frequencies, evenly on a logarithmic scale, from a tenth of the slowest pole to ten
 /// times the fastest or to half the sample rate.
-FrequencyData sampled(const StateSpace&, int lines = 1000);
+/// @param alpha  of a model in lambda = s^alpha
+FrequencyData sampled(const StateSpace&, int lines = 1000, double alpha = 1.0);
 
 } // namespace excursion
