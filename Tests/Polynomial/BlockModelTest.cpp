@@ -2,7 +2,7 @@
 // Block models against recursions written out by hand, and the choice of their branches on systems that have one of them.
 #include "Engine/Polynomial/BlockModelFile.h"
 #include "Engine/Polynomial/BlockModelFit.h"
-#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 #include "Linear/Problem.h"
 #include "Polynomial/LinearStart.h"
 #include "Polynomial/Silverbox.h"

@@ -3,7 +3,7 @@
 #include "Engine/Polynomial/HammersteinFit.h"
 #include "Engine/Polynomial/HammersteinSweep.h"
 #include "Engine/Polynomial/ParallelHammersteinFile.h"
-#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Signal/Multisine.h"
 #include "Linear/Problem.h"

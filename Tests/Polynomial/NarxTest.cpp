@@ -4,7 +4,7 @@
 #include "Engine/Polynomial/NarxFile.h"
 #include "Engine/Polynomial/NarxFit.h"
 #include "Engine/Polynomial/NarxRecursion.h"
-#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 #include "Linear/Problem.h"
 #include "Polynomial/Silverbox.h"
 

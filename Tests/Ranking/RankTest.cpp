@@ -92,24 +92,24 @@ TEST_CASE("A ranking of what cannot be ranked is refused, and a class that does 
 
 TEST_CASE("What a polynomial model has found without physics is told as the law that was hidden", "[slow]")
 {
-    for (const auto& [hidden, output] : {std::pair {"stiffness", Quantity::displacement}, std::pair {"force-factor", Quantity::current}}) {
-        CAPTURE(hidden);
-        const auto take = takeOf(21, hidden, {Quantity::voltage, output});
-        const auto records = recordsOf(take, take.input(), *take.find(output));
-        IdentifyOptions identifying;
-        identifying.order = 3;
-        identifying.sampleRate = take.sampleRate;
-        PnlssFitOptions fitting;
-        fitting.maximumIterations = 25;
-        const auto linear = identify(frequencyDataOf(bla(take, output, 2).frf), identifying).model;
-        const auto fit = fitPnlss(withTerms(linear, 3), records.estimation, records.validation, fitting);
-        const auto found = agreement(take, output, [&](const Eigen::MatrixXd& u) { return simulate(fit.model, u); });
-        CAPTURE(fit.validationDb, found.sentence, found.baseDb, found.leftDb);
-        REQUIRE_FALSE(found.effects.empty());
-        CHECK(found.effects.front() == hidden);
-        CHECK(found.leftDb < found.baseDb - 15.0);
-    }
-    const auto take = takeOf(22, "", {Quantity::voltage, Quantity::displacement});
-    CHECK_THROWS_AS(agreement(take, Quantity::displacement, [](const Eigen::MatrixXd& u) -> Eigen::MatrixXd { return u / 0.0; }), Error);
-    CHECK_THROWS_AS(agreement(take, Quantity::pressure, [](const Eigen::MatrixXd& u) { return u; }), Error);
+    const char* hidden = "force-factor";
+    const auto output = Quantity::current;
+    const auto take = takeOf(21, hidden, {Quantity::voltage, output});
+    const auto records = recordsOf(take, take.input(), *take.find(output));
+    IdentifyOptions identifying;
+    identifying.order = 3;
+    identifying.sampleRate = take.sampleRate;
+    PnlssFitOptions fitting;
+    fitting.maximumIterations = 25;
+    const auto linear = identify(frequencyDataOf(bla(take, output, 2).frf), identifying).model;
+    const auto fit = fitPnlss(withTerms(linear, 3), records.estimation, records.validation, fitting);
+    const auto found = agreement(take, output, [&](const Eigen::MatrixXd& u) { return simulate(fit.model, u); });
+    CAPTURE(fit.validationDb, found.sentence, found.baseDb, found.leftDb);
+    REQUIRE_FALSE(found.effects.empty());
+    CHECK(found.effects.front() == hidden);
+    CHECK(found.leftDb < found.baseDb - 15.0);
+
+    const auto other = takeOf(22, "", {Quantity::voltage, Quantity::displacement});
+    CHECK_THROWS_AS(agreement(other, Quantity::displacement, [](const Eigen::MatrixXd& u) -> Eigen::MatrixXd { return u / 0.0; }), Error);
+    CHECK_THROWS_AS(agreement(other, Quantity::pressure, [](const Eigen::MatrixXd& u) { return u; }), Error);
 }

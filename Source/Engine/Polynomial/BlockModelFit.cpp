@@ -6,7 +6,7 @@
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
 #include "Engine/Polynomial/BlockError.h"
-#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>

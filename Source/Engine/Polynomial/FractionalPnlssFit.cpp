@@ -136,14 +136,14 @@ bool FractionalPnlssOptions::isValid(std::string* reason) const
 double relativeErrorDb(const FractionalPnlss& model, const FractionalGrid& grid, const std::vector<PnlssRecord>& records)
 {
     const FractionalRecursion recursion(model, grid, false, false);
-    double error = 0.0;
     FractionalRecursion::Trajectory run;
+    std::vector<MatrixXd> outputs;
     for (const auto& record : records) {
         if (!recursion.run(model, fineInput(record.input, grid.substeps, record.periodic, record.skip), far, run))
             return std::numeric_limits<double>::infinity();
-        error += judged(record, run.output).squaredNorm();
+        outputs.push_back(run.output);
     }
-    return std::isfinite(error) ? decibelsOf(error / judgedPower(records)) : std::numeric_limits<double>::infinity();
+    return outputErrorDb(outputs, records);
 }
 
 FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const FractionalGrid& grid, const std::vector<PnlssRecord>& estimation,

@@ -4,7 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Polynomial/LongHammerstein.h"
-#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 
 #include <Eigen/Cholesky>
 

@@ -2,7 +2,7 @@
 #include "Engine/Polynomial/HammersteinSweep.h"
 
 #include "Engine/Error.h"
-#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Signal/Fft.h"
 
 #include <bit>

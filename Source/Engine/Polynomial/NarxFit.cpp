@@ -5,7 +5,7 @@
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
 #include "Engine/Polynomial/NarxRecursion.h"
-#include "Engine/Polynomial/RecordError.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Polynomial/Search.h"
 
 #include <cmath>

@@ -235,51 +235,17 @@ bool PnlssFitOptions::isValid(std::string* reason) const
     return true;
 }
 
-void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Index inputs, Index outputs)
-{
-    if (estimation.empty())
-        throw Error(Error::Kind::data, "The model cannot be fitted: there is no record to fit it to.");
-    for (const auto* records : {&estimation, &validation})
-        for (const auto& record : *records) {
-            if (record.input.cols() != inputs || record.output.cols() != outputs || record.input.rows() != record.output.rows() || record.skip < 0
-                || record.skip >= record.input.rows())
-                throw Error(Error::Kind::data, "A record does not fit the model: its inputs, outputs or length are others.");
-            if (!record.input.allFinite() || !record.output.allFinite())
-                throw Error(Error::Kind::data, "A record holds a sample that is not finite.");
-        }
-}
-
-PnlssRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index before)
-{
-    PnlssRecord record;
-    const auto N = input.rows();
-    record.skip = before;
-    record.periodic = true;
-    record.input.resize(N + before, input.cols());
-    record.output.resize(N + before, output.cols());
-    for (Index t = 0; t < N + before; ++t) {
-        const Index from = ((t - before) % N + N) % N;
-        record.input.row(t) = input.row(from);
-        record.output.row(t) = output.row(from);
-    }
-    return record;
-}
-
 double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& records, const std::vector<VectorXd>& initialStates)
 {
     const Recursion recursion(model, false);
-    double error = 0.0, power = 0.0;
-    MatrixXd states, outputs;
+    MatrixXd states;
+    std::vector<MatrixXd> outputs(records.size());
     for (std::size_t k = 0; k < records.size(); ++k) {
-        const auto& record = records[k];
         const VectorXd initial = k < initialStates.size() ? initialStates[k] : VectorXd::Zero(model.linear.order());
-        if (!recursion.run(model, record.input, initial, 1e100, states, outputs))
+        if (!recursion.run(model, records[k].input, initial, 1e100, states, outputs[k]))
             return infinity;
-        const auto rows = record.output.rows() - record.skip;
-        error += (record.output.bottomRows(rows) - outputs.bottomRows(rows)).squaredNorm();
-        power += record.output.bottomRows(rows).squaredNorm();
     }
-    return std::isfinite(error) ? decibelsOf(error / power) : infinity;
+    return outputErrorDb(outputs, records);
 }
 
 PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,

@@ -2,26 +2,13 @@
 #pragma once
 
 #include "Engine/Polynomial/Pnlss.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Progress.h"
 
 #include <string>
 #include <vector>
 
 namespace excursion {
-
-/// A stretch of input and output that a PNLSS model is fitted to or judged by.
-struct PnlssRecord {
-    Eigen::MatrixXd input;    ///< N x m
-    Eigen::MatrixXd output;   ///< N x p, as measured
-    Eigen::Index skip = 0;    ///< samples at the start that the model is simulated through but not judged on: its transient dies there
-    bool periodic = false;    ///< the samples after `skip` are whole periods in steady state, as frequency weights need
-};
-
-/// A record of one steady period: `before` of its last samples are put in front, again and again if need be, to let the transient die.
-PnlssRecord periodicRecord(const Eigen::MatrixXd& input, const Eigen::MatrixXd& output, Eigen::Index before);
-
-/// Throws Error (data) unless there is something to estimate from, and all records fit a model of these inputs and outputs and are finite.
-void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Eigen::Index inputs, Eigen::Index outputs);
 
 struct PnlssFitOptions {
     int maximumIterations = 100;

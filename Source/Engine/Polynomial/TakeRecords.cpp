@@ -4,6 +4,7 @@
 #include "Engine/Measurement/Periods.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace excursion {
 namespace {
@@ -27,10 +28,11 @@ PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Chan
         return records;
     }
     const auto& excitation = periodicExcitation(take);
+    // Long enough for the slowest pole of a loudspeaker, which a few thousand samples at a high rate are not.
+    const auto before = std::max<Eigen::Index>(std::min(excitation.period, 4096), std::lround(0.2 * take.sampleRate));
     const int level = wantedLevel >= 0 ? wantedLevel : static_cast<int>(excitation.levels.size()) - 1;
     for (int r = 0; r < excitation.realizations; ++r) {
-        const auto record = periodicRecord(columnOf(averagePeriod(take, input, level, r)), columnOf(averagePeriod(take, output, level, r)),
-                                           std::min(excitation.period, 4096));
+        const auto record = periodicRecord(columnOf(averagePeriod(take, input, level, r)), columnOf(averagePeriod(take, output, level, r)), before);
         const bool last = excitation.realizations > 1 && r + 1 == excitation.realizations;
         (last ? records.validation : records.estimation).push_back(record);
     }

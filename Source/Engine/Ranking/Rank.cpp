@@ -42,13 +42,10 @@ const std::vector<Fitting>& fittings()
 
 double errorDb(const FittedClass& fitted, const std::vector<PnlssRecord>& records)
 {
-    double error = 0.0, power = 0.0;
-    for (const auto& record : records) {
-        const auto rows = record.output.rows() - record.skip;
-        error += (record.output.bottomRows(rows) - fitted.play(record).bottomRows(rows)).squaredNorm();
-        power += record.output.bottomRows(rows).squaredNorm();
-    }
-    return !std::isfinite(error) ? std::numeric_limits<double>::infinity() : decibelsOf(error / power);
+    std::vector<Eigen::MatrixXd> outputs;
+    for (const auto& record : records)
+        outputs.push_back(fitted.play(record));
+    return outputErrorDb(outputs, records);
 }
 
 double secondsSince(std::chrono::steady_clock::time_point start)

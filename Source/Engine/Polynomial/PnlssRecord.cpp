@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/PnlssRecord.h"
+
+#include "Engine/Error.h"
+#include "Engine/Signal/Level.h"
+
+#include <cmath>
+#include <limits>
+
+namespace excursion {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Index inputs, Index outputs)
+{
+    if (estimation.empty())
+        throw Error(Error::Kind::data, "The model cannot be fitted: there is no record to fit it to.");
+    for (const auto* records : {&estimation, &validation})
+        for (const auto& record : *records) {
+            if (record.input.cols() != inputs || record.output.cols() != outputs || record.input.rows() != record.output.rows() || record.skip < 0
+                || record.skip >= record.input.rows())
+                throw Error(Error::Kind::data, "A record does not fit the model: its inputs, outputs or length are others.");
+            if (!record.input.allFinite() || !record.output.allFinite())
+                throw Error(Error::Kind::data, "A record holds a sample that is not finite.");
+        }
+}
+
+PnlssRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index before)
+{
+    PnlssRecord record;
+    const auto N = input.rows();
+    record.skip = before;
+    record.periodic = true;
+    record.input.resize(N + before, input.cols());
+    record.output.resize(N + before, output.cols());
+    for (Index t = 0; t < N + before; ++t) {
+        const Index from = ((t - before) % N + N) % N;
+        record.input.row(t) = input.row(from);
+        record.output.row(t) = output.row(from);
+    }
+    return record;
+}
+
+double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<PnlssRecord>& records)
+{
+    if (records.empty())
+        return std::numeric_limits<double>::quiet_NaN();
+    double error = 0.0, power = 0.0;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+        const auto rows = records[k].output.rows() - records[k].skip;
+        error += (records[k].output.bottomRows(rows) - modelled[k].bottomRows(rows)).squaredNorm();
+        power += records[k].output.bottomRows(rows).squaredNorm();
+    }
+    return std::isfinite(error) ? decibelsOf(error / power) : std::numeric_limits<double>::infinity();
+}
+
+} // namespace excursion
