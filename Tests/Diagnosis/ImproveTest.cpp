@@ -72,7 +72,7 @@ TEST_CASE("Nothing is added to a driver without effects, and its parameters are 
     }
 }
 
-TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is cancelled", "[improve]")
+TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is cancelled", "[improve][slow]")
 {
     Improvement work(take({{"stiffness", 0.3}}));
     REQUIRE(work.report().fitForUse());

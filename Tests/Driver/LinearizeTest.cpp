@@ -31,7 +31,7 @@ Model midbass()
 }
 
 /// A model with every effect at work.
-Model everything()
+Model allAtWork()
 {
     auto model = midbass();
     for (const auto* effect : catalogue()) {
@@ -115,7 +115,7 @@ TEST_CASE("Gradients of the responses are what finite differences show, by every
     using enum Quantity;
     const std::vector<Quantity> quantities {current, displacement, pressure};
     const auto frequency = someFrequencies();
-    const auto model = everything();
+    const auto model = allAtWork();
     const auto response = respond(model, quantities, frequency, true);
     const auto theta = parameterVector(model);
     for (Eigen::Index k = 0; k < theta.size(); ++k) {

@@ -99,7 +99,7 @@ TEST_CASE("An exact response of fractional order is met to rounding, below and a
     }
 }
 
-TEST_CASE("The standard error of alpha is the spread of its estimates")
+TEST_CASE("The standard error of alpha is the spread of its estimates", "[slow]")
 {
     // 1/(1 + (s/w)^0.6) + noise of 1 %, of which the bound of Cramer and Rao can be computed: 24 estimates, chi^2 of 24
     const auto lines = logarithmicLines(10.0, 10000.0, 60);
@@ -132,7 +132,7 @@ TEST_CASE("The standard error of alpha is the spread of its estimates")
     CHECK(blind.alphaDeviation < 4.0 * known.alphaDeviation);
 }
 
-TEST_CASE("The standard errors of a mixed-order impedance are the spread of its estimates")
+TEST_CASE("The standard errors of a mixed-order impedance are the spread of its estimates", "[slow]")
 {
     const auto lines = logarithmicLines(10.0, 20000.0, 120);
     const int draws = 200;

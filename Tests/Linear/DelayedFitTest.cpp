@@ -61,7 +61,7 @@ TEST_CASE("The delay of exact data is found to many digits, whichever way it goe
     }
 }
 
-TEST_CASE("With noise the delay lies where its standard error says")
+TEST_CASE("With noise the delay lies where its standard error says", "[slow]")
 {
     const double lag = 0.37 / rate;
     double squares = 0.0, sum = 0.0, deviations = 0.0;
@@ -86,7 +86,7 @@ TEST_CASE("With noise the delay lies where its standard error says")
     CHECK(deviations < 0.002);
 }
 
-TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, and the error falls to the noise")
+TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, and the error falls to the noise", "[slow]")
 {
     // The output was recorded 0.6427 samples early, as in seed 6.2.4.
     const auto data = late(-0.6427 / rate, 0.01, 3);

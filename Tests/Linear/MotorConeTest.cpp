@@ -146,7 +146,7 @@ TEST_CASE("Without noise motor and cone are told apart to rounding, and the moto
     }
 }
 
-TEST_CASE("With noise the cascade is below the noise of the pressure, and the split is told as far as the displacement is heard")
+TEST_CASE("With noise the cascade is below the noise of the pressure, and the split is told as far as the displacement is heard", "[slow]")
 {
     Normal normal(2);
     for (const double drowned : {1500.0, 500.0})

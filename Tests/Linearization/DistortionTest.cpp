@@ -37,14 +37,6 @@ Stimulus stimulus(double sampleRate, double low, double high, int periods)
     return result;
 }
 
-double peak(const std::vector<double>& values)
-{
-    double result = 0.0;
-    for (const double value : values)
-        result = std::max(result, std::abs(value));
-    return result;
-}
-
 /// Power on the silent lines of the band in the last period, over that on all lines; dB. What a slow transient of the linear
 /// driver leaves there is taken out with its own last period.
 double distortionDb(const Stimulus& played, const std::vector<double>& signal, const std::vector<double>& linear)

@@ -106,4 +106,12 @@ inline double relativeError(const std::vector<double>& a, const std::vector<doub
     return rms(difference) / rms(b);
 }
 
+inline double peak(const std::vector<double>& values)
+{
+    double result = 0.0;
+    for (const double value : values)
+        result = std::max(result, std::abs(value));
+    return result;
+}
+
 } // namespace excursion

@@ -26,7 +26,7 @@ std::vector<std::filesystem::path> files(const std::string& folder)
 
 } // namespace
 
-TEST_CASE("Every factory driver loads, is stable, has laws that make sense and a level that does", "[presets]")
+TEST_CASE("Every factory driver loads, is stable, has laws that make sense and a level that does", "[presets][slow]")
 {
     const auto drivers = files("drivers");
     CHECK(drivers.size() >= 6);

@@ -17,14 +17,6 @@ namespace {
 constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double peak(const std::vector<double>& values)
-{
-    double result = 0.0;
-    for (const double value : values)
-        result = std::max(result, std::abs(value));
-    return result;
-}
-
 bool allFinite(const std::vector<double>& values)
 {
     return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });

@@ -90,7 +90,7 @@ TEST_CASE("The coefficients of a driver's expansion are those that a person deri
     CHECK_THROWS_AS(expand(model, Quantity::current, {.degree = 3, .reach = 2.0}), Error);
 }
 
-TEST_CASE("A driver's expansion moves as the driver does, the closer the less it is driven, with memories and any output")
+TEST_CASE("A driver's expansion moves as the driver does, the closer the less it is driven, with memories and any output", "[slow]")
 {
     const double rate = 48000.0;
     const auto errorOf = [&](const Model& model, const FractionalPnlss& expanded, Quantity output, double amplitude) {

@@ -5,13 +5,21 @@
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/TallProduct.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace excursion {
 namespace {
+
+/// max |lambda|, lambda^2 - tr(J) lambda + det(J) = 0.
+double spectralRadius(const Eigen::Matrix2d& J)
+{
+    const std::complex<double> half = 0.5 * J.trace(), root = std::sqrt(half * half - J.determinant());
+    return std::max(std::abs(half + root), std::abs(half - root));
+}
 
 std::vector<double> coefficientsOf(const Component& component)
 {
@@ -175,7 +183,7 @@ double ExponentialStep::fastestLaw()
                     Eigen::Matrix2d J;
                     J << (at(i + di, v) - here) / di, (at(i, v + dv) - here) / dv;
                     if (J.allFinite())
-                        fastest = std::max(fastest, J.eigenvalues().cwiseAbs().maxCoeff());
+                        fastest = std::max(fastest, spectralRadius(J));
                 }
     }
     return fastest;
