@@ -52,7 +52,7 @@ Pnlss startFor(const PnlssArguments& options, const Measurement& take)
     const auto linear = identify(frequencyDataOf(openResponse(options.response).frf), identifying).model;
     auto start = withTerms(linear, options.degree, maskNamed(options.mask), options.offset);
     if (options.noOutputTerms)
-        start.free.bottomRows(linear.outputs()).rightCols(start.terms() - (options.offset ? 1 : 0)).setConstant(false);
+        keepOutputLinear(start);
     return start;
 }
 

@@ -51,7 +51,7 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
                                                + significant(data.take.sampleRate, 8) + " Hz.");
         outcome.estimationDb = relativeErrorDb(named.model, named.grid, estimation);
         outcome.validationDb = relativeErrorDb(named.model, named.grid, validation);
-        outcome.stable = stabilityMargin(expandedLinear(named.model, named.grid)) > -1e-9 && std::isfinite(outcome.estimationDb);
+        outcome.stable = isStable(named.model, named.grid) && std::isfinite(outcome.estimationDb);
         outcome.alpha = significant(named.model.alpha, 5);
     } else {
         const auto alpha = alphaFrom(options.alpha);
@@ -59,7 +59,7 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
             throw Error(Error::Kind::usage, "A polynomial model has states of an order --alpha below 1; leave --alpha out for whole orders.");
         auto start = options.mixed ? mixedStart(options, data, alpha) : commensurateStart(options, alpha);
         if (options.noOutputTerms)
-            start.form.free.bottomRows(start.form.linear.outputs()).rightCols(start.form.terms() - (options.offset ? 1 : 0)).setConstant(false);
+            keepOutputLinear(start.form);
         const double seconds = static_cast<double>(estimation.front().input.rows()) / data.take.sampleRate;
         const auto grid = gridFor(start, data.take.sampleRate, openResponse(options.response).frf.frequency, seconds);
         FractionalPnlssOptions fitting;

@@ -136,7 +136,7 @@ CascadeRefinement refineCascade(const PartialFractionFit& first, const PartialFr
     result.second = second;
     result.likelihood = cascade.likelihood(first, second);
     DampedSteps steps(options);
-    while (result.iterations < options.maximumIterations) {
+    for (;;) {
         ++result.iterations;
         const MatrixXd rows = cascade.system(result.first, result.second);
         const MatrixXd R = MatrixXd(Eigen::HouseholderQR<MatrixXd>(rows).matrixQR().topRows(P + 1).triangularView<Eigen::Upper>());
@@ -153,14 +153,9 @@ CascadeRefinement refineCascade(const PartialFractionFit& first, const PartialFr
             result.second = other;
             return gain;
         });
-        if (steps.ended()) {
-            result.converged = true;
-            result.reason = steps.reason();
+        if (steps.ended(result))
             return result;
-        }
     }
-    result.reason = "the largest number of iterations was reached";
-    return result;
 }
 
 } // namespace excursion

@@ -41,8 +41,16 @@ public:
         still_ = accepted_ && gain < options_.costTolerance ? still_ + 1 : 0;
     }
 
-    bool ended() const { return !accepted_ || still_ >= 2; }
-    std::string reason() const { return accepted_ ? "the error no longer falls" : "no step lowers the error any further"; }
+    /// Whether the search is over; then and at its largest number of iterations `summary`, with iterations, converged and reason, tells why.
+    template <class Summary>
+    bool ended(Summary& summary) const
+    {
+        summary.converged = !accepted_ || still_ >= 2;
+        summary.reason = !accepted_           ? "no step lowers the error any further"
+                       : summary.converged ? "the error no longer falls"
+                                           : "the largest number of iterations was reached";
+        return summary.converged || summary.iterations >= options_.maximumIterations;
+    }
 
 private:
     const PoleRefinementOptions& options_;

@@ -224,7 +224,7 @@ PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, con
         return result;
     }
     DampedSteps steps(options);
-    while (result.iterations < options.maximumIterations) {
+    for (;;) {
         progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "refining the poles");
         if (result.fit.cost < 1e-28) {
             result.converged = true;
@@ -245,14 +245,9 @@ PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, con
             result.fit = trial;
             return gain;
         });
-        if (steps.ended()) {
-            result.converged = true;
-            result.reason = steps.reason();
+        if (steps.ended(result))
             return result;
-        }
     }
-    result.reason = "the largest number of iterations was reached";
-    return result;
 }
 
 } // namespace excursion

@@ -3,6 +3,7 @@
 
 #include "Engine/Linear/Simulation.h"
 #include "Engine/Linear/TallQr.h"
+#include "Engine/Polynomial/Powers.h"
 
 #include <cmath>
 #include <limits>
@@ -15,26 +16,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-Pnlss withoutTerms(const StateSpace& linear)
-{
-    Pnlss model;
-    model.linear = linear;
-    model.exponents.resize(0, linear.order() + 1);
-    model.E.resize(linear.order(), 0);
-    model.F.resize(1, 0);
-    model.free.resize(linear.order() + 1, 0);
-    return model;
-}
+Pnlss withoutTerms(const StateSpace& linear) { return withTerms(linear, Exponents(0, linear.order() + 1)); }
 
 } // namespace
-
-MatrixXd powersOf(const VectorXd& v, Index count)
-{
-    MatrixXd powers(v.size(), count);
-    for (Index k = 0; k < count; ++k)
-        powers.col(k) = k == 0 ? v.cwiseAbs2() : VectorXd(powers.col(k - 1).cwiseProduct(v));
-    return powers;
-}
 
 MatrixXd filtered(const StateSpace& G, const MatrixXd& columns)
 {
@@ -45,10 +29,8 @@ MatrixXd filtered(const StateSpace& G, const MatrixXd& columns)
 }
 
 BlockError::BlockError(const BlockModel& structure, const std::vector<PnlssRecord>& records)
-    : structure_(structure), recursion_(withoutTerms(structure.linear), true), records_(records)
+    : structure_(structure), recursion_(withoutTerms(structure.linear), true), records_(records), power_(judgedPower(records))
 {
-    for (const auto& record : records)
-        power_ += record.output.bottomRows(record.output.rows() - record.skip).squaredNorm();
 }
 
 VectorXd BlockError::valuesOf(const BlockModel& model) const
@@ -82,7 +64,7 @@ double BlockError::cost(const VectorXd& values)
         return std::numeric_limits<double>::infinity();
     double sum = 0.0;
     for (const auto& record : records_)
-        sum += (record.output - simulate(model, record.input)).bottomRows(record.output.rows() - record.skip).squaredNorm();
+        sum += judgedError(record, simulate(model, record.input)).squaredNorm();
     return std::isfinite(sum) ? sum / power_ : std::numeric_limits<double>::infinity();
 }
 
@@ -99,8 +81,8 @@ MatrixXd BlockError::factor(const VectorXd& values)
         if (model.hammerstein.size() + model.feedback.size() > 0)
             dG += derivatives(model, polynomial(model.hammerstein, u.array()) + polynomial(model.feedback, w.array()));
         MatrixXd rows(u.size(), values.size() + 1);
-        rows << dG, filtered(model.linear, powersOf(u, model.hammerstein.size())), powersOf(w, model.wiener.size()),
-            filtered(model.linear, powersOf(w, model.feedback.size())), VectorXd::Ones(u.size()),
+        rows << dG, filtered(model.linear, powersOf(u, 2, model.hammerstein.size())), powersOf(w, 2, model.wiener.size()),
+            filtered(model.linear, powersOf(w, 2, model.feedback.size())), VectorXd::Ones(u.size()),
             record.output - simulate(model, record.input);
         MatrixXd judged = rows.bottomRows(rows.rows() - record.skip);
         qr.fold(judged);

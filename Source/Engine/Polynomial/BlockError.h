@@ -31,11 +31,8 @@ private:
     BlockModel structure_;
     Recursion recursion_;
     const std::vector<PnlssRecord>& records_;
-    double power_ = 0.0;
+    double power_;
 };
-
-/// The powers v^2, v^3, .. of a signal, as columns.
-Eigen::MatrixXd powersOf(const Eigen::VectorXd& v, Eigen::Index count);
 
 /// Each column through G, from rest.
 Eigen::MatrixXd filtered(const StateSpace& G, const Eigen::MatrixXd& columns);

@@ -6,6 +6,7 @@
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
 #include "Engine/Polynomial/BlockError.h"
+#include "Engine/Polynomial/Powers.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Signal/Level.h"
 
@@ -27,7 +28,8 @@ MatrixXd regressorsOf(const StateSpace& G, const VectorXd& u, Index powers)
 {
     const VectorXd w = simulate(G, u);
     MatrixXd columns(u.size(), 2 + 3 * powers);
-    columns << VectorXd::Ones(u.size()), w, filtered(G, powersOf(u, powers)), powersOf(w, powers), filtered(G, powersOf(w, powers));
+    columns << VectorXd::Ones(u.size()), w, filtered(G, powersOf(u, 2, powers)), powersOf(w, 2, powers),
+        filtered(G, powersOf(w, 2, powers));
     return columns;
 }
 
@@ -106,17 +108,15 @@ MatrixXd branchFactor(const StateSpace& G, const std::vector<PnlssRecord>& recor
 std::map<BlockBranch, double> powersDb(const BlockModel& model, const std::vector<PnlssRecord>& records)
 {
     std::map<BlockBranch, double> powers;
-    double measured = 0.0;
     for (const auto& record : records) {
         const auto rows = record.output.rows() - record.skip;
         const auto outputs = branchOutputs(model, record.input);
-        measured += record.output.bottomRows(rows).squaredNorm();
         for (const auto branch : blockBranches())
             if (model.of(branch).size() > 0)
                 powers[branch] += outputs.of(branch).tail(rows).squaredNorm();
     }
     for (auto& [branch, power] : powers)
-        power = decibelsOf(power / measured);
+        power = decibelsOf(power / judgedPower(records));
     return powers;
 }
 

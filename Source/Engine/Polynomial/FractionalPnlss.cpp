@@ -2,7 +2,6 @@
 #include "Engine/Polynomial/FractionalPnlss.h"
 
 #include "Engine/Error.h"
-#include "Engine/Fractional/FractionalIntegrator.h"
 #include "Engine/Polynomial/FractionalRecursion.h"
 #include "Engine/Signal/Level.h"
 
@@ -103,22 +102,30 @@ std::vector<Eigen::MatrixXcd> respondLinear(const FractionalPnlss& model, const 
     return responses;
 }
 
+std::vector<FractionalIntegrator> integratorsOf(const Eigen::Array<bool, Eigen::Dynamic, 1>& fractional, double alpha, const FractionalGrid& grid)
+{
+    const auto whole = integratorFor(1.0, grid.step(), grid.band);
+    const auto part = fractional.any() ? integratorFor(alpha, grid.step(), grid.band) : whole;
+    std::vector<FractionalIntegrator> result;
+    for (Index i = 0; i < fractional.size(); ++i)
+        result.push_back(fractional[i] ? part : whole);
+    return result;
+}
+
 GridError errorOf(const FractionalPnlss& model, const FractionalGrid& grid, const std::vector<double>& frequency)
 {
     const auto exact = respondLinear(model, frequency);
-    const auto whole = integratorFor(1.0, grid.step(), grid.band);
-    const auto part = model.fractional.any() ? integratorFor(model.alpha, grid.step(), grid.band) : whole;
+    const auto integrators = integratorsOf(model.fractional, model.alpha, grid);
     double error = 0.0, power = 0.0;
     Eigen::VectorXcd operators(model.form.linear.order());
     for (std::size_t k = 0; k < frequency.size(); ++k) {
         const auto z = std::polar(1.0, 2.0 * std::numbers::pi * frequency[k] * grid.step());
         for (Index i = 0; i < operators.size(); ++i)
-            operators[i] = 1.0 / (model.fractional[i] ? part : whole).response(z);
+            operators[i] = 1.0 / integrators[static_cast<std::size_t>(i)].response(z);
         error += (responseAt(model.form.linear, operators) - exact[k]).squaredNorm();
         power += exact[k].squaredNorm();
     }
-    // Cells slower than the record stand at 1 up to rounding.
-    return {decibelsOf(error / power), stabilityMargin(expandedLinear(model, grid)) > -1e-9};
+    return {decibelsOf(error / power), isStable(model, grid)};
 }
 
 FractionalGrid gridFor(const FractionalPnlss& model, double sampleRate, const std::vector<double>& frequency, double seconds, double tolerance)
@@ -141,17 +148,16 @@ StateSpace expandedLinear(const FractionalPnlss& model, const FractionalGrid& gr
     requireValid(model);
     const auto& linear = model.form.linear;
     const auto n = linear.order();
-    const auto whole = integratorFor(1.0, grid.step(), grid.band);
-    const auto part = model.fractional.any() ? integratorFor(model.alpha, grid.step(), grid.band) : whole;
+    const auto integrators = integratorsOf(model.fractional, model.alpha, grid);
     Index cells = 0;
-    for (Index i = 0; i < n; ++i)
-        cells += (model.fractional[i] ? part : whole).cells();
+    for (const auto& integrator : integrators)
+        cells += integrator.cells();
     const Index size = cells + 3 * n;   // cells, then v(t-1), v(t-2), v(t-3)
     MatrixXd held = MatrixXd::Zero(n, size), own = MatrixXd::Zero(size, size), ofNew = MatrixXd::Zero(size, n);
     Eigen::VectorXd gain(n);
     Index at = 0;
     for (Index i = 0; i < n; ++i) {
-        const auto& f = model.fractional[i] ? part : whole;
+        const auto& f = integrators[static_cast<std::size_t>(i)];
         const auto K = f.cells();
         gain[i] = f.direct[0];
         held.row(i).segment(at, K) = (f.readout.array() * f.decay.array()).matrix().transpose();
@@ -174,6 +180,11 @@ StateSpace expandedLinear(const FractionalPnlss& model, const FractionalGrid& gr
     expanded.C = linear.C * zetaOfPast;
     expanded.D = linear.C * zetaOfInput + linear.D;
     return expanded;
+}
+
+bool isStable(const FractionalPnlss& model, const FractionalGrid& grid)
+{
+    return stabilityMargin(expandedLinear(model, grid)) > -1e-9;
 }
 
 MatrixXd simulate(const FractionalPnlss& model, const MatrixXd& input, const FractionalGrid& grid)

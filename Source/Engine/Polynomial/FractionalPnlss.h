@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Fractional/FractionalStateSpace.h"
 #include "Engine/Fractional/DiffusiveLadder.h"
+#include "Engine/Fractional/FractionalIntegrator.h"
+#include "Engine/Fractional/FractionalStateSpace.h"
 #include "Engine/Fractional/MixedImpedance.h"
 #include "Engine/Polynomial/Pnlss.h"
 
@@ -44,6 +45,9 @@ struct FractionalGrid {
     double step() const { return 1.0 / (sampleRate * substeps); }
 };
 
+/// The integrator of every state on a grid.
+std::vector<FractionalIntegrator> integratorsOf(const Eigen::Array<bool, Eigen::Dynamic, 1>& fractional, double alpha, const FractionalGrid&);
+
 /// The coarsest grid on which the discretized linear part is stable where the model is meant to be, and follows the exact response to within the
 /// tolerance: the relative rms error over the frequencies. At most 16 substeps; what they can't reach is taken as it is.
 /// @param frequency  Hz, where the input has power @param seconds  length of the records: the ladder remembers as long
@@ -59,6 +63,9 @@ GridError errorOf(const FractionalPnlss&, const FractionalGrid&, const std::vect
 /// The linear part on the grid as an ordinary model of discrete time at sampleRate * substeps: the ladder's cells and the last values of
 /// every derivative are its states.
 StateSpace expandedLinear(const FractionalPnlss&, const FractionalGrid&);
+
+/// Whether that is stable. Cells slower than the record stand at 1 up to rounding, and are not held against it.
+bool isStable(const FractionalPnlss&, const FractionalGrid&);
 
 /// The output, N x p, from rest, for an input of N samples, N x m, at the grid's sample rate: between samples it is interpolated band-limited.
 /// A model that runs away leaves the finite numbers. Throws Error (usage) where the input does not fit.

@@ -20,20 +20,6 @@ using Eigen::VectorXd;
 
 constexpr double far = 1e100;   // no state of a loudspeaker is
 
-MatrixXd judged(const PnlssRecord& record, const MatrixXd& output)
-{
-    const auto rows = record.output.rows() - record.skip;
-    return record.output.bottomRows(rows) - output.bottomRows(rows);
-}
-
-double judgedPower(const std::vector<PnlssRecord>& records)
-{
-    double power = 0.0;
-    for (const auto& record : records)
-        power += record.output.bottomRows(record.output.rows() - record.skip).squaredNorm();
-    return power;
-}
-
 class FractionalSimulationError : public SearchProblem {
 public:
     FractionalSimulationError(const FractionalPnlss& structure, const FractionalGrid& grid, const std::vector<PnlssRecord>& records,
@@ -61,7 +47,7 @@ public:
         for (std::size_t k = 0; k < records_.size(); ++k) {
             if (!recursion_.run(model, inputs_[k], bound_, runs_[k]))
                 return std::numeric_limits<double>::infinity();
-            sum += judged(records_[k], runs_[k].output).squaredNorm();
+            sum += judgedError(records_[k], runs_[k].output).squaredNorm();
         }
         return std::isfinite(sum) ? sum / power_ : std::numeric_limits<double>::infinity();
     }
@@ -70,20 +56,12 @@ public:
     {
         cost(values);   // for the trajectories
         const auto model = modelAt(values);
-        const auto P = recursion_.parameters();
-        TallQr qr(P + 1);
+        TallQr qr(recursion_.parameters() + 1);
         for (std::size_t k = 0; k < records_.size(); ++k) {
-            const auto skip = records_[k].skip;
-            const MatrixXd rest = judged(records_[k], runs_[k].output);
+            const MatrixXd error = judgedError(records_[k], runs_[k].output);
             recursion_.differentiate(model, inputs_[k], runs_[k], [&](Index first, std::vector<MatrixXd>& derivatives) {
-                for (std::size_t o = 0; o < derivatives.size(); ++o) {
-                    const Index drop = std::clamp<Index>(skip - first, 0, derivatives[o].rows()), rows = derivatives[o].rows() - drop;
-                    if (rows == 0)
-                        continue;
-                    MatrixXd part(rows, P + 1);
-                    part << derivatives[o].bottomRows(rows), rest.col(static_cast<Index>(o)).segment(first + drop - skip, rows);
-                    qr.fold(part);
-                }
+                for (std::size_t o = 0; o < derivatives.size(); ++o)
+                    foldJudged(qr, records_[k], first, derivatives[o], error.col(static_cast<Index>(o)));
             });
         }
         return qr.R();
@@ -192,7 +170,7 @@ FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const Fracti
             samples += (record.output.rows() - record.skip) * record.output.cols();
         result.alphaDeviation = lastDeviation(problem.factor(best), samples, options.rankTolerance);
     }
-    result.stable = stabilityMargin(expandedLinear(result.model, grid)) > -1e-9;   // cells slower than the record stand at 1 up to rounding
+    result.stable = isStable(result.model, grid);
     return result;
 }
 

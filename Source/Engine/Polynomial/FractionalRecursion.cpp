@@ -136,21 +136,11 @@ void FractionalRecursion::setValues(FractionalPnlss& model, const VectorXd& valu
         model.alpha = values[values.size() - 1];
 }
 
-std::vector<FractionalIntegrator> FractionalRecursion::integrators(double alpha) const
-{
-    const auto whole = integratorFor(1.0, grid_.step(), grid_.band);
-    const auto part = fractional_.any() ? integratorFor(alpha, grid_.step(), grid_.band) : whole;
-    std::vector<FractionalIntegrator> result;
-    for (Index i = 0; i < n_; ++i)
-        result.push_back(fractional_[i] ? part : whole);
-    return result;
-}
-
 bool FractionalRecursion::run(const FractionalPnlss& model, const MatrixXd& input, double bound, Trajectory& out) const
 {
     if (fractional_.any() && !(model.alpha > 0.01 && model.alpha < 0.99))
         return false;
-    const auto cut = integrators(model.alpha);
+    const auto cut = integratorsOf(fractional_, model.alpha, grid_);
     VectorXd gain(n_);
     for (Index i = 0; i < n_; ++i)
         gain[i] = cut[static_cast<std::size_t>(i)].direct[0];
@@ -200,7 +190,7 @@ bool FractionalRecursion::run(const FractionalPnlss& model, const MatrixXd& inpu
 
 void FractionalRecursion::differentiate(const FractionalPnlss& model, const MatrixXd& input, const Trajectory& run, const Recursion::Taker& take) const
 {
-    const auto cut = integrators(model.alpha);
+    const auto cut = integratorsOf(fractional_, model.alpha, grid_);
     FractionalIntegrator slope;
     if (alphaFree_)
         slope = integratorSlope(model.alpha, grid_.step(), grid_.band);

@@ -35,8 +35,6 @@ public:
     void differentiate(const FractionalPnlss&, const Eigen::MatrixXd& input, const Trajectory&, const Recursion::Taker&) const;
 
 private:
-    std::vector<FractionalIntegrator> integrators(double alpha) const;
-
     FractionalGrid grid_;
     Eigen::Index n_, m_, p_;
     Eigen::Array<bool, Eigen::Dynamic, 1> fractional_;

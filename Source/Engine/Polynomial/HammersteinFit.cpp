@@ -5,6 +5,7 @@
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Polynomial/LongHammerstein.h"
 #include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/Powers.h"
 
 #include <Eigen/Cholesky>
 
@@ -29,11 +30,8 @@ MatrixXd orthonormalPolynomials(const std::vector<PnlssRecord>& records, int deg
     if (!(size > 0.0))
         throw Error(Error::Kind::data, "The model cannot be fitted: the input is silent.");
     for (const auto& record : records) {
-        MatrixXd powers(record.input.rows(), degree);
-        powers.col(0) = record.input / size;
-        for (int n = 1; n < degree; ++n)
-            powers.col(n) = powers.col(n - 1).cwiseProduct(powers.col(0));
-        qr.fold(powers);
+        MatrixXd P = powersOf(record.input.col(0) / size, 1, degree);
+        qr.fold(P);
         samples += static_cast<double>(record.input.rows());
     }
     const VectorXd diagonal = qr.R().diagonal().cwiseAbs();
@@ -150,12 +148,7 @@ bool HammersteinFitOptions::isValid(std::string* reason) const
 HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
                               const HammersteinFitOptions& options, const Progress& progress)
 {
-    std::string reason;
-    if (!options.isValid(&reason))
-        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
-    if (!(std::isfinite(sampleRate) && sampleRate > 0.0))
-        throw Error(Error::Kind::usage, "The model cannot be fitted: its sample rate must be above 0 Hz.");
-    requireFitting(estimation, validation, 1, 1);
+    requireFitting(options, sampleRate, estimation, validation);
     const Index N = options.degree;
     Index longest = 0;
     for (const auto& record : estimation)
@@ -169,11 +162,7 @@ HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>&
     for (std::size_t r = 0; r < estimation.size(); ++r) {
         progress.at(0.3 * static_cast<double>(r) / static_cast<double>(estimation.size()), "correlating powers of the input");
         const auto& record = estimation[r];
-        MatrixXd powers(record.input.rows(), N);
-        powers.col(0) = record.input;
-        for (Index n = 1; n < N; ++n)
-            powers.col(n) = powers.col(n - 1).cwiseProduct(powers.col(0));
-        equations.add(powers * T, record.output.col(0), record.skip, K);
+        equations.add(powersOf(record.input.col(0), 1, N) * T, record.output.col(0), record.skip, K);
     }
 
     HammersteinFit best;

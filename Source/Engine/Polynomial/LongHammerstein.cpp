@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/LongHammerstein.h"
 
+#include "Engine/Polynomial/Powers.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -19,10 +20,7 @@ LongHammerstein::LongHammerstein(const std::vector<PnlssRecord>& records, const 
         const auto N = record.input.rows();
         Stretch stretch {std::bit_ceil(static_cast<std::size_t>(N + taps)), {}, record.output.col(0), record.skip};
         stretch.output.head(record.skip).setZero();
-        Eigen::MatrixXd powers(N, branches_);
-        for (Index n = 0; n < branches_; ++n)
-            powers.col(n) = n == 0 ? record.input.col(0) : VectorXd(powers.col(n - 1).cwiseProduct(record.input.col(0)));
-        const Eigen::MatrixXd P = powers * T;
+        const Eigen::MatrixXd P = powersOf(record.input.col(0), 1, branches_) * T;
         std::vector<double> padded(stretch.length);
         for (Index n = 0; n < branches_; ++n) {
             std::copy_n(P.col(n).data(), N, padded.begin());

@@ -98,22 +98,19 @@ Choice chosenForward(const MatrixXd& R, int most)
 class NarxError final : public SearchProblem {
 public:
     NarxError(const Narx& structure, const std::vector<PnlssRecord>& records)
-        : recursion_(structure), records_(records), outputs_(records.size())
+        : recursion_(structure), records_(records), outputs_(records.size()), power_(judgedPower(records))
     {
-        for (const auto& record : records) {
-            power_ += record.output.bottomRows(record.output.rows() - record.skip).squaredNorm();
+        for (const auto& record : records)
             bound_ = std::max(bound_, 1e3 * record.output.cwiseAbs().maxCoeff());
-        }
     }
 
     double cost(const VectorXd& values) override
     {
         double sum = 0.0;
         for (std::size_t k = 0; k < records_.size(); ++k) {
-            const auto N = records_[k].output.rows();
-            if (recursion_.run(values, records_[k].input.col(0), bound_, outputs_[k]) < N)
+            if (recursion_.run(values, records_[k].input.col(0), bound_, outputs_[k]) < records_[k].output.rows())
                 return nowhere;
-            sum += (records_[k].output - outputs_[k]).bottomRows(N - records_[k].skip).squaredNorm();
+            sum += judgedError(records_[k], outputs_[k]).squaredNorm();
         }
         return sum / power_;
     }
@@ -121,18 +118,12 @@ public:
     MatrixXd factor(const VectorXd& values) override
     {
         cost(values);
-        const auto K = values.size();
-        TallQr qr(K + 1);
+        TallQr qr(values.size() + 1);
         for (std::size_t k = 0; k < records_.size(); ++k) {
             const auto& record = records_[k];
-            recursion_.differentiate(values, record.input.col(0), outputs_[k], [&](Index first, const MatrixXd& derivatives) {
-                const Index drop = std::clamp<Index>(record.skip - first, 0, derivatives.rows()), rows = derivatives.rows() - drop;
-                if (rows == 0)
-                    return;
-                MatrixXd block(rows, K + 1);
-                block << derivatives.bottomRows(rows), (record.output - outputs_[k]).middleRows(first + drop, rows);
-                qr.fold(block);
-            });
+            const VectorXd error = judgedError(record, outputs_[k]);
+            recursion_.differentiate(values, record.input.col(0), outputs_[k],
+                                     [&](Index first, const MatrixXd& derivatives) { foldJudged(qr, record, first, derivatives, error); });
         }
         return qr.R() / std::sqrt(power_);
     }
@@ -141,7 +132,7 @@ private:
     NarxRecursion recursion_;
     const std::vector<PnlssRecord>& records_;
     std::vector<VectorXd> outputs_;
-    double power_ = 0.0, bound_ = 0.0;
+    double power_, bound_ = 0.0;
 };
 
 /// How many terms are worth a refinement: those that simulate best as they are, and, where records tell which is best, some others.
@@ -205,12 +196,7 @@ bool NarxFitOptions::isValid(std::string* reason) const
 NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
                 const NarxFitOptions& options, const Progress& progress)
 {
-    std::string reason;
-    if (!options.isValid(&reason))
-        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
-    if (!(std::isfinite(sampleRate) && sampleRate > 0.0))
-        throw Error(Error::Kind::usage, "The model cannot be fitted: its sample rate must be above 0 Hz.");
-    requireFitting(estimation, validation, 1, 1);
+    requireFitting(options, sampleRate, estimation, validation);
     progress.at(0.0, "choosing terms");
     const auto all = allTerms(sampleRate, options);
     const MatrixXd R = predictionFactor(all, estimation);

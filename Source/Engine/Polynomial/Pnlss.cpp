@@ -111,6 +111,13 @@ Pnlss withTerms(const StateSpace& linear, int degree, TermMask mask, bool offset
     return model;
 }
 
+void keepOutputLinear(Pnlss& model)
+{
+    for (Index k = 0; k < model.terms(); ++k)
+        if (model.exponents.row(k).sum() > 0)
+            model.free.bottomRows(model.linear.outputs()).col(k).setConstant(false);
+}
+
 MatrixXd simulate(const Pnlss& model, const MatrixXd& input, const VectorXd& initial)
 {
     std::string reason;

@@ -40,6 +40,9 @@ Pnlss withTerms(const StateSpace&, int degree, TermMask = TermMask::full, bool o
 /// monomial twice.
 Pnlss withTerms(const StateSpace&, const Exponents& chosen);
 
+/// Monomials move the states alone: in the output equation none but the offset stays free.
+void keepOutputLinear(Pnlss&);
+
 /// The output, N x p, for an input of N samples, N x m. @param initial  empty: from rest
 /// A model that runs away leaves the finite numbers; what comes after is not finite either.
 /// Throws Error (usage) for an input that does not fit.

@@ -89,7 +89,7 @@ public:
         for (std::size_t k = 0; k < records_.size(); ++k) {
             if (!run(model, values, k))
                 return infinity;
-            sum += weighted(error(k)).squaredNorm();
+            sum += weighted(judgedError(records_[k], outputs_[k])).squaredNorm();
         }
         return std::isfinite(sum) ? sum / power_ : infinity;
     }
@@ -102,7 +102,7 @@ public:
         TallQr qr(all + 1);
         for (std::size_t k = 0; k < records_.size(); ++k) {
             const auto& record = records_[k];
-            const MatrixXd rest = error(k);
+            const MatrixXd rest = judgedError(record, outputs_[k]);
             const auto guide = guideOf(record);
             const bool spectral = options_.lineWeights.size() != 0;
             std::vector<MatrixXd> whole;   // for weights along the spectrum the record's Jacobian has to stand as a whole
@@ -180,12 +180,6 @@ private:
     {
         const auto guide = guideOf(records_[k]);
         return recursion_.run(model, records_[k].input, initialState(values, k), bound, states_[k], outputs_[k], guide ? &*guide : nullptr);
-    }
-
-    MatrixXd error(std::size_t k) const
-    {
-        const auto rows = records_[k].output.rows() - records_[k].skip;
-        return records_[k].output.bottomRows(rows) - outputs_[k].bottomRows(rows);
     }
 
     /// Columns through the weights of the spectrum; their sum of squares is the weighted power (Parseval).

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/PnlssRecord.h"
 
-#include "Engine/Error.h"
+#include "Engine/Linear/TallQr.h"
 #include "Engine/Signal/Level.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -42,17 +43,38 @@ PnlssRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index 
     return record;
 }
 
+MatrixXd judgedError(const PnlssRecord& record, const MatrixXd& modelled)
+{
+    const auto rows = record.output.rows() - record.skip;
+    return record.output.bottomRows(rows) - modelled.bottomRows(rows);
+}
+
+double judgedPower(const std::vector<PnlssRecord>& records)
+{
+    double power = 0.0;
+    for (const auto& record : records)
+        power += record.output.bottomRows(record.output.rows() - record.skip).squaredNorm();
+    return power;
+}
+
+void foldJudged(TallQr& qr, const PnlssRecord& record, Index first, const MatrixXd& derivatives, const Eigen::VectorXd& error)
+{
+    const Index drop = std::clamp<Index>(record.skip - first, 0, derivatives.rows()), rows = derivatives.rows() - drop;
+    if (rows == 0)
+        return;
+    MatrixXd block(rows, derivatives.cols() + 1);
+    block << derivatives.bottomRows(rows), error.segment(first + drop - record.skip, rows);
+    qr.fold(block);
+}
+
 double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<PnlssRecord>& records)
 {
     if (records.empty())
         return std::numeric_limits<double>::quiet_NaN();
-    double error = 0.0, power = 0.0;
-    for (std::size_t k = 0; k < records.size(); ++k) {
-        const auto rows = records[k].output.rows() - records[k].skip;
-        error += (records[k].output.bottomRows(rows) - modelled[k].bottomRows(rows)).squaredNorm();
-        power += records[k].output.bottomRows(rows).squaredNorm();
-    }
-    return std::isfinite(error) ? decibelsOf(error / power) : std::numeric_limits<double>::infinity();
+    double error = 0.0;
+    for (std::size_t k = 0; k < records.size(); ++k)
+        error += judgedError(records[k], modelled[k]).squaredNorm();
+    return std::isfinite(error) ? decibelsOf(error / judgedPower(records)) : std::numeric_limits<double>::infinity();
 }
 
 } // namespace excursion

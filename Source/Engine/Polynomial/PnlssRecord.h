@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Error.h"
+
 #include <Eigen/Core>
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 namespace excursion {
+
+class TallQr;
 
 /// A stretch of input and output that a PNLSS model is fitted to or judged by.
 struct PnlssRecord {
@@ -20,6 +26,28 @@ PnlssRecord periodicRecord(const Eigen::MatrixXd& input, const Eigen::MatrixXd& 
 
 /// Throws Error (data) unless there is something to estimate from, and all records fit a model of these inputs and outputs and are finite.
 void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Eigen::Index inputs, Eigen::Index outputs);
+
+/// The same before a fit of a model with one input and one output; options that are not valid and sample rates that are none: Error (usage).
+template <class Options>
+void requireFitting(const Options& options, double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
+    if (!(std::isfinite(sampleRate) && sampleRate > 0.0))
+        throw Error(Error::Kind::usage, "The model cannot be fitted: its sample rate must be above 0 Hz.");
+    requireFitting(estimation, validation, 1, 1);
+}
+
+/// measured - modelled, of the samples after `skip`.
+Eigen::MatrixXd judgedError(const PnlssRecord&, const Eigen::MatrixXd& modelled);
+
+/// |measured|^2 of the samples after `skip`, of all records.
+double judgedPower(const std::vector<PnlssRecord>&);
+
+/// Folds [derivatives, error] of a stretch of a record's samples, `first` and those after it, as far as they are judged.
+/// @param error  one output's column of judgedError()
+void foldJudged(TallQr&, const PnlssRecord&, Eigen::Index first, const Eigen::MatrixXd& derivatives, const Eigen::VectorXd& error);
 
 /// 20 log10(|modelled - measured| / |measured|) over all records, samples after `skip` (seed 4.26); +infinity where the model ran away, NaN
 /// without records.

@@ -61,7 +61,7 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
         return run.output;
     };
     return {play, ofOrder("", model.form.linear.order(), degree) + withAlpha(model.alpha), parameters,
-            stabilityMargin(expandedLinear(model, grid)) > -1e-9};
+            isStable(model, grid)};
 }
 
 } // namespace
