@@ -90,11 +90,8 @@ void run(const VirtualArguments& options, Terminal& terminal)
     const auto drawn = bench::draw(options.seed, drawOptions(options));
     const auto take = bench::measure(drawn.speaker, drawn.setup, terminal.progress());
     writeMeasurement(take, options.out);
-    if (!options.truth.empty()) {
-        DraftFile truth(options.truth);
-        truth.write(bench::truthOf(drawn).dump(2) + "\n");
-        truth.publish();
-    }
+    if (!options.truth.empty())
+        publish(options.truth, bench::truthOf(drawn).dump(2) + "\n");
 
     const auto& plan = *take.excitation;
     nlohmann::ordered_json document {{"format", "excursion-virtual"}, {"version", 1}, {"take", options.out}, {"seed", options.seed}, {"driver", drawn.driver}, {"sampleRate", take.sampleRate},

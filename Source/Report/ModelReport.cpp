@@ -204,12 +204,6 @@ std::string documentHtml(const JsonField& document)
     document.at("format").refuse("a document that has a page");
 }
 
-void writeDocumentPage(const JsonField& document, const std::filesystem::path& path)
-{
-    const auto html = documentHtml(document);
-    DraftFile draft(path);
-    draft.write(html);
-    draft.publish();
-}
+void writeDocumentPage(const JsonField& document, const std::filesystem::path& path) { publish(path, documentHtml(document)); }
 
 } // namespace excursion

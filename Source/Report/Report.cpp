@@ -28,12 +28,6 @@ std::string reportHtml(const LadderFile& file)
     return page.html();
 }
 
-void writeReport(const LadderFile& file, const std::filesystem::path& path)
-{
-    const auto html = reportHtml(file);
-    DraftFile draft(path);
-    draft.write(html);
-    draft.publish();
-}
+void writeReport(const LadderFile& file, const std::filesystem::path& path) { publish(path, reportHtml(file)); }
 
 } // namespace excursion

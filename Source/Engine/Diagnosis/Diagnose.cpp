@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -122,14 +123,10 @@ bool DiagnoseOptions::isValid(std::string* reason) const
 {
     if (!fit.isValid(reason))
         return false;
-    if (trials < 1) {
-        *reason = "at least one candidate must be tried";
-        return false;
-    }
-    if (!(significantFall > 0.0 && significantFall < 1.0)) {
-        *reason = "the significant fall is a fraction between 0 and 1";
-        return false;
-    }
+    if (trials < 1)
+        return refuse(reason, "at least one candidate must be tried");
+    if (!(significantFall > 0.0 && significantFall < 1.0))
+        return refuse(reason, "the significant fall is a fraction between 0 and 1");
     return true;
 }
 

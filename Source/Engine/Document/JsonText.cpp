@@ -55,12 +55,7 @@ std::string jsonText(const Json& document)
     return text + "\n";
 }
 
-void writeJson(const Json& document, const std::filesystem::path& path)
-{
-    DraftFile draft(path);
-    draft.write(jsonText(document));
-    draft.publish();
-}
+void writeJson(const Json& document, const std::filesystem::path& path) { publish(path, jsonText(document)); }
 
 Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 

@@ -7,6 +7,7 @@
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,14 +71,10 @@ bool FitOptions::isValid(std::string* reason) const
 {
     if (!search.isValid(reason))
         return false;
-    if (!(simulationTolerance >= 0.0 && simulationTolerance < 1.0)) {
-        *reason = "the tolerance of the simulation must lie between 0 (chosen from the noise) and 1";
-        return false;
-    }
-    if (substeps < 0 || threads < 1) {
-        *reason = "steps a sample and threads are positive";
-        return false;
-    }
+    if (!(simulationTolerance >= 0.0 && simulationTolerance < 1.0))
+        return refuse(reason, "the tolerance of the simulation must lie between 0 (chosen from the noise) and 1");
+    if (substeps < 0 || threads < 1)
+        return refuse(reason, "steps a sample and threads are positive");
     return true;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/LeastSquares.h"
 
+#include "Engine/Validity.h"
+
 #include <ceres/ceres.h>
 
 #include <Eigen/Eigenvalues>
@@ -107,14 +109,10 @@ private:
 
 bool LeastSquaresOptions::isValid(std::string* reason) const
 {
-    if (maximumIterations < 1) {
-        *reason = "a fit needs at least one iteration";
-        return false;
-    }
-    if (!(costTolerance > 0.0 && costTolerance < 1.0)) {
-        *reason = "the cost tolerance of a fit must lie between 0 and 1";
-        return false;
-    }
+    if (maximumIterations < 1)
+        return refuse(reason, "a fit needs at least one iteration");
+    if (!(costTolerance > 0.0 && costTolerance < 1.0))
+        return refuse(reason, "the cost tolerance of a fit must lie between 0 and 1");
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/Periods.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -267,14 +268,10 @@ std::vector<double> Record::drive(const Section& section, std::size_t atLeast) c
 
 bool RecordOptions::isValid(std::string* reason) const
 {
-    if (!(windowSeconds > 0.0) || !(leadInSeconds >= 0.0)) {
-        *reason = "the window and the lead-in of a record are positive times in seconds";
-        return false;
-    }
-    if (!(relativeFloor > 0.0 && relativeFloor < 0.1)) {
-        *reason = "the relative floor of the noise must lie between 0 and 0.1";
-        return false;
-    }
+    if (!(windowSeconds > 0.0) || !(leadInSeconds >= 0.0))
+        return refuse(reason, "the window and the lead-in of a record are positive times in seconds");
+    if (!(relativeFloor > 0.0 && relativeFloor < 0.1))
+        return refuse(reason, "the relative floor of the noise must lie between 0 and 0.1");
     return true;
 }
 

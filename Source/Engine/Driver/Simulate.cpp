@@ -6,6 +6,7 @@
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Signal/Resample.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/LU>
 
@@ -128,14 +129,10 @@ int stableSubsteps(const Model& model, double sampleRate, double limit)
 
 bool SimulationOptions::isValid(std::string* reason) const
 {
-    if (!(tolerance > 1e-12 && tolerance < 1.0)) {
-        *reason = "the tolerance of a simulation must lie between 1e-12 and 1";
-        return false;
-    }
-    if (maximumSubsteps < 1) {
-        *reason = "a simulation needs at least one step a sample";
-        return false;
-    }
+    if (!(tolerance > 1e-12 && tolerance < 1.0))
+        return refuse(reason, "the tolerance of a simulation must lie between 1e-12 and 1");
+    if (maximumSubsteps < 1)
+        return refuse(reason, "a simulation needs at least one step a sample");
     return true;
 }
 

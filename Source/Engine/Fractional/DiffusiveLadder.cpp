@@ -2,6 +2,7 @@
 #include "Engine/Fractional/DiffusiveLadder.h"
 
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,9 +58,7 @@ bool LadderOptions::isValid(std::string* reason) const
 {
     const bool valid = lowFrequency > 0.0 && highFrequency > lowFrequency && std::isfinite(highFrequency) && cellsPerDecade >= 0.5
                     && cellsPerDecade <= 8.0;
-    if (!valid && reason)
-        *reason = "a ladder needs a band that begins above 0 Hz and ends above its begin, and 0.5 to 8 cells a decade";
-    return valid;
+    return valid || refuse(reason, "a ladder needs a band that begins above 0 Hz and ends above its begin, and 0.5 to 8 cells a decade");
 }
 
 DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Fractional/AlphaCurve.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <array>
@@ -104,15 +105,10 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
 
 bool FractionalOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (alpha && !(*alpha > 0.0 && *alpha < 2.0))
-        return refuse("alpha must lie between 0 and 2");
+        return refuse(reason, "alpha must lie between 0 and 2");
     if (!(leastAlpha > 0.0 && leastAlpha < mostAlpha && mostAlpha < 2.0 && gridStep > 1e-3 && gridStep <= 0.5))
-        return refuse("alpha is searched between bounds that ascend between 0 and 2, in steps of 0.001 to 0.5");
+        return refuse(reason, "alpha is searched between bounds that ascend between 0 and 2, in steps of 0.001 to 0.5");
     return linearOptions(*this, alpha.value_or(1.0)).isValid(reason);
 }
 

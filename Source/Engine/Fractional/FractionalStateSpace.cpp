@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,16 +14,10 @@ namespace excursion {
 
 bool FractionalStateSpace::isValid(std::string* reason) const
 {
-    if (!(alpha > 0.0 && alpha < 2.0)) {
-        if (reason)
-            *reason = "the order of differentiation of a fractional model must lie between 0 and 2";
-        return false;
-    }
-    if (!form.continuous()) {
-        if (reason)
-            *reason = "a fractional model is one of continuous time";
-        return false;
-    }
+    if (!(alpha > 0.0 && alpha < 2.0))
+        return refuse(reason, "the order of differentiation of a fractional model must lie between 0 and 2");
+    if (!form.continuous())
+        return refuse(reason, "a fractional model is one of continuous time");
     return form.isValid(reason);
 }
 

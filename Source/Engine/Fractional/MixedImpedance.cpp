@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -137,9 +138,7 @@ Complex MixedImpedance::at(double frequency) const
 bool MixedImpedanceOptions::isValid(std::string* reason) const
 {
     const bool valid = (!alpha || (*alpha > 0.0 && *alpha < 2.0)) && maximumIterations >= 1;
-    if (!valid && reason)
-        *reason = "alpha must lie between 0 and 2, and at least one iteration is needed";
-    return valid;
+    return valid || refuse(reason, "alpha must lie between 0 and 2, and at least one iteration is needed");
 }
 
 MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpedanceOptions& options)

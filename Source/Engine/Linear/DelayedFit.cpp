@@ -5,6 +5,7 @@
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/TallQr.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -164,15 +165,10 @@ FrequencyData delayed(FrequencyData data, double seconds)
 
 bool DelayedFitOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!std::isfinite(least) || !std::isfinite(most) || least > most || (least == most && least != 0.0))
-        return refuse("its range must begin below its end");
+        return refuse(reason, "its range must begin below its end");
     if (scan < 3 || scan > 1000)
-        return refuse("the first look takes between 3 and 1000 delays");
+        return refuse(reason, "the first look takes between 3 and 1000 delays");
     return identification(*this, true).isValid(reason);
 }
 

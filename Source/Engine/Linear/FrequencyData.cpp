@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linear/FrequencyData.h"
 
+#include "Engine/Validity.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,25 +13,20 @@ using Eigen::Index;
 
 bool FrequencyData::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (outputs < 1 || inputs < 1 || value.cols() != outputs * inputs || value.rows() != static_cast<Index>(frequency.size()))
-        return refuse("its values do not fit its frequencies, inputs and outputs");
+        return refuse(reason, "its values do not fit its frequencies, inputs and outputs");
     if (frequency.size() < 2)
-        return refuse("it has fewer than two frequencies");
+        return refuse(reason, "it has fewer than two frequencies");
     if (!std::is_sorted(frequency.begin(), frequency.end(), std::less_equal<> {}) || !(frequency.front() >= 0.0)
         || !std::isfinite(frequency.back()))
-        return refuse("its frequencies do not ascend from 0 Hz or above");
+        return refuse(reason, "its frequencies do not ascend from 0 Hz or above");
     if (!value.allFinite())
-        return refuse("a value is not finite");
+        return refuse(reason, "a value is not finite");
     if (!(value.cwiseAbs2().colwise().sum().minCoeff() > 0.0))
-        return refuse("it is zero at all frequencies");
+        return refuse(reason, "it is zero at all frequencies");
     if (deviation.size() != 0
         && (deviation.rows() != value.rows() || deviation.cols() != value.cols() || !deviation.allFinite() || !(deviation.minCoeff() > 0.0)))
-        return refuse("its standard deviations must be as many as its values, and above 0");
+        return refuse(reason, "its standard deviations must be as many as its values, and above 0");
     return true;
 }
 

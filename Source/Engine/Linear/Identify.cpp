@@ -7,6 +7,7 @@
 #include "Engine/Linear/Subspace.h"
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/LU>
 
@@ -149,17 +150,12 @@ LinearIdentification fromFit(const PartialFractionFit& fit, const FrequencyData&
 
 bool IdentifyOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (order < 0 || order > 400)
-        return refuse("the order must lie between 0 and 400");
+        return refuse(reason, "the order must lie between 0 and 400");
     if (!(sampleRate >= 0.0) || !std::isfinite(sampleRate))
-        return refuse("the sample rate must be 0, for continuous time, or above");
+        return refuse(reason, "the sample rate must be 0, for continuous time, or above");
     if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && sampleRate != 0.0))
-        return refuse("the order of differentiation must lie between 0 and 2, and be 1 in discrete time");
+        return refuse(reason, "the order of differentiation must lie between 0 and 2, and be 1 in discrete time");
     return refinement.isValid(reason);
 }
 

@@ -6,6 +6,7 @@
 #include "Engine/Linear/DelayedFit.h"
 #include "Engine/Linear/PoleZero.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -185,17 +186,12 @@ std::string sentenceFor(const MotorCone& result, bool known, double leastSignalD
 
 bool MotorConeOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (relativeDegree != 2 && relativeDegree != 3)
-        return refuse("the relative degree of a displacement is 2 or 3");
+        return refuse(reason, "the relative degree of a displacement is 2 or 3");
     if (motorOrder < relativeDegree || motorOrder > 100 || coneOrder < 0 || coneOrder > 400)
-        return refuse("the motor's order must lie between its relative degree and 100, the cone's between 0 and 400");
+        return refuse(reason, "the motor's order must lie between its relative degree and 100, the cone's between 0 and 400");
     if (!std::isfinite(delay) || !(leastSignalDb >= 0.0) || !std::isfinite(leastSignalDb))
-        return refuse("the delay must be finite, and the least level of the displacement 0 dB above its noise or more");
+        return refuse(reason, "the delay must be finite, and the least level of the displacement 0 dB above its noise or more");
     return refinement.isValid(reason);
 }
 

@@ -2,6 +2,7 @@
 #include "Engine/Linear/OrderSweep.h"
 
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,11 +57,8 @@ void choose(OrderSweep& sweep, bool validated, bool deviations)
 
 bool OrderSweepOptions::isValid(std::string* reason) const
 {
-    if (orders.empty() || !std::is_sorted(orders.begin(), orders.end(), std::less_equal<> {}) || orders.front() < 0) {
-        if (reason)
-            *reason = "the orders of a sweep must ascend from 0 or above";
-        return false;
-    }
+    if (orders.empty() || !std::is_sorted(orders.begin(), orders.end(), std::less_equal<> {}) || orders.front() < 0)
+        return refuse(reason, "the orders of a sweep must ascend from 0 or above");
     return identify.isValid(reason);
 }
 

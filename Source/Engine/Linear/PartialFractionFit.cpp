@@ -8,6 +8,7 @@
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -204,9 +205,7 @@ Sections relocatePoles(const Sections& sections, const FrequencyData& data)
 bool PoleRefinementOptions::isValid(std::string* reason) const
 {
     const bool valid = maximumIterations >= 1 && costTolerance > 0.0 && costTolerance < 1.0;
-    if (!valid && reason)
-        *reason = "a refinement needs at least one iteration and a tolerance between 0 and 1";
-    return valid;
+    return valid || refuse(reason, "a refinement needs at least one iteration and a tolerance between 0 and 1");
 }
 
 PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, const PoleRefinementOptions& options, const Progress& progress)

@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/RootDistance.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -234,19 +235,14 @@ std::vector<Complex> rootsOf(const std::vector<Complex>& roots, const std::vecto
 
 bool PoleZeroReductionOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!(rippleDb >= 0.0) || !std::isfinite(rippleDb) || order < 0)
-        return refuse("the ripple and the order must be 0 or above");
+        return refuse(reason, "the ripple and the order must be 0 or above");
     if (!remote && !pairs)
-        return refuse("neither remote roots nor pairs may be taken out");
+        return refuse(reason, "neither remote roots nor pairs may be taken out");
     if (!(low >= 0.0) || !std::isfinite(high) || (high != 0.0 ? !(low < high) : low != 0.0))
-        return refuse("the band must begin at 0 Hz or above and below its end");
+        return refuse(reason, "the band must begin at 0 Hz or above and below its end");
     if (!(alpha > 0.0 && alpha < 2.0))
-        return refuse("the order of differentiation must lie between 0 and 2");
+        return refuse(reason, "the order of differentiation must lie between 0 and 2");
     return true;
 }
 

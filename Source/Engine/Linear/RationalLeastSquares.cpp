@@ -7,6 +7,7 @@
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -61,9 +62,7 @@ Coefficients solve(const MatrixXcd& powers, const FrequencyData& data, const Mat
 bool RationalOptions::isValid(std::string* reason) const
 {
     const bool valid = order >= 1 && order <= 400 && sampleRate >= 0.0 && std::isfinite(sampleRate) && iterations >= 0 && tolerance > 0.0;
-    if (!valid && reason)
-        *reason = "the order must lie between 1 and 400, rate and iterations at 0 or above, and the tolerance above 0";
-    return valid;
+    return valid || refuse(reason, "the order must lie between 1 and 400, rate and iterations at 0 or above, and the tolerance above 0");
 }
 
 RationalFit fitRational(const FrequencyData& data, const RationalOptions& options)

@@ -6,6 +6,7 @@
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/ThinSvd.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -110,9 +111,7 @@ StateSpace truncated(const Balanced& balanced, Index order, Truncation how)
 bool PruningOptions::isValid(std::string* reason) const
 {
     const bool valid = order >= 0 && errorDb <= 0.0 && std::isfinite(errorDb) && refinementIterations >= 1;
-    if (!valid && reason)
-        *reason = "pruning needs an order of at least 0, an error of at most 0 dB, and at least one iteration after each step";
-    return valid;
+    return valid || refuse(reason, "pruning needs an order of at least 0, an error of at most 0 dB, and at least one iteration after each step");
 }
 
 Pruning prune(const PartialFractionFit& start, const FrequencyData& data, const PruningOptions& options, const Progress& progress)

@@ -8,6 +8,7 @@
 #include "Engine/Linear/Subspace.h"
 #include "Engine/Linear/Sylvester.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -213,16 +214,10 @@ StateSpace stableProjection(const StateSpace& model, Index delay)
 
 bool StabilizeOptions::isValid(std::string* reason) const
 {
-    if (seconds && !std::isfinite(*seconds)) {
-        if (reason)
-            *reason = "the delay must be a finite number of seconds";
-        return false;
-    }
-    if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && method == StabilizingMethod::delay)) {
-        if (reason)
-            *reason = "the order of differentiation must lie between 0 and 2, and be 1 where a delay is fitted";
-        return false;
-    }
+    if (seconds && !std::isfinite(*seconds))
+        return refuse(reason, "the delay must be a finite number of seconds");
+    if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && method == StabilizingMethod::delay))
+        return refuse(reason, "the order of differentiation must lie between 0 and 2, and be 1 where a delay is fitted");
     return refinement.isValid(reason);
 }
 

@@ -2,6 +2,7 @@
 #include "Engine/Linear/StateSpace.h"
 
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -31,23 +32,18 @@ std::string shape(const Eigen::MatrixXd& M) { return std::to_string(M.rows()) + 
 
 bool StateSpace::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const std::string& sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (D.rows() < 1 || D.cols() < 1)
-        return refuse("a state-space model needs an input and an output, but its D is " + shape(D));
+        return refuse(reason, "a state-space model needs an input and an output, but its D is " + shape(D));
     if (A.rows() != A.cols())
-        return refuse("the A of a state-space model must be square, but is " + shape(A));
+        return refuse(reason, "the A of a state-space model must be square, but is " + shape(A));
     if (B.rows() != A.rows() || B.cols() != D.cols())
-        return refuse("the B of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be " + shape(B));
+        return refuse(reason, "the B of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be " + shape(B));
     if (C.rows() != D.rows() || C.cols() != A.cols())
-        return refuse("the C of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be " + shape(C));
+        return refuse(reason, "the C of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be " + shape(C));
     if (!A.allFinite() || !B.allFinite() || !C.allFinite() || !D.allFinite())
-        return refuse("a number of the state-space model is not finite");
+        return refuse(reason, "a number of the state-space model is not finite");
     if (!(sampleRate >= 0.0) || !std::isfinite(sampleRate))
-        return refuse("the sample rate of a state-space model must be 0 (continuous time) or above");
+        return refuse(reason, "the sample rate of a state-space model must be 0 (continuous time) or above");
     return true;
 }
 

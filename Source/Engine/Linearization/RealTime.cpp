@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -12,27 +13,19 @@ namespace excursion {
 
 bool RealTimeOptions::isValid(std::string* reason) const
 {
-    if (!(sampleRate >= 8000.0 && sampleRate <= 768000.0)) {
-        *reason = "the sample rate must lie between 8000 and 768000 Hz";
-        return false;
-    }
-    if (oversampling != 1 && oversampling != 2 && oversampling != 4) {
-        *reason = "oversampling can be 1, 2 or 4";
-        return false;
-    }
+    if (!(sampleRate >= 8000.0 && sampleRate <= 768000.0))
+        return refuse(reason, "the sample rate must lie between 8000 and 768000 Hz");
+    if (oversampling != 1 && oversampling != 2 && oversampling != 4)
+        return refuse(reason, "oversampling can be 1, 2 or 4");
     return true;
 }
 
 bool LinearizationControls::isValid(std::string* reason) const
 {
-    if (!(amount >= 0.0 && amount <= 1.0)) {
-        *reason = "the amount must lie between 0 and 1";
-        return false;
-    }
-    if (!(displacementLimit > 0.0 && voltageLimit > 0.0)) {
-        *reason = "a limit must be positive";
-        return false;
-    }
+    if (!(amount >= 0.0 && amount <= 1.0))
+        return refuse(reason, "the amount must lie between 0 and 1");
+    if (!(displacementLimit > 0.0 && voltageLimit > 0.0))
+        return refuse(reason, "a limit must be positive");
     return true;
 }
 

@@ -2,6 +2,7 @@
 #include "Engine/Linearization/Recipe.h"
 
 #include "Engine/Driver/Catalogue.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,11 +35,7 @@ std::string_view title(Mode mode) { return names[static_cast<std::size_t>(mode)]
 
 bool Recipe::isValid(std::string* reason) const
 {
-    const auto check = [reason](bool holds, const char* sentence) {
-        if (!holds)
-            *reason = sentence;
-        return holds;
-    };
+    const auto check = [reason](bool holds, const char* sentence) { return holds || refuse(reason, sentence); };
     return check(fullScales.holds(fullScale), "the voltage of full scale must lie between 0.01 and 1000 V")
         && check(amounts.holds(amount), "the amount must lie between 0 and 1")
         && check(displacements.holds(displacementLimit), "the limit of the excursion must lie between 0.05 and 4 times what was measured")

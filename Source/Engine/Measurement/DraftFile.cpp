@@ -56,4 +56,11 @@ void DraftFile::publish()
         cannotWrite(target_, error.message());
 }
 
+void publish(const std::filesystem::path& target, std::string_view bytes)
+{
+    DraftFile draft(target);
+    draft.write(bytes);
+    draft.publish();
+}
+
 } // namespace excursion

@@ -24,4 +24,7 @@ private:
     std::filesystem::path target_, draft_;
 };
 
+/// The whole of a file at once. Throws Error (input).
+void publish(const std::filesystem::path& target, std::string_view bytes);
+
 } // namespace excursion

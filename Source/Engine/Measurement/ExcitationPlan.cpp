@@ -2,6 +2,7 @@
 #include "Engine/Measurement/ExcitationPlan.h"
 
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,24 +11,19 @@ namespace excursion {
 
 bool ExcitationPlanOptions::isValid(std::string* reason) const
 {
-    const auto no = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!multisine.isValid(reason))
         return false;
     if (levels.empty() || levels.size() > 1000)
-        return no("An excitation needs 1 to 1000 levels.");
+        return refuse(reason, "An excitation needs 1 to 1000 levels.");
     for (std::size_t i = 0; i < levels.size(); ++i)
         if (!(std::isfinite(levels[i]) && levels[i] > 0 && (i == 0 || levels[i] > levels[i - 1])))
-            return no("The levels of an excitation must be positive numbers of V rms that ascend.");
+            return refuse(reason, "The levels of an excitation must be positive numbers of V rms that ascend.");
     if (settlePeriods < 0 || periods < 1 || realizations < 1 || settlePeriods > 1000 || periods > 10000 || realizations > 10000)
-        return no("An excitation has 0 to 1000 settling periods, 1 to 10000 periods and 1 to 10000 realizations.");
+        return refuse(reason, "An excitation has 0 to 1000 settling periods, 1 to 10000 periods and 1 to 10000 realizations.");
     const double samples = static_cast<double>(multisine.period) * (settlePeriods + periods) * realizations
                          * static_cast<double>(levels.size());
     if (samples > 500e6)
-        return no("An excitation must not be longer than 500 million samples; take a shorter period, fewer periods, "
+        return refuse(reason, "An excitation must not be longer than 500 million samples; take a shorter period, fewer periods, "
                   "realizations or levels.");
     return true;
 }

@@ -33,13 +33,6 @@ void appendRow(std::string& text, std::initializer_list<double> values, char sep
 
 double degrees(std::complex<double> value) { return std::arg(value) * 180 / std::numbers::pi; }
 
-void put(const std::filesystem::path& path, const std::string& text)
-{
-    DraftFile draft(path);
-    draft.write(text);
-    draft.publish();
-}
-
 } // namespace
 
 void writeZma(const Frf& impedance, const std::filesystem::path& path)
@@ -47,7 +40,7 @@ void writeZma(const Frf& impedance, const std::filesystem::path& path)
     std::string text = "* Frequency (Hz)\tImpedance (ohm)\tPhase (degrees)\n";
     for (std::size_t k = 0; k < impedance.value.size(); ++k)
         appendRow(text, {impedance.frequency[k], std::abs(impedance.value[k]), degrees(impedance.value[k])}, '\t');
-    put(path, text);
+    publish(path, text);
 }
 
 void writeFrd(const Frf& frf, const std::filesystem::path& path)
@@ -55,7 +48,7 @@ void writeFrd(const Frf& frf, const std::filesystem::path& path)
     std::string text = "* Frequency (Hz)\tLevel (dB)\tPhase (degrees)\n";
     for (std::size_t k = 0; k < frf.value.size(); ++k)
         appendRow(text, {frf.frequency[k], 20 * std::log10(std::abs(frf.value[k])), degrees(frf.value[k])}, '\t');
-    put(path, text);
+    publish(path, text);
 }
 
 void writeCsv(const Frf& frf, const std::filesystem::path& path)
@@ -71,7 +64,7 @@ void writeCsv(const Frf& frf, const std::filesystem::path& path)
             append(text += ',', frf.totalVariance[k]);
         text += '\n';
     }
-    put(path, text);
+    publish(path, text);
 }
 
 void writeCsv(const Measurement& measurement, const std::filesystem::path& path)
@@ -86,7 +79,7 @@ void writeCsv(const Measurement& measurement, const std::filesystem::path& path)
             append(text += ',', channel.samples[n]);
         text += '\n';
     }
-    put(path, text);
+    publish(path, text);
 }
 
 void writeCsv(const Spectra& spectra, const std::filesystem::path& path)
@@ -104,7 +97,7 @@ void writeCsv(const Spectra& spectra, const std::filesystem::path& path)
         }
         text += '\n';
     }
-    put(path, text);
+    publish(path, text);
 }
 
 } // namespace excursion

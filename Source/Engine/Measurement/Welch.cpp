@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,17 +54,12 @@ double independentAverages(const std::vector<double>& window, std::size_t hop, i
 
 bool WelchOptions::isValid(std::size_t length, std::string* reason) const
 {
-    const auto refuse = [reason](std::string why) {
-        if (reason)
-            *reason = std::move(why);
-        return false;
-    };
     if (segment < 16)
-        return refuse("A segment needs at least 16 samples, not " + std::to_string(segment) + ".");
+        return refuse(reason, "A segment needs at least 16 samples, not " + std::to_string(segment) + ".");
     if (!(overlap >= 0.0 && overlap <= 0.9))
-        return refuse("The overlap must lie in 0 .. 0.9.");
+        return refuse(reason, "The overlap must lie in 0 .. 0.9.");
     if (length < 2 * static_cast<std::size_t>(segment))
-        return refuse("The record has " + std::to_string(length) + " samples, fewer than two segments of "
+        return refuse(reason, "The record has " + std::to_string(length) + " samples, fewer than two segments of "
                       + std::to_string(segment) + "; choose a shorter segment.");
     return true;
 }

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Simulation.h"
+#include "Engine/Validity.h"
 
 #include <cmath>
 
@@ -46,17 +47,12 @@ bool BlockModel::isValid(std::string* reason) const
 {
     if (!linear.isValid(reason))
         return false;
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (linear.continuous() || linear.inputs() != 1 || linear.outputs() != 1)
-        return refuse("the linear part of a block model is one of discrete time, with one input and one output");
+        return refuse(reason, "the linear part of a block model is one of discrete time, with one input and one output");
     if (!hammerstein.allFinite() || !wiener.allFinite() || !feedback.allFinite() || !std::isfinite(offset))
-        return refuse("a coefficient of a polynomial is not finite");
+        return refuse(reason, "a coefficient of a polynomial is not finite");
     if (std::max({hammerstein.size(), wiener.size(), feedback.size()}) > 19)
-        return refuse("the polynomials of a block model go up to degree 20");
+        return refuse(reason, "the polynomials of a block model go up to degree 20");
     return true;
 }
 

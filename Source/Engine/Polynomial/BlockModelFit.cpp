@@ -9,6 +9,7 @@
 #include "Engine/Polynomial/Powers.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -124,15 +125,10 @@ std::map<BlockBranch, double> powersDb(const BlockModel& model, const std::vecto
 
 bool BlockModelFitOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (degree < 2 || degree > 20)
-        return refuse("the degree of a block model's polynomials must be 2 to 20");
+        return refuse(reason, "the degree of a block model's polynomials must be 2 to 20");
     if (maximumBranches < 0 || maximumIterations < 0 || !(worthwhileDb >= 0.0))
-        return refuse("numbers of branches and iterations, and what is worthwhile, must be at least 0");
+        return refuse(reason, "numbers of branches and iterations, and what is worthwhile, must be at least 0");
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Polynomial/FractionalRecursion.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/LU>
 
@@ -54,17 +55,12 @@ bool FractionalPnlss::isValid(std::string* reason) const
 {
     if (!form.fits(reason))
         return false;
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!form.linear.continuous())
-        return refuse("a model of fractional order is one of continuous time, but has a sample rate");
+        return refuse(reason, "a model of fractional order is one of continuous time, but has a sample rate");
     if (fractional.size() != form.linear.order())
-        return refuse("every state must be told to be of fractional order, or not");
+        return refuse(reason, "every state must be told to be of fractional order, or not");
     if (fractional.any() && !(alpha > 0.0 && alpha < 1.0))
-        return refuse("the order alpha must lie between 0 and 1");
+        return refuse(reason, "the order alpha must lie between 0 and 1");
     return true;
 }
 

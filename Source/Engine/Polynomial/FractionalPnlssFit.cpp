@@ -7,6 +7,7 @@
 #include "Engine/Polynomial/FractionalRecursion.h"
 #include "Engine/Polynomial/Search.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <cmath>
 #include <limits>
@@ -106,9 +107,7 @@ double lastDeviation(const MatrixXd& R, Index samples, double tolerance)
 bool FractionalPnlssOptions::isValid(std::string* reason) const
 {
     const bool valid = maximumIterations >= 1 && costTolerance > 0.0 && costTolerance < 1.0 && rankTolerance > 0.0 && rankTolerance < 1.0;
-    if (!valid && reason)
-        *reason = "a fit needs at least one iteration, and tolerances between 0 and 1";
-    return valid;
+    return valid || refuse(reason, "a fit needs at least one iteration, and tolerances between 0 and 1");
 }
 
 double relativeErrorDb(const FractionalPnlss& model, const FractionalGrid& grid, const std::vector<PnlssRecord>& records)

@@ -6,6 +6,7 @@
 #include "Engine/Polynomial/LongHammerstein.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Polynomial/Powers.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/Cholesky>
 
@@ -131,17 +132,12 @@ HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecor
 
 bool HammersteinFitOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (degree < 1 || degree > 20)
-        return refuse("the degree of a parallel Hammerstein model must be 1 to 20");
+        return refuse(reason, "the degree of a parallel Hammerstein model must be 1 to 20");
     if (length < 1 || length * degree > 262144)
-        return refuse("the branches need at least one tap, and at most 262144 taps together");
+        return refuse(reason, "the branches need at least one tap, and at most 262144 taps together");
     if (!(regularization >= 0.0 && regularization < 1.0))
-        return refuse("the regularization must be at least 0 and less than 1");
+        return refuse(reason, "the regularization must be at least 0 and less than 1");
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Validity.h"
 
 #include <bit>
 #include <cmath>
@@ -81,19 +82,14 @@ Eigen::VectorXd fittedTaps(const Eigen::VectorXcd& response, const std::vector<b
 
 bool HammersteinSweepOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (degree < 1 || degree > 20)
-        return refuse("the degree of a parallel Hammerstein model must be 1 to 20");
+        return refuse(reason, "the degree of a parallel Hammerstein model must be 1 to 20");
     if (length < 1 || length > 16384)
-        return refuse("the branches of a parallel Hammerstein model have 1 to 16384 taps");
+        return refuse(reason, "the branches of a parallel Hammerstein model have 1 to 16384 taps");
     if (!(edge > 0.0 && edge <= 1.0))
-        return refuse("the edge that is kept around a response must be above 0 s and at most 1 s");
+        return refuse(reason, "the edge that is kept around a response must be above 0 s and at most 1 s");
     if (!(regularization > 0.0 && regularization < 1.0))
-        return refuse("the regularization must lie between 0 and 1");
+        return refuse(reason, "the regularization must lie between 0 and 1");
     return true;
 }
 

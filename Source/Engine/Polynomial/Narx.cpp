@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Polynomial/NarxRecursion.h"
+#include "Engine/Validity.h"
 
 #include <cmath>
 #include <limits>
@@ -13,21 +14,16 @@ using Eigen::Index;
 
 bool Narx::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!(std::isfinite(sampleRate) && sampleRate > 0.0))
-        return refuse("a NARX model needs a sample rate above 0 Hz");
+        return refuse(reason, "a NARX model needs a sample rate above 0 Hz");
     if (outputLags < 0 || inputLags < 0)
-        return refuse("the lags of a NARX model must be at least 0");
+        return refuse(reason, "the lags of a NARX model must be at least 0");
     if (exponents.cols() != outputLags + inputLags + 1 || exponents.rows() != coefficients.size())
-        return refuse("a NARX model needs one coefficient a term, and one exponent a lag and for the input itself");
+        return refuse(reason, "a NARX model needs one coefficient a term, and one exponent a lag and for the input itself");
     if (exponents.size() > 0 && exponents.minCoeff() < 0)
-        return refuse("the exponents of a NARX model must be at least 0");
+        return refuse(reason, "the exponents of a NARX model must be at least 0");
     if (!coefficients.allFinite())
-        return refuse("a coefficient of a NARX model is not finite");
+        return refuse(reason, "a coefficient of a NARX model is not finite");
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include "Engine/Polynomial/NarxRecursion.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Polynomial/Search.h"
+#include "Engine/Validity.h"
 
 #include <cmath>
 #include <limits>
@@ -177,19 +178,14 @@ void refine(const Narx& start, const std::vector<PnlssRecord>& estimation, const
 
 bool NarxFitOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (outputLags < 0 || inputLags < 0 || outputLags > 100 || inputLags > 100)
-        return refuse("the lags of a NARX model must be 0 to 100");
+        return refuse(reason, "the lags of a NARX model must be 0 to 100");
     if (!direct && inputLags == 0)
-        return refuse("a NARX model without an input of its own time needs input lags");
+        return refuse(reason, "a NARX model without an input of its own time needs input lags");
     if (degree < 1 || degree > 9)
-        return refuse("the degree of a NARX model must be 1 to 9");
+        return refuse(reason, "the degree of a NARX model must be 1 to 9");
     if (maximumTerms < 1 || maximumIterations < 0)
-        return refuse("a NARX model has at least one term, and is refined in no less than 0 iterations");
+        return refuse(reason, "a NARX model has at least one term, and is refined in no less than 0 iterations");
     return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Signal/Convolution.h"
+#include "Engine/Validity.h"
 
 #include <cmath>
 #include <complex>
@@ -15,17 +16,12 @@ using Eigen::Index;
 
 bool ParallelHammerstein::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!(std::isfinite(sampleRate) && sampleRate > 0.0))
-        return refuse("a parallel Hammerstein model needs a sample rate above 0 Hz");
+        return refuse(reason, "a parallel Hammerstein model needs a sample rate above 0 Hz");
     if (filters.size() == 0)
-        return refuse("a parallel Hammerstein model needs at least one branch and one tap");
+        return refuse(reason, "a parallel Hammerstein model needs at least one branch and one tap");
     if (!filters.allFinite() || !std::isfinite(offset))
-        return refuse("a coefficient of a branch is not finite");
+        return refuse(reason, "a coefficient of a branch is not finite");
     return true;
 }
 

@@ -2,6 +2,7 @@
 #include "Engine/Polynomial/Pnlss.h"
 
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/LU>
 
@@ -45,29 +46,22 @@ bool Pnlss::isValid(std::string* reason) const
 {
     if (!fits(reason))
         return false;
-    if (linear.continuous() && reason)
-        *reason = "a PNLSS model is one of discrete time, but its sample rate is 0";
-    return !linear.continuous();
+    return !linear.continuous() || refuse(reason, "a PNLSS model is one of discrete time, but its sample rate is 0");
 }
 
 bool Pnlss::fits(std::string* reason) const
 {
     if (!linear.isValid(reason))
         return false;
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     const auto n = linear.order(), m = linear.inputs(), p = linear.outputs(), K = terms();
     if (K > 0 && exponents.cols() != n + m)
-        return refuse("the exponents of a monomial must be as many as states and inputs");
+        return refuse(reason, "the exponents of a monomial must be as many as states and inputs");
     if (K > 0 && (exponents.minCoeff() < 0 || (exponents.rowwise().sum().array() == 1).any()))
-        return refuse("a monomial needs exponents of at least 0 and a degree that is not 1, as A, B, C and D are of degree 1");
+        return refuse(reason, "a monomial needs exponents of at least 0 and a degree that is not 1, as A, B, C and D are of degree 1");
     if (E.rows() != n || E.cols() != K || F.rows() != p || F.cols() != K || free.rows() != n + p || free.cols() != K)
-        return refuse("E, F and what is free must have one column a monomial, and rows as A and C");
+        return refuse(reason, "E, F and what is free must have one column a monomial, and rows as A and C");
     if (!E.allFinite() || !F.allFinite())
-        return refuse("a coefficient of E or F is not finite");
+        return refuse(reason, "a coefficient of E or F is not finite");
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include "Engine/Polynomial/Search.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/LU>
 
@@ -212,20 +213,15 @@ private:
 
 bool PnlssFitOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (maximumIterations < 1)
-        return refuse("a fit needs at least one iteration");
+        return refuse(reason, "a fit needs at least one iteration");
     if (!(costTolerance > 0.0 && costTolerance < 1.0) || !(rankTolerance > 0.0 && rankTolerance < 1.0))
-        return refuse("tolerances must lie between 0 and 1");
+        return refuse(reason, "tolerances must lie between 0 and 1");
     for (const double g : guideGains)
         if (!(g > 0.0 && g <= 1.0))
-            return refuse("the gains of a guided start must lie above 0 and not above 1");
+            return refuse(reason, "the gains of a guided start must lie above 0 and not above 1");
     if (lineWeights.size() != 0 && (!lineWeights.allFinite() || lineWeights.minCoeff() < 0.0 || lineWeights.maxCoeff() == 0.0))
-        return refuse("weights of the spectrum must be at least 0, and not all 0");
+        return refuse(reason, "weights of the spectrum must be at least 0, and not all 0");
     return true;
 }
 

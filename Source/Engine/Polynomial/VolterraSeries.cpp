@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Signal/Convolution.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,15 +23,10 @@ Index VolterraSeries::parameters() const
 
 bool VolterraSeries::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!(std::isfinite(sampleRate) && sampleRate > 0.0))
-        return refuse("a Volterra series needs a sample rate above 0 Hz");
+        return refuse(reason, "a Volterra series needs a sample rate above 0 Hz");
     if (first.size() == 0 || second.rows() != second.cols())
-        return refuse("a Volterra series needs a first kernel, and a second one that is square");
+        return refuse(reason, "a Volterra series needs a first kernel, and a second one that is square");
     const auto T3 = static_cast<Index>(third.size());
     bool finite = std::isfinite(offset) && first.allFinite() && second.allFinite(), cubic = true, symmetric = second == second.transpose();
     for (Index i = 0; i < T3; ++i) {
@@ -42,11 +38,11 @@ bool VolterraSeries::isValid(std::string* reason) const
         symmetric = symmetric && cubic && slice == slice.transpose();
     }
     if (!cubic)
-        return refuse("the third kernel of a Volterra series needs as many matrices as each has rows and columns");
+        return refuse(reason, "the third kernel of a Volterra series needs as many matrices as each has rows and columns");
     if (!finite)
-        return refuse("a kernel of a Volterra series is not finite");
+        return refuse(reason, "a kernel of a Volterra series is not finite");
     if (!symmetric)
-        return refuse("the kernels of a Volterra series must be symmetric");
+        return refuse(reason, "the kernels of a Volterra series must be symmetric");
     return true;
 }
 

@@ -9,6 +9,7 @@
 #include "Engine/Measurement/Welch.h"
 #include "Engine/Ranking/ModelClasses.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <chrono>
@@ -104,16 +105,11 @@ std::optional<double> noiseOf(const Measurement& take, const Channel& output, in
 
 bool RankOptions::isValid(std::string* reason) const
 {
-    const auto refuse = [reason](const std::string& sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (order < 0 || order > 20 || degree < 2 || degree > 7 || iterations < 1)
-        return refuse("an order of at most 20, a degree of 2 to 7 and at least one iteration are needed");
+        return refuse(reason, "an order of at most 20, a degree of 2 to 7 and at least one iteration are needed");
     for (const auto& wanted : classes)
         if (std::none_of(fittings().begin(), fittings().end(), [&](const Fitting& f) { return f.told.name == wanted; }))
-            return refuse("there is no class of models \"" + wanted + "\"");
+            return refuse(reason, "there is no class of models \"" + wanted + "\"");
     return true;
 }
 

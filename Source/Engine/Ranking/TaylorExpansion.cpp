@@ -4,6 +4,7 @@
 #include "Engine/Driver/Dynamics.h"
 #include "Engine/Driver/Exponential.h"
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <Eigen/QR>
 
@@ -83,9 +84,7 @@ void requireAffine(const RatesOf& rates, const Eigen::Vector3d& w, const std::ve
 bool TaylorOptions::isValid(std::string* reason) const
 {
     const bool valid = degree >= 1 && degree <= 9 && reach > 1e-4 && reach <= 1.0;
-    if (!valid && reason)
-        *reason = "a Taylor expansion needs a degree of 1 to 9 and a reach above 1e-4, at most 1";
-    return valid;
+    return valid || refuse(reason, "a Taylor expansion needs a degree of 1 to 9 and a reach above 1e-4, at most 1");
 }
 
 FractionalPnlss expand(const Model& model, Quantity output, const TaylorOptions& options)

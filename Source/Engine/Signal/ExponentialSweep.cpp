@@ -2,6 +2,7 @@
 #include "Engine/Signal/ExponentialSweep.h"
 
 #include "Engine/Error.h"
+#include "Engine/Validity.h"
 
 #include <cmath>
 #include <numbers>
@@ -18,25 +19,20 @@ double raisedCosine(double time, double length) { return time >= length ? 1.0 : 
 
 bool ExponentialSweepOptions::isValid(std::string* reason) const
 {
-    const auto no = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!(std::isfinite(sampleRate) && sampleRate > 0))
-        return no("The sample rate of a sweep must be a positive number of Hz.");
+        return refuse(reason, "The sample rate of a sweep must be a positive number of Hz.");
     if (!(std::isfinite(bandLow) && std::isfinite(bandHigh) && bandLow > 0 && bandHigh > bandLow))
-        return no("A sweep must go from a frequency above 0 Hz up to a higher one.");
+        return refuse(reason, "A sweep must go from a frequency above 0 Hz up to a higher one.");
     if (bandHigh >= sampleRate / 2)
-        return no("A sweep must end below half the sample rate.");
+        return refuse(reason, "A sweep must end below half the sample rate.");
     if (!(std::isfinite(peak) && peak > 0))
-        return no("The peak of a sweep must be a positive number of V.");
+        return refuse(reason, "The peak of a sweep must be a positive number of V.");
     if (!(std::isfinite(seconds) && seconds * bandLow >= std::log(bandHigh / bandLow)))
-        return no("A sweep must last at least a period of its first frequency for each factor e that it runs through.");
+        return refuse(reason, "A sweep must last at least a period of its first frequency for each factor e that it runs through.");
     if (seconds * sampleRate > 100e6)
-        return no("A sweep must not be longer than 100 million samples.");
+        return refuse(reason, "A sweep must not be longer than 100 million samples.");
     if (!(fadeIn >= 0 && fadeOut >= 0 && fadeIn + fadeOut < 0.5 * seconds))
-        return no("The fades of a sweep must be at least 0 s, and less than half the sweep together.");
+        return refuse(reason, "The fades of a sweep must be at least 0 s, and less than half the sweep together.");
     return true;
 }
 

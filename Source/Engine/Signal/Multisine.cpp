@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Validity.h"
 
 #include <algorithm>
 #include <array>
@@ -122,23 +123,18 @@ std::optional<Shape> shapeNamed(std::string_view text) { return named<Shape>(sha
 
 bool MultisineOptions::isValid(std::string* reason) const
 {
-    const auto no = [reason](const char* sentence) {
-        if (reason)
-            *reason = sentence;
-        return false;
-    };
     if (!(std::isfinite(sampleRate) && sampleRate > 0))
-        return no("The sample rate of a multisine must be a positive number of Hz.");
+        return refuse(reason, "The sample rate of a multisine must be a positive number of Hz.");
     if (period < 8 || period > (1 << 26))
-        return no("The period of a multisine must be 8 to 67108864 samples.");
+        return refuse(reason, "The period of a multisine must be 8 to 67108864 samples.");
     if (!(std::isfinite(bandLow) && std::isfinite(bandHigh) && bandLow >= 0 && bandHigh > bandLow))
-        return no("The band of a multisine must go from a frequency of at least 0 Hz up to a higher one.");
+        return refuse(reason, "The band of a multisine must go from a frequency of at least 0 Hz up to a higher one.");
     if (bandHigh > sampleRate / 2)
-        return no("The band of a multisine must end at or below half the sample rate.");
+        return refuse(reason, "The band of a multisine must end at or below half the sample rate.");
     if (!(std::isfinite(rms) && rms > 0))
-        return no("The level of a multisine must be a positive number of V rms.");
+        return refuse(reason, "The level of a multisine must be a positive number of V rms.");
     if (groupSize < 2 || groupSize > 1000)
-        return no("A group of odd lines that misses one must hold 2 to 1000 lines.");
+        return refuse(reason, "A group of odd lines that misses one must hold 2 to 1000 lines.");
     return true;
 }
 
