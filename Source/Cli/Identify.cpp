@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Alpha.h"
 #include "Cli/Destination.h"
+#include "Cli/MotorCone.h"
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
@@ -32,6 +33,8 @@ struct IdentifyArguments {
     std::string validation, out, alpha;
     std::vector<int> orders;
     std::vector<double> band;
+    std::optional<int> cone;
+    std::optional<double> delay;
     bool discrete = false, unrefined = false, quick = false, unstable = false, mixed = false;
 };
 
@@ -40,25 +43,6 @@ std::vector<int> ordersFrom(std::vector<int> orders)
     std::sort(orders.begin(), orders.end());
     orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
     return orders;
-}
-
-Frf within(const Frf& frf, const std::vector<double>& band)
-{
-    if (band.empty())
-        return frf;
-    Frf cut;
-    const auto copy = [](const std::vector<double>& from, std::size_t k, std::vector<double>& to) {
-        if (!from.empty())
-            to.push_back(from[k]);
-    };
-    for (std::size_t k = 0; k < frf.frequency.size(); ++k)
-        if (frf.frequency[k] >= band[0] && frf.frequency[k] <= band[1]) {
-            cut.frequency.push_back(frf.frequency[k]);
-            cut.value.push_back(frf.value[k]);
-            copy(frf.noiseVariance, k, cut.noiseVariance);
-            copy(frf.totalVariance, k, cut.totalVariance);
-        }
-    return cut;
 }
 
 Json json(const std::vector<std::complex<double>>& roots)
@@ -185,6 +169,16 @@ void runMixed(const IdentifyArguments& options, const OpenResponse& open, const 
         terminal.answer = 1;
 }
 
+void runMotorCone(const IdentifyArguments& options, Terminal& terminal)
+{
+    if (options.orders.size() != 1)
+        throw Error(Error::Kind::usage, "Give one --order with --cone, that of the motor.");
+    if (!options.alpha.empty() || !options.validation.empty() || !options.response.output.empty() || options.discrete || options.unrefined || options.unstable)
+        throw Error(Error::Kind::usage, "Motor and cone are refined, stable and of continuous time, and explain displacement and pressure: leave --alpha, "
+                                        "--validation, --output, --discrete, --subspace and --allow-unstable out with --cone.");
+    identifyMotorAndCone({options.response, options.orders.front(), *options.cone, options.delay, options.band, options.quick, options.out}, terminal);
+}
+
 void run(const IdentifyArguments& options, Terminal& terminal)
 {
     if (!options.out.empty())
@@ -195,6 +189,10 @@ void run(const IdentifyArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage, options.mixed ? "A mixed-order impedance has no order; leave --order out with --mixed." : "Give an --order.");
     if (options.mixed && options.alpha.empty())
         throw Error(Error::Kind::usage, "Give --alpha with --mixed: a number, or free.");
+    if (options.cone)
+        return runMotorCone(options, terminal);
+    if (options.delay)
+        throw Error(Error::Kind::usage, "--delay is that of the sound; give --cone with it.");
     const auto open = openResponse(options.response);
     if (options.discrete && open.sampleRate == 0.0)
         throw Error(Error::Kind::usage, "A frequency response has no sample rate; leave --discrete out.");
@@ -256,6 +254,10 @@ void addIdentify(CLI::App& app, Terminal& terminal)
     verb->add_option("--order", o->orders, "the order, or several separated by commas to choose from")->delimiter(',')->check(CLI::Range(0, 400));
     verb->add_option("--alpha", o->alpha, "a model of fractional order, in s^alpha: alpha, or free to find it with its standard error");
     verb->add_flag("--mixed", o->mixed, "with --alpha: an impedance R + L s^alpha with one resonance, in place of a state-space model");
+    verb->add_option("--cone", o->cone, "tell motor and cone apart, by displacement and pressure: the cone's order; --order is the motor's")
+        ->check(CLI::Range(0, 400));
+    verb->add_option("--delay", o->delay, "with --cone: how long the sound is on its way, s; by default that of the microphone's distance")
+        ->check(CLI::Range(0.0, 1.0));
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
     verb->add_option("--input", o->response.input, "the channel it is explained by; by default the voltage or force");
     verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);

@@ -97,6 +97,7 @@ OpenResponse openResponse(const ResponseChoice& choice)
     open.output = name(output);
     open.input = name(input);
     open.sampleRate = measurement.sampleRate;
+    open.microphoneDistance = measurement.driver.microphoneDistance;
     if (measurement.excitation && !measurement.excitation->lines.empty()) {
         const int levels = static_cast<int>(measurement.excitation->levels.size());
         if (choice.level >= levels)
@@ -108,6 +109,25 @@ OpenResponse openResponse(const ResponseChoice& choice)
         open.frf = welch(measurement, output, {}).frf;
     }
     return open;
+}
+
+Frf within(const Frf& frf, const std::vector<double>& band)
+{
+    if (band.empty())
+        return frf;
+    Frf cut;
+    const auto copy = [](const std::vector<double>& from, std::size_t k, std::vector<double>& to) {
+        if (!from.empty())
+            to.push_back(from[k]);
+    };
+    for (std::size_t k = 0; k < frf.frequency.size(); ++k)
+        if (frf.frequency[k] >= band[0] && frf.frequency[k] <= band[1]) {
+            cut.frequency.push_back(frf.frequency[k]);
+            cut.value.push_back(frf.value[k]);
+            copy(frf.noiseVariance, k, cut.noiseVariance);
+            copy(frf.totalVariance, k, cut.totalVariance);
+        }
+    return cut;
 }
 
 } // namespace excursion::cli

@@ -4,7 +4,9 @@
 #include "Engine/Measurement/Frf.h"
 #include "Engine/Measurement/Measurement.h"
 
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace excursion::cli {
 
@@ -19,11 +21,15 @@ struct OpenResponse {
     Frf frf;
     std::string output, input;   ///< quantities
     double sampleRate = 0.0;     ///< of the take; 0 for a frequency response
+    std::optional<double> microphoneDistance;   ///< m, where the take tells it
 };
 
 /// The frequency response output / input of a take (its best linear approximation, or Welch's estimate without periods), of spectra
 /// (.csv, .zma, .frd), or of the document of `bla` (.json).
 /// Throws Error (usage) for channels that are not there, (input, data) for files that cannot be read or used.
 OpenResponse openResponse(const ResponseChoice&);
+
+/// The lines from band[0] to band[1], in Hz; all of them where it is empty.
+Frf within(const Frf&, const std::vector<double>& band);
 
 } // namespace excursion::cli

@@ -55,7 +55,7 @@ void addReport(CLI::App& app, Terminal& terminal)
     auto* verb = app.add_subcommand("report", "Draw a ladder again, or a document of identify, pnlss or rank, as one page that needs nothing else")
                      ->group(step::diagnose);
     verb->add_option("PLACE", *place,
-                     "folder of an earlier improve: ladder.json is read, report.html written; or a .json: a model of identify, reduce or stabilize, or what --json "
+                     "folder of an earlier improve: ladder.json is read, report.html written; or a .json: a model of identify (--cone too), reduce or stabilize, or what --json "
                      "FILE of identify, pnlss or rank wrote, beside which the page is put")
         ->required();
     verb->callback([place, &terminal] { run(*place, terminal); });

@@ -106,6 +106,33 @@ void addFractionalIdentification(Page& page, const JsonField& document)
     addRoots(page, named.model.form, named.model.alpha);
 }
 
+void addMotorCone(Page& page, const JsonField& document)
+{
+    const bool stable = document.at("stable").flag();
+    page.headline("Motor and cone: together " + decibelsIn(document, "errorDb") + " dB from the pressure" + (stable ? "" : "; not both stable"),
+                  stable ? "good" : "bad");
+    page.paragraph(document.at("sentence").text());
+    std::vector<std::vector<Page::Cell>> rows;
+    std::vector<Plot> plots;
+    for (const auto& [key, title, error] : {std::tuple {"motor", "Motor", "motorErrorDb"}, {"cone", "Cone", "coneErrorDb"}}) {
+        const auto named = stateSpaceFromJson(document.at(key));
+        rows.push_back({title, named.inputs.front(), named.outputs.front(), Page::figure(std::to_string(named.model.order())),
+                        Page::figure(decibelsIn(document, error))});
+        if (named.model.order() == 0)
+            continue;
+        // Of the motor the displacement: its other outputs are derivatives of that.
+        auto first = named.model;
+        first.C = named.model.C.topRows(1).eval();
+        first.D = named.model.D.topRows(1).eval();
+        plots.push_back(rootsPlot(first, 1.0));
+        plots.back().title = title + std::string(": ") + plots.back().title;
+    }
+    page.section("The halves");
+    page.table({"", "from", "to", "order", "error dB"}, rows);
+    if (!plots.empty())
+        page.figures(plots, static_cast<int>(plots.size()), "A pole or zero by its frequency and its angle from the positive real axis; poles above the border decay.");
+}
+
 void addPnlssFit(Page& page, const JsonField& document)
 {
     const bool stable = document.at("stable").flag();
@@ -183,6 +210,7 @@ constexpr PageOf pagesOf[] {{"excursion-state-space", "Linear model", addStateSp
                             {"excursion-fractional-state-space", "Fractional model", addFractionalStateSpace},
                             {"excursion-identification", "Identification", addIdentification},
                             {"excursion-fractional-identification", "Fractional identification", addFractionalIdentification},
+                            {"excursion-motor-cone", "Motor and cone", addMotorCone},
                             {"excursion-pnlss-fit", "Polynomial model", addPnlssFit},
                             {"excursion-ranking", "Classes of models", addRankingOfClasses}};
 

@@ -54,3 +54,43 @@ TEST_CASE("reduce truncates a model within its bound, and prunes one by a respon
     CHECK(runProgram(scratch.folder(), {"reduce", large, "--out", small}).code == 2);
     CHECK(runProgram(scratch.folder(), {"reduce", chain.model(), "--order", "2", "--out", small}).code == 3);
 }
+
+TEST_CASE("identify --cone tells motor and cone apart, the sound's way taken off")
+{
+    const Scratch scratch;
+    const auto take = (scratch / "take").string(), kept = (scratch / "halves.json").string();
+    const auto run = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"identify", take, "--order", "3", "--quick"});
+        return runProgram(scratch.folder(), options);
+    };
+    REQUIRE(runProgram(scratch.folder(), {"virtual", "--seed", "5", "--driver", "midbass", "--hidden", "none", "--rate", "32000", "--noise", "-70", "--seconds",
+                                          "2", "--channels", "displacement,pressure", "--out", take})
+                .code
+            == 0);
+    const auto told = run({"--cone", "0", "--out", kept, "--json"});
+    REQUIRE(told.code == 0);
+    const auto document = nlohmann::json::parse(told.out);
+    CHECK(document == nlohmann::json::parse(bytesOf(kept)));
+    CHECK(document.at("format") == "excursion-motor-cone");
+    // A piston's pressure is density area / (2 pi distance) times its acceleration.
+    const auto header = nlohmann::json::parse(bytesOf(take + "/measurement.json"));
+    const double area = header.at("driver").at("coneArea"), distance = header.at("driver").at("microphoneDistance");
+    CHECK(document.at("delay") == Approx(distance / 343.0));
+    CHECK(document.at("cone").at("D").at(0).at(0) == Approx(1.2 * area / (2.0 * 3.14159265358979 * distance)).epsilon(0.01));
+    CHECK(document.at("motor").at("outputs").size() == 3);
+    CHECK(document.at("motor").at("order") == 3);
+    CHECK(document.at("cascade").at("delay") == Approx(-distance / 343.0));
+    CHECK(document.at("errorDb") < -40.0);
+    CHECK(document.at("stable") == true);
+
+    const auto late = run({"--cone", "0", "--delay", "0", "--json"});
+    REQUIRE(late.code == 0);
+    CHECK(nlohmann::json::parse(late.out).at("errorDb") > document.at("errorDb").get<double>() + 10.0);
+    REQUIRE(runProgram(scratch.folder(), {"report", kept}).code == 0);
+    CHECK(bytesOf((scratch / "halves.html").string()).find("Motor and cone") != std::string::npos);
+
+    CHECK(run({"--cone", "0", "--discrete"}).code == 2);
+    CHECK(run({"--cone", "0", "--order", "4"}).code == 2);
+    CHECK(run({"--delay", "0.001"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"identify", Chain::get().take(), "--order", "3", "--cone", "0"}).code == 2);   // without pressure
+}

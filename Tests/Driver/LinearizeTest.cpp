@@ -110,6 +110,19 @@ TEST_CASE("Laws that are zero at rest leave the linear part alone", "[linearize]
     CHECK((linear.B - straight.B).norm() < 1e-6 * straight.B.norm());
 }
 
+TEST_CASE("A driver is stable with every effect at work, and not with a resistance that drives it", "[linearize]")
+{
+    CHECK(isStable(midbass()));
+    CHECK(isStable(allAtWork()));
+    CHECK(isStable(makeModel("mechanical")));
+    auto driven = midbass();
+    driven.baseParameter("Bl").value = 0.0;
+    driven.baseParameter("Rms").value = -0.1;
+    CHECK_FALSE(isStable(driven));
+    driven.baseParameter("m").value = 0.0;
+    CHECK_FALSE(isStable(driven));
+}
+
 TEST_CASE("Gradients of the responses are what finite differences show, by every parameter", "[linearize]")
 {
     using enum Quantity;

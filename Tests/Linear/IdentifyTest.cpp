@@ -170,6 +170,32 @@ TEST_CASE("Bad input of an identification is told in a sentence")
     refused(Error::Kind::data, "not finite", [&] { identify(data, options); });
 }
 
+TEST_CASE("A model of order 0 is a constant, in continuous and discrete time, by every method and of fractional order")
+{
+    Frf frf;
+    for (int k = 1; k <= 20; ++k) {
+        frf.frequency.push_back(10.0 * k);
+        frf.value.emplace_back(2.5, 0.01 * (k % 3 - 1));
+    }
+    const auto data = frequencyDataOf(frf);
+    for (const double rate : {0.0, 1000.0})
+        for (const bool refine : {false, true})
+            for (const double alpha : {1.0, 0.5}) {
+                if (alpha != 1.0 && rate != 0.0)
+                    continue;
+                IdentifyOptions options;
+                options.order = 0;
+                options.sampleRate = rate;
+                options.refine = refine;
+                options.alpha = alpha;
+                const auto found = identify(data, options);
+                CAPTURE(rate, refine, alpha);
+                REQUIRE(found.model.order() == 0);
+                CHECK(found.model.D(0, 0) == Approx(2.5));
+                CHECK(found.stable);
+            }
+}
+
 TEST_CASE("An exact response of order 3 is met to rounding at any order and any standard deviation, stable", "[slow]")
 {
     const auto frf = problemResponse("P3i.csv");

@@ -102,8 +102,10 @@ TEST_CASE("Every document that has a page makes one, and others are refused by w
     const nlohmann::json good {{"class", "linear"}, {"description", "order 3"}, {"parameters", 7}, {"estimationDb", -30.0}, {"validationDb", -29.0}, {"load", 0.001}, {"stable", true}};
     const nlohmann::json ranking {{"format", "excursion-ranking"}, {"version", 1}, {"sentence", "s"}, {"input", "voltage"}, {"output", "current"}, {"noiseDb", -70.0},
                                   {"models", {good, {{"class", "narx"}, {"trouble", "ran & away"}}}}};
+    const nlohmann::json halves {{"format", "excursion-motor-cone"}, {"version", 1}, {"sentence", "told <it> all"}, {"motorErrorDb", -50.0}, {"coneErrorDb", -40.0},
+                                 {"errorDb", -39.0}, {"stable", true}, {"motor", linear}, {"cone", linear}};
     try {
-        for (const auto& document : {linear, fractional, sweep, other, fit, ranking}) {
+        for (const auto& document : {linear, fractional, sweep, other, fit, ranking, halves}) {
             CAPTURE(document.at("format").get<std::string>());
             const auto html = page(document);
             CHECK(html.find("<svg") != std::string::npos);

@@ -4,6 +4,7 @@
 #include "Engine/Driver/Dynamics.h"
 #include "Engine/Error.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <numbers>
@@ -85,6 +86,12 @@ Linearization linearize(const Model& model, bool withGradient)
         }
     }
     return result;
+}
+
+bool isStable(const Model& model)
+{
+    const auto A = linearize(model).A;
+    return A.allFinite() && A.eigenvalues().real().maxCoeff() <= 1e-9 * A.cwiseAbs().maxCoeff();
 }
 
 std::vector<Response> respond(const Model& model, const std::vector<Quantity>& quantities,

@@ -21,6 +21,10 @@ struct Linearization {
 
 Linearization linearize(const Model&, bool withGradient = false);
 
+/// Whether A is finite and has no eigenvalue on the right. Those at zero are no fault: the decoupled first state of a driver without a coil
+/// stands there, and a memory that only integrates.
+bool isStable(const Model&);
+
 /// Frequency response of a quantity (current, displacement, velocity, acceleration, pressure) per unit of input.
 struct Response {
     std::vector<std::complex<double>> value;   ///< one a frequency

@@ -118,23 +118,24 @@ void divide(const FrequencyData& displacement, const FrequencyData& pressure, co
     cone = pressure;
     result.told.assign(displacement.frequency.size(), true);
     const Resolvent resolvent(motor);
+    const auto points = evaluationPoints(cone.frequency, 0.0);
+    Eigen::VectorXcd modelled(points.size());
     double misfit = 0.0;
     for (Index k = 0; k < cone.lines(); ++k) {
-        const auto modelled = resolvent.response(evaluationPoint(cone.frequency[static_cast<std::size_t>(k)], 0.0))(0, 0);
-        if (known && std::abs(modelled) < least * displacement.deviation(k, 0))
+        modelled[k] = resolvent.response(points[k])(0, 0);
+        if (known && std::abs(modelled[k]) < least * displacement.deviation(k, 0))
             result.told[static_cast<std::size_t>(k)] = false;
         else
-            misfit += std::norm(modelled / displacement.value(k, 0) - 1.0);
+            misfit += std::norm(modelled[k] / displacement.value(k, 0) - 1.0);
     }
     misfit = std::sqrt(misfit / std::max(1.0, static_cast<double>(std::count(result.told.begin(), result.told.end(), true))));
     for (Index k = 0; k < cone.lines(); ++k) {
-        const double f = cone.frequency[static_cast<std::size_t>(k)];
-        const Complex s = evaluationPoint(f, 0.0), modelled = resolvent.response(s)(0, 0);
+        const Complex s = points[k];
         const bool told = result.told[static_cast<std::size_t>(k)];
         const bool measured = told && result.from == ConeFrom::quotient;
-        const Complex moved = measured ? displacement.value(k, 0) : modelled;
+        const Complex moved = measured ? displacement.value(k, 0) : modelled[k];
         if (told)
-            result.toldUpTo = f;
+            result.toldUpTo = cone.frequency[static_cast<std::size_t>(k)];
         cone.value(k, 0) = pressure.value(k, 0) / (s * s * moved);
         if (cone.deviation.size() == 0)
             continue;

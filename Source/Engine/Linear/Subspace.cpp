@@ -99,7 +99,9 @@ StateSpace dynamicsOf(const ObservabilityRange& range, Index order, Index inputs
             shifted.middleRows(i * p, p) += range.H(j, i) * O.middleRows(j * p, p);
     StateSpace model;
     model.sampleRate = range.sampleRate;
-    model.A = Eigen::ColPivHouseholderQR<MatrixXd>(O.topRows((q - 1) * p)).solve(shifted);
+    model.A.resize(order, order);
+    if (order > 0)   // Eigen's factorization of no columns is not defined
+        model.A = Eigen::ColPivHouseholderQR<MatrixXd>(O.topRows((q - 1) * p)).solve(shifted);
     model.C = range.outputScale.cwiseInverse().asDiagonal() * O.topRows(p) / range.constant;
     model.B = MatrixXd::Zero(order, inputs);
     model.D = MatrixXd::Zero(p, inputs);

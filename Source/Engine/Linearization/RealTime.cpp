@@ -5,8 +5,6 @@
 #include "Engine/Error.h"
 #include "Engine/Validity.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 
 namespace excursion {
@@ -43,13 +41,8 @@ void requireRunnable(const Model& model, const RealTimeOptions& options)
         if (!(model.baseParameter("Bl").value > 0.0))
             refuse("its force factor Bl is not positive, so no voltage moves it.");
     }
-    const auto A = linearize(model).A;
-    if (!A.allFinite())
-        refuse("its equations at rest are not finite numbers.");
-    // The decoupled first state of a driver without a coil, and a memory that only integrates, stand at zero.
-    const double fastest = A.cwiseAbs().maxCoeff();
-    if (A.eigenvalues().real().maxCoeff() > 1e-9 * fastest)
-        refuse("it is not stable at rest: fit it again.");
+    if (!isStable(model))
+        refuse("it is not stable at rest, or its equations there are not finite: fit it again.");
 }
 
 double measuredDisplacement(const Model& model)

@@ -4,6 +4,7 @@
 
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
 
@@ -27,7 +28,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
             throw Error(Error::Kind::data, "The physical driver does not know this channel.");
         return Eigen::Map<const Eigen::VectorXd>(channel->samples.data(), u.size());
     };
-    return {play, description.empty() ? "base alone" : description, parameters, true};
+    return {play, description.empty() ? "base alone" : description, parameters, isStable(model)};
 }
 
 } // namespace
