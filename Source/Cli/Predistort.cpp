@@ -3,11 +3,11 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
 #include "Engine/Linearization/Predistorter.h"
-#include "Engine/Measurement/DraftFile.h"
 #include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
 #include "Plots/Engineering.h"

@@ -5,8 +5,8 @@
 
 #include "Bench/Draw.h"
 #include "Bench/Truth.h"
+#include "Engine/Document/DraftFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/DraftFile.h"
 #include "Engine/Measurement/TakeFile.h"
 
 #include <nlohmann/json.hpp>

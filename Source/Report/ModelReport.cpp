@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Report/ModelReport.h"
 
+#include "Engine/Document/DraftFile.h"
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
-#include "Engine/Measurement/DraftFile.h"
 #include "Plots/Engineering.h"
 #include "Plots/ModelPlots.h"
 #include "Report/Page.h"

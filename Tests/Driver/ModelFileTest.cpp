@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/TextFile.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TextFile.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/JsonField.h"
 
+#include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TextFile.h"
 
 #include <algorithm>
 #include <array>
@@ -82,10 +82,10 @@ std::vector<std::string> JsonField::keys() const
     return names;
 }
 
-std::string JsonField::text() const
+std::string JsonField::text(const std::string& expected) const
 {
     if (!value_.is_string())
-        refuse("a text");
+        refuse(expected);
     return value_.get<std::string>();
 }
 

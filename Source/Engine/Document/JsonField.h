@@ -29,7 +29,7 @@ public:
     const std::string& source() const { return source_; }
     const nlohmann::json& value() const { return value_; }
 
-    std::string text() const;
+    std::string text(const std::string& expected = "a text") const;
     bool flag() const;
     double number() const;                            ///< finite
     double numberOrNaN() const;                       ///< null is NaN: a number that is not known

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/JsonText.h"
 
-#include "Engine/Measurement/DraftFile.h"
+#include "Engine/Document/DraftFile.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Measurement/Export.h"
 
-#include "Engine/Measurement/DraftFile.h"
+#include "Engine/Document/DraftFile.h"
 
 #include <array>
 #include <charconv>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Measurement/ImportImpedance.h"
 
+#include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/DelimitedText.h"
-#include "Engine/Measurement/TextFile.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Measurement/MeasurementJson.h"
 
+#include "Engine/Document/JsonField.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/Units.h"
 #include "Engine/Signal/Multisine.h"
@@ -19,84 +20,30 @@ constexpr auto formatName = "excursion-measurement";
 constexpr int formatVersion = 1;
 constexpr long mostSamples = 1L << 40;
 
-/// A value in the document that knows its name, so that every refusal can say it.
-class Field {
-public:
-    Field(const Json& value, std::string path, const std::string& source)
-        : value_(value), path_(std::move(path)), source_(source)
-    {
-    }
+double notNegative(const JsonField& field, const std::string& expected)
+{
+    const auto& value = field.value();
+    if (!value.is_number() || !std::isfinite(value.get<double>()) || value.get<double>() < 0)
+        field.refuse(expected);
+    return value.get<double>();
+}
 
-    [[noreturn]] void refuse(const std::string& expected) const
-    {
-        auto found = value_.dump(-1, ' ', false, Json::error_handler_t::replace);
-        if (found.size() > 60)
-            found = "a long " + std::string(value_.type_name());
-        throw Error(Error::Kind::input,
-                    "'" + source_ + "': field '" + path_ + "' is " + found + ", expected " + expected + ".");
-    }
+double positive(const JsonField& field, const std::string& expected)
+{
+    const double value = notNegative(field, expected);
+    if (value == 0)
+        field.refuse(expected);
+    return value;
+}
 
-    bool has(const char* key) const { return value_.contains(key) && !value_.at(key).is_null(); }
+std::vector<JsonField> atLeastOne(const JsonField& field, const std::string& expected)
+{
+    if (!field.value().is_array() || field.value().empty())
+        field.refuse(expected);
+    return field.items();
+}
 
-    Field at(const char* key) const
-    {
-        if (!value_.is_object())
-            refuse("an object");
-        const auto name = path_.empty() ? std::string(key) : path_ + "." + key;
-        if (!value_.contains(key))
-            throw Error(Error::Kind::input, "'" + source_ + "': field '" + name + "' is missing.");
-        return {value_.at(key), name, source_};
-    }
-
-    std::vector<Field> items(const std::string& expected) const
-    {
-        if (!value_.is_array() || value_.empty())
-            refuse(expected);
-        std::vector<Field> fields;
-        for (std::size_t i = 0; i < value_.size(); ++i)
-            fields.emplace_back(value_[i], path_ + "[" + std::to_string(i) + "]", source_);
-        return fields;
-    }
-
-    std::string text(const std::string& expected) const
-    {
-        if (!value_.is_string())
-            refuse(expected);
-        return value_.get<std::string>();
-    }
-
-    double notNegative(const std::string& expected) const
-    {
-        if (!value_.is_number() || !std::isfinite(value_.get<double>()) || value_.get<double>() < 0)
-            refuse(expected);
-        return value_.get<double>();
-    }
-
-    double positive(const std::string& expected) const
-    {
-        if (notNegative(expected) == 0)
-            refuse(expected);
-        return value_.get<double>();
-    }
-
-    int count(int least, int most) const
-    {
-        const auto expected = "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
-        if (!value_.is_number())
-            refuse(expected);
-        const auto number = value_.get<double>();   // 16384.0 is as good as 16384
-        if (!(number >= least && number <= most) || number != std::floor(number))
-            refuse(expected);
-        return static_cast<int>(number);
-    }
-
-private:
-    const Json& value_;
-    std::string path_;
-    const std::string& source_;
-};
-
-Channel parseChannel(const Field& field)
+Channel parseChannel(const JsonField& field)
 {
     Channel channel;
     const auto quantityField = field.at("quantity");
@@ -111,14 +58,14 @@ Channel parseChannel(const Field& field)
     if (!scale)
         unitField.refuse(accepted);
     channel.unit = scale->unit;
-    channel.fullScale = field.at("fullScale").positive("a positive number in the channel's unit") * scale->factor;
+    channel.fullScale = positive(field.at("fullScale"), "a positive number in the channel's unit") * scale->factor;
     return channel;
 }
 
-std::vector<Channel> parseChannels(const Field& field)
+std::vector<Channel> parseChannels(const JsonField& field)
 {
     std::vector<Channel> channels;
-    for (const auto& item : field.items("a list of at least one channel")) {
+    for (const auto& item : atLeastOne(field, "a list of at least one channel")) {
         auto channel = parseChannel(item);
         for (const auto& earlier : channels)
             if (earlier.quantity == channel.quantity)
@@ -128,7 +75,7 @@ std::vector<Channel> parseChannels(const Field& field)
     return channels;
 }
 
-Excitation parseMultisine(const Field& field, double sampleRate)
+Excitation parseMultisine(const JsonField& field, double sampleRate)
 {
     constexpr int most = std::numeric_limits<int>::max();
     Excitation e;
@@ -136,8 +83,8 @@ Excitation parseMultisine(const Field& field, double sampleRate)
     e.settlePeriods = field.at("settlePeriods").count(0, most / 2);
     e.periods = field.at("periods").count(1, most / 2);
     e.realizations = field.at("realizations").count(1, most);
-    for (const auto& level : field.at("levels").items("a list of at least one level in V rms")) {
-        const double value = level.positive("a positive number of V rms");
+    for (const auto& level : atLeastOne(field.at("levels"), "a list of at least one level in V rms")) {
+        const double value = positive(level, "a positive number of V rms");
         if (!e.levels.empty() && value <= e.levels.back())
             level.refuse("more than the level before it: levels go from quiet to loud");
         e.levels.push_back(value);
@@ -161,16 +108,16 @@ Excitation parseMultisine(const Field& field, double sampleRate)
     e.bandHigh = sampleRate / 2;
     if (field.has("band")) {
         const auto expected = "two ascending frequencies in Hz, not above half the sample rate";
-        const auto band = field.at("band").items(expected);
+        const auto band = atLeastOne(field.at("band"), expected);
         if (band.size() != 2)
             field.at("band").refuse(expected);
-        e.bandLow = band[0].notNegative("a frequency in Hz, 0 or more");
-        e.bandHigh = band[1].notNegative("a frequency in Hz");
+        e.bandLow = notNegative(band[0], "a frequency in Hz, 0 or more");
+        e.bandHigh = notNegative(band[1], "a frequency in Hz");
         if (e.bandLow >= e.bandHigh || e.bandHigh > sampleRate / 2)
             field.at("band").refuse(expected);
     }
     if (field.has("lines"))
-        for (const auto& line : field.at("lines").items("a list of DFT lines; leave it out when they are not known")) {
+        for (const auto& line : atLeastOne(field.at("lines"), "a list of DFT lines; leave it out when they are not known")) {
             e.lines.push_back(line.count(1, (e.period - 1) / 2));
             if (e.lines.size() > 1 && e.lines.back() <= e.lines[e.lines.size() - 2])
                 line.refuse("more than the line before it");
@@ -178,7 +125,7 @@ Excitation parseMultisine(const Field& field, double sampleRate)
     return e;
 }
 
-std::optional<Excitation> parseExcitation(const Field& field, double sampleRate)
+std::optional<Excitation> parseExcitation(const JsonField& field, double sampleRate)
 {
     constexpr auto kinds = "multisine, sweep, noise, music or other";
     const auto kindField = field.at("kind");
@@ -190,15 +137,15 @@ std::optional<Excitation> parseExcitation(const Field& field, double sampleRate)
     return std::nullopt;   // no periods to make use of
 }
 
-DriverInfo parseDriver(const Field& field)
+DriverInfo parseDriver(const JsonField& field)
 {
     DriverInfo driver;
     if (field.has("name"))
-        driver.name = field.at("name").text("a text");
+        driver.name = field.at("name").text();
     if (field.has("coneArea"))
-        driver.coneArea = field.at("coneArea").positive("a positive area in m^2");
+        driver.coneArea = positive(field.at("coneArea"), "a positive area in m^2");
     if (field.has("microphoneDistance"))
-        driver.microphoneDistance = field.at("microphoneDistance").positive("a positive distance in m");
+        driver.microphoneDistance = positive(field.at("microphoneDistance"), "a positive distance in m");
     return driver;
 }
 
@@ -212,17 +159,14 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
     } catch (const Json::exception& e) {   // its text names line and column
         throw Error(Error::Kind::input, "'" + source + "' is not a JSON document: " + e.what() + ".");
     }
-    const Field root(document, "", source);
+    const JsonField root(document, "", source);
     if (!document.is_object())
         throw Error(Error::Kind::input, "'" + source + "' is JSON but not an object; a measurement.json is expected.");
-    if (root.at("format").text(formatName) != formatName)
-        root.at("format").refuse(formatName);
-    if (root.at("version").count(1, std::numeric_limits<int>::max()) != formatVersion)
-        root.at("version").refuse("1, the only version that this program reads");
+    root.requireFormat(formatName, formatVersion);
 
     MeasurementHeader header;
     auto& measurement = header.measurement;
-    measurement.sampleRate = root.at("sampleRate").positive("a positive number of Hz");
+    measurement.sampleRate = positive(root.at("sampleRate"), "a positive number of Hz");
     if (measurement.sampleRate < 1 || measurement.sampleRate > 1e8)
         root.at("sampleRate").refuse("1 Hz to 100 MHz");
     header.audio = root.at("audio").text("the name of the WAV");

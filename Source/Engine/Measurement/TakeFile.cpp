@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Measurement/TakeFile.h"
 
+#include "Engine/Document/DraftFile.h"
+#include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/DraftFile.h"
 #include "Engine/Measurement/ImportCsv.h"
 #include "Engine/Measurement/ImportImpedance.h"
 #include "Engine/Measurement/MeasurementJson.h"
-#include "Engine/Measurement/TextFile.h"
 #include "Engine/Measurement/WavFile.h"
 
 #include <nlohmann/json.hpp>

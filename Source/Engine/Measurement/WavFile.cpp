@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Measurement/WavFile.h"
 
+#include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TextFile.h"
 
 #include <sndfile.h>
 

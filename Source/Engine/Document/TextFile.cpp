@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Measurement/TextFile.h"
+#include "Engine/Document/TextFile.h"
 
 #include "Engine/Error.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Measurement/DraftFile.h"
+#include "Engine/Document/DraftFile.h"
 
 #include "Engine/Error.h"
 
