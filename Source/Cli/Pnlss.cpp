@@ -50,7 +50,8 @@ Pnlss startFor(const PnlssArguments& options, const Measurement& take)
     identifying.order = options.order;
     identifying.sampleRate = take.sampleRate;
     const auto linear = identify(frequencyDataOf(openResponse(options.response).frf), identifying).model;
-    auto start = withTerms(linear, options.degree, maskNamed(options.mask), options.offset);
+    auto start = options.terms.empty() ? withTerms(linear, options.degree, maskNamed(options.mask), options.offset)
+                                       : withTerms(linear, monomialsNamed(options.terms, options.order, 1));
     if (options.noOutputTerms)
         keepOutputLinear(start);
     return start;
@@ -90,6 +91,9 @@ void require(const PnlssArguments& options)
         throw Error(Error::Kind::usage, "--mixed is a driver's current under a voltage, of three states: give --alpha, and leave --order out.");
     if (!options.alpha.empty() && options.guided)
         throw Error(Error::Kind::usage, "A fractional model has no guided start: leave --guided out.");
+    if (!options.terms.empty() && (!options.alpha.empty() || !options.model.empty() || options.offset || options.mask != "full"))
+        throw Error(Error::Kind::usage, "--terms lists the monomials of a model of whole order that is fitted: leave --alpha, --model, --mask and --offset "
+                                        "out; the offset is the monomial 1.");
     if (!options.model.empty() && !options.out.empty())
         throw Error(Error::Kind::usage, "--out is for a model that is fitted; --model is kept already.");
     if (!options.out.empty())
@@ -212,6 +216,8 @@ void addPnlss(CLI::App& app, Terminal& terminal)
     verb->add_flag("--mixed", o->mixed, "with --alpha, for a current under a voltage: only the coil's state is of fractional order");
     verb->add_option("--degree", o->degree, "highest degree of the monomials")->capture_default_str()->check(CLI::Range(2, 9));
     verb->add_option("--mask", o->mask, "which monomials")->capture_default_str()->check(CLI::IsMember(masks));
+    verb->add_option("--terms", o->terms, "these monomials in place of --degree and --mask, such as x1^3,x1*x2,u^2; states are numbered from 1")
+        ->type_name("LIST");
     verb->add_flag("--linear-output", o->noOutputTerms, "no monomials in the output equation");
     verb->add_flag("--offset", o->offset, "also constants in both equations, for sensors with an offset");
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");

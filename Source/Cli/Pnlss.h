@@ -14,7 +14,7 @@ namespace excursion::cli {
 
 struct PnlssArguments {
     ResponseChoice response;
-    std::string model, out, played, mask = "full", alpha;
+    std::string model, out, played, mask = "full", terms, alpha;
     int order = 0, degree = 3, iterations = 50;
     bool noOutputTerms = false, offset = false, guided = false, mixed = false, laws = false;
 };

@@ -25,6 +25,14 @@ TEST_CASE("pnlss explains more than its linear start, keeps the model, and judge
     CHECK(nlohmann::json::parse(judged.out).at("validationDb").get<double>() == Approx(document.at("validationDb").get<double>()).epsilon(1e-9));
     CHECK(runProgram(scratch.folder(), {"check", played}).code <= 1);   // a take that can be read
 
+    const auto few = runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--iterations", "2", "--terms", "x1^2,x1^3,1", "--json"});
+    REQUIRE(few.code == 0);
+    const auto terms = nlohmann::json::parse(few.out).at("model").at("terms");
+    REQUIRE(terms.size() == 3);
+    CHECK(terms.at(1).at("exponents") == nlohmann::json({3, 0, 0, 0}));
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--terms", "x4^2"}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--terms", "x1^2", "--mask", "diagonal"}).code == 2);
+
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take()}).code == 2);
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--mask", "odd"}).code == 2);
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--level", "7"}).code == 2);

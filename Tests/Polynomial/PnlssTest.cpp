@@ -64,6 +64,18 @@ TEST_CASE("Monomials are graded, then lexicographic, and as many as there are wa
     refused(Error::Kind::usage, "ascend", [] { monomials(3, 3, 2); });
 }
 
+TEST_CASE("Monomials are read from words")
+{
+    const auto read = monomialsNamed("x1^3, x2*u ,u2^2*x1,1,x1*x1", 2, 2);
+    Exponents expected(5, 4);
+    expected << 3, 0, 0, 0, 0, 1, 1, 0, 1, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0;
+    CHECK(read == expected);
+    for (const char* bad : {"", "x1,", "x", "x0", "x3", "u3", "y1", "x1^0", "x1^-2", "x1^99", "x1^2x2", "x1**x2", "x1^", "2"}) {
+        CAPTURE(bad);
+        refused(Error::Kind::usage, "cannot be read", [&] { monomialsNamed(bad, 2, 2); });
+    }
+}
+
 TEST_CASE("Masks keep what they say")
 {
     const auto all = monomials(3, 2, 3);   // x1, x2, u

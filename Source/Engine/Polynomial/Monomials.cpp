@@ -3,6 +3,10 @@
 
 #include "Engine/Error.h"
 
+#include <algorithm>
+#include <charconv>
+#include <string>
+
 namespace excursion {
 namespace {
 
@@ -38,6 +42,65 @@ Exponents monomials(int variables, int lowest, int highest)
     Exponents result(static_cast<Eigen::Index>(rows.size()), variables);
     for (std::size_t k = 0; k < rows.size(); ++k)
         result.row(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::RowVectorXi>(rows[k].data(), variables);
+    return result;
+}
+
+namespace {
+
+/// "x2^3" adds 3 to the exponent of x2.
+void addFactor(std::string_view factor, int states, int inputs, Eigen::Ref<Eigen::RowVectorXi> exponents)
+{
+    const auto refuse = [&](const char* why) {
+        throw Error(Error::Kind::usage, "The monomials cannot be read: \"" + std::string(factor) + "\" " + why + ".");
+    };
+    const auto number = [](std::string_view text) {   // 0 where there is none
+        int value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        return error == std::errc() && end == text.data() + text.size() ? value : 0;
+    };
+    if (factor == "1")
+        return;
+    const auto hat = factor.find('^');
+    const auto variable = factor.substr(0, hat);
+    const int power = hat == std::string_view::npos ? 1 : number(factor.substr(hat + 1));
+    if (variable.empty() || (variable[0] != 'x' && variable[0] != 'u') || power < 1 || power > 20)
+        refuse("is not a variable such as x1 or u, with a power of 1 to 20 or none");
+    const bool state = variable[0] == 'x';
+    const int index = variable == "u" ? 1 : number(variable.substr(1));
+    if (index < 1 || index > (state ? states : inputs))
+        refuse("is no state and no input of the model");
+    exponents[(state ? 0 : states) + index - 1] += power;
+}
+
+/// The parts of a text between separators, blanks around them taken off.
+std::vector<std::string_view> parts(std::string_view text, char separator)
+{
+    std::vector<std::string_view> result;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const auto end = std::min(text.find(separator, begin), text.size());
+        auto part = text.substr(begin, end - begin);
+        while (!part.empty() && part.front() == ' ')
+            part.remove_prefix(1);
+        while (!part.empty() && part.back() == ' ')
+            part.remove_suffix(1);
+        result.push_back(part);
+        begin = end + 1;
+    }
+    return result;
+}
+
+} // namespace
+
+Exponents monomialsNamed(std::string_view list, int states, int inputs)
+{
+    const auto terms = parts(list, ',');
+    Exponents result = Exponents::Zero(static_cast<Eigen::Index>(terms.size()), states + inputs);
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+        Eigen::RowVectorXi row = Eigen::RowVectorXi::Zero(states + inputs);
+        for (const auto factor : parts(terms[k], '*'))
+            addFactor(factor, states, inputs, row);
+        result.row(static_cast<Eigen::Index>(k)) = row;
+    }
     return result;
 }
 

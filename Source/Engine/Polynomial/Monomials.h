@@ -16,6 +16,10 @@ using Exponents = Eigen::MatrixXi;
 /// Throws Error (usage) for degrees below 1 or in the wrong order, or more than a million monomials.
 Exponents monomials(int variables, int lowest, int highest);
 
+/// A list of monomials in words, "x1^3,x1*u2,1": factors x1 .. xn and u1 .. um (u alone is u1), each with a power or none, joined by *; 1 is the
+/// monomial of degree 0. Throws Error (usage) for what cannot be read, and variables that are not there.
+Exponents monomialsNamed(std::string_view list, int states, int inputs);
+
 /// Which monomials a row of E or F may use.
 enum class TermMask {
     full,              ///< all
