@@ -6,6 +6,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Linear/MotorCone.h"
 #include "Engine/Linear/StateSpaceFile.h"
+#include "Engine/Measurement/PhysicalDelay.h"
 
 #include <nlohmann/json.hpp>
 
@@ -15,7 +16,6 @@ namespace excursion::cli {
 
 void identifyMotorAndCone(const MotorConeArguments& arguments, Terminal& terminal)
 {
-    constexpr double speedOfSound = 343.0;   // m/s
     const auto open = [&](const char* output) {
         auto choice = arguments.response;
         choice.output = output;

@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/ImpedanceScan.h"
 #include "Engine/Driver/PistonBand.h"
+#include "Engine/Measurement/PhysicalDelay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -150,7 +151,6 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
         throw Error(Error::Kind::data, "The take gives no frequency response to start from; excite it in the band of the loudspeaker's resonance.");
     const auto targets = thinned(dense, startPointsPerOctave);
     const auto sight = sightOf(targets, electrical, driver);
-    constexpr double speedOfSound = 343.0;
     Model model = makeModel(electrical ? "electrodynamic" : "mechanical");
     model.microphoneDistance = driver.microphoneDistance.value_or(1.0);
     model.path[0].value = driver.coneArea.value_or(0.01);

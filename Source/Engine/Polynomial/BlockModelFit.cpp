@@ -6,8 +6,8 @@
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Linear/TruncatedSolve.h"
 #include "Engine/Polynomial/BlockError.h"
-#include "Engine/Polynomial/Powers.h"
 #include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/Powers.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 

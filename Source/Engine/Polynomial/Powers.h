@@ -12,10 +12,10 @@ inline Eigen::MatrixXd powersOf(const Eigen::VectorXd& v, int lowest, Eigen::Ind
     Eigen::VectorXd power = v;
     for (int n = 1; n < lowest; ++n)
         power = power.cwiseProduct(v).eval();
-    for (Eigen::Index k = 0; k < count; ++k) {
-        result.col(k) = power;
-        power = power.cwiseProduct(v).eval();
-    }
+    if (count > 0)
+        result.col(0) = power;
+    for (Eigen::Index k = 1; k < count; ++k)
+        result.col(k) = result.col(k - 1).cwiseProduct(v);
     return result;
 }
 
