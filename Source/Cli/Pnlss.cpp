@@ -89,8 +89,6 @@ void require(const PnlssArguments& options)
         throw Error(Error::Kind::usage, "Give either --order (or --alpha with --mixed), to fit a model, or --model, to judge one that was kept.");
     if (options.mixed && (options.alpha.empty() || options.order != 0))
         throw Error(Error::Kind::usage, "--mixed is a driver's current under a voltage, of three states: give --alpha, and leave --order out.");
-    if (!options.alpha.empty() && options.guided)
-        throw Error(Error::Kind::usage, "A fractional model has no guided start: leave --guided out.");
     if (!options.terms.empty() && (!options.alpha.empty() || !options.model.empty() || options.offset || options.mask != "full"))
         throw Error(Error::Kind::usage, "--terms lists the monomials of a model of whole order that is fitted: leave --alpha, --model, --mask and --offset "
                                         "out; the offset is the monomial 1.");
@@ -116,7 +114,7 @@ void run(PnlssArguments options, Terminal& terminal)
     options.response.output = name(data.output->quantity);
     const auto outcome = (isFractional(options, kept) ? fractionalPnlss : integerPnlss)(options, data, terminal);
     if (!std::isfinite(outcome.estimationDb))
-        throw Error(Error::Kind::numerical, "The model runs away on the records that it was to explain; try --guided, another --order or --mask.");
+        throw Error(Error::Kind::numerical, "The model runs away on the records that it was to explain; try another --order or --mask.");
     if (!options.out.empty())
         writeJson(outcome.model, options.out);
     if (!options.played.empty())
@@ -174,7 +172,7 @@ TermMask maskNamed(const std::string& wanted)
 
 PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, Terminal& terminal)
 {
-    const auto& [estimation, validation] = data.records;
+    const auto &estimation = data.records.estimation, &validation = data.records.validation;
     PnlssOutcome outcome;
     NamedPnlss named;
     if (!options.model.empty()) {
@@ -189,8 +187,8 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
         const auto start = startFor(options, data.take);
         PnlssFitOptions fitting;
         fitting.maximumIterations = options.iterations;
-        if (options.guided)
-            fitting.guideGains = {1.0, 0.3, 0.1};
+        if (data.records.noiseDb)
+            fitting.enoughDb = *data.records.noiseDb + 1.0;
         const auto fit = fitPnlss(start, estimation, validation, fitting, terminal.progress());
         outcome = {relativeErrorDb(start, validation.empty() ? estimation : validation), fit.estimationDb, fit.validationDb, fit.iterations, fit.stable,
                    fit.reason, fit.history, "", {}, {}};
@@ -223,7 +221,6 @@ void addPnlss(CLI::App& app, Terminal& terminal)
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
     verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
     verb->add_option("--iterations", o->iterations, "at most")->capture_default_str()->check(CLI::Range(1, 10000));
-    verb->add_flag("--guided", o->guided, "begin with a model that follows the measured output: for linear starts that run away");
     verb->add_option("--model", o->model, "judge this model, which was kept, instead of fitting one")->type_name("FILE");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->add_option("--played", o->played, "also write the take as the model plays it")->type_name("DIR");

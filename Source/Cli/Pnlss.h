@@ -4,6 +4,7 @@
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 
+#include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Polynomial/TakeRecords.h"
 
 #include <nlohmann/json.hpp>
@@ -16,7 +17,7 @@ struct PnlssArguments {
     ResponseChoice response;
     std::string model, out, played, mask = "full", terms, alpha;
     int order = 0, degree = 3, iterations = 50;
-    bool noOutputTerms = false, offset = false, guided = false, mixed = false, laws = false;
+    bool noOutputTerms = false, offset = false, mixed = false, laws = false;
 };
 
 /// What the two kinds of polynomial models tell alike.

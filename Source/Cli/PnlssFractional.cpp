@@ -41,7 +41,7 @@ FractionalPnlss commensurateStart(const PnlssArguments& options, std::optional<d
 
 PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& data, Terminal& terminal)
 {
-    const auto& [estimation, validation] = data.records;
+    const auto &estimation = data.records.estimation, &validation = data.records.validation;
     PnlssOutcome outcome;
     NamedFractionalPnlss named;
     if (!options.model.empty()) {

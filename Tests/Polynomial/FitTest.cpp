@@ -131,15 +131,27 @@ TEST_CASE("A fit from a linear start finds a nonlinear model, with transients es
     CHECK((kept.model.linear.A.array() == start.linear.A.array()).all());
     CHECK(kept.validationDb > -70.0);
 
-    // A start that runs away needs to be guided.
+    // A start that runs away needs to be guided, and is.
     auto unstable = start;
     unstable.linear.A *= 1.03 / 0.97;
     REQUIRE_FALSE(isStable(unstable.linear));
-    PnlssFitOptions guided;
-    guided.guideGains = {1.0, 0.3, 0.1};
-    const auto saved = fitPnlss(unstable, records, validation, guided);
-    CHECK(saved.stable);
-    CHECK(saved.validationDb < -78.0);
+    PnlssFitOptions searching;
+    for (const auto search : {PnlssSearch::guided, PnlssSearch::any}) {
+        searching.search = search;
+        const auto saved = fitPnlss(unstable, records, validation, searching);
+        CHECK(saved.stable);
+        CHECK(saved.validationDb < -78.0);
+    }
+    unstable.linear.A *= 1.15;
+    CHECK(fitPnlss(unstable, records, validation, searching).validationDb < -78.0);
+    searching.search = PnlssSearch::plain;
+    const auto lost = fitPnlss(unstable, records, validation, searching);
+    CHECK(std::isinf(lost.estimationDb));
+    CHECK(lost.reason == "the model runs away at its start");
+    for (const auto search : {PnlssSearch::plain, PnlssSearch::grown}) {
+        searching.search = search;
+        CHECK(fitPnlss(start, records, validation, searching).validationDb == Approx(waited.validationDb).margin(0.5));
+    }
 }
 
 TEST_CASE("What cannot be fitted is told in a sentence")
@@ -180,30 +192,30 @@ TEST_CASE("The seed's loudspeaker is recovered to rounding, from its true linear
     }
 }
 
-TEST_CASE("The seed's loudspeaker is recovered from most other inputs as well; where the start leads astray the errors tell", "[slow]")
+TEST_CASE("The seed's loudspeaker is recovered to rounding from other inputs as well", "[slow]")
 {
-    int fromTruth = 0, fromResponse = 0, astray = 0;
+    int astray = 0;
     for (const auto& [tag, strength] : {std::pair {"48000_p", 1e-5}, {"44100_m", -1e-5}}) {
         const auto truth = seedsLoudspeaker(tag);
         const auto io = matrixOf(problemRows(std::string("P1_") + tag + "_io.csv"));
         if (io.size() == 0)
             return;
         const double level = std::sqrt(io.col(0).squaredNorm() / static_cast<double>(io.rows()));
-        for (int seed = 1; seed <= 6; ++seed) {
+        for (int seed = 1; seed <= 10; ++seed) {
             CAPTURE(tag, seed);
             Normal normal(seed);
-            // Two periods of a flat random-phase multisine, from rest; the recursion is written out by itself.
+            // A flat random-phase multisine as long as the fixed problem's, from rest; the recursion is written out by itself.
             const auto record = [&] {
-                constexpr Index N = 2048;
+                constexpr Index N = 4096;
                 std::vector<std::complex<double>> spectrum(N / 2 + 1);
                 for (std::size_t k = 1; k < N / 2; ++k)
                     spectrum[k] = std::polar(1.0, 2.0 * std::numbers::pi * normal());   // wrapped this often, a phase is uniform
                 const auto period = inverseFft(spectrum, N);
-                Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), N).replicate(2, 1);
-                u *= level * std::sqrt(2.0 * N) / u.norm();
-                Eigen::MatrixXd y(2 * N, 1);
+                Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), N);
+                u *= level * std::sqrt(static_cast<double>(N)) / u.norm();
+                Eigen::MatrixXd y(N, 1);
                 Eigen::Vector3d x = Eigen::Vector3d::Zero();
-                for (Index t = 0; t < 2 * N; ++t) {
+                for (Index t = 0; t < N; ++t) {
                     double products = 0.0;
                     for (Index i = 0; i < 3; ++i)
                         for (Index j = i; j < 3; ++j)
@@ -215,16 +227,14 @@ TEST_CASE("The seed's loudspeaker is recovered from most other inputs as well; w
             };
             const auto estimation = record(), validation = record();
             const auto found = recover(truth, estimation, validation);
-            CHECK(found.fromTruth.validationDb < -100.0);
-            fromTruth += found.fromTruth.validationDb < -168.0 ? 1 : 0;
-            fromResponse += found.fromResponse.estimationDb < -120.0 && found.fromResponse.validationDb < -110.0 ? 1 : 0;
-            astray += found.fromResponse.estimationDb > -90.0 ? 1 : 0;
+            CHECK(found.fromTruth.estimationDb < -218.0);
+            CHECK(found.fromTruth.validationDb < -204.0);
+            CHECK(found.fromResponse.stable);
+            astray += found.fromResponse.estimationDb > -120.0 || found.fromResponse.validationDb > -110.0 ? 1 : 0;
         }
     }
-    CAPTURE(fromTruth, fromResponse, astray);
-    CHECK(fromTruth >= 8);      // of 12: the others are on their way there when the iterations end
-    CHECK(fromResponse >= 8);
-    CHECK(astray <= 4);
+    // Of 320 other draws three ended in a valley that leads nowhere, whichever way they began.
+    CHECK(astray <= 1);
 }
 
 TEST_CASE("A driver with four nonlinear laws is explained down to its noise, from its measured best linear approximation", "[slow]")
@@ -244,7 +254,8 @@ TEST_CASE("A driver with four nonlinear laws is explained down to its noise, fro
     PnlssFitOptions options;
     options.maximumIterations = 30;
     const auto fit = fitPnlss(withTerms(bla, 3), {records[0], records[1]}, {records[2]}, options);
-    CHECK(fit.validationDb < -78.0);
+    CHECK(fit.estimationDb < -82.5);   // noise: -83
+    CHECK(fit.validationDb < -82.0);
     CHECK(fit.stable);
 }
 

@@ -133,7 +133,7 @@ TEST_CASE("Order 20, degree 3 without cross products runs to its end and fits", 
         if (truth.exponents(k, order) == 0)
             for (Index i = 1; i < order; i += 2)
                 truth.E(i, k) = (truth.exponents.row(k).sum() == 2 ? 0.003 : -0.004) * normal();
-    const auto estimation = periodOf(truth, 4096, -60.0, normal), validation = periodOf(truth, 2048, -400.0, normal);
+    const auto estimation = periodOf(truth, 6144, -60.0, normal), validation = periodOf(truth, 2048, -400.0, normal);
     for (const bool everywhere : {false, true}) {
         auto start = truth;
         start.E.setZero();
@@ -142,13 +142,14 @@ TEST_CASE("Order 20, degree 3 without cross products runs to its end and fits", 
                 start.free.row(row).setConstant(row % 2 == 1);
         PnlssFitOptions options;
         options.linearFree = false;
+        options.search = PnlssSearch::plain;
         options.maximumIterations = 12;
         const auto fit = fitPnlss(start, {estimation}, {validation}, options);
         CAPTURE(everywhere, fit.iterations, fit.reason, fit.history, fit.estimationDb, fit.validationDb);
         CHECK(relativeErrorDb(start, {validation}) > -20.0);
         CHECK(fit.history.back() < -59.6);   // the noise is at -60 dB
-        // 420 coefficients are told by 4096 samples; 882 are fitted to the noise as well, and extrapolate to the peaks of another record.
-        CHECK(fit.validationDb < (everywhere ? -46.0 : -61.0));
+        // 420 coefficients are told by 6144 samples; 882 are fitted to the noise as well, and extrapolate to the peaks of another record.
+        CHECK(fit.validationDb < (everywhere ? -58.0 : -68.0));
         CHECK(fit.stable);
     }
 }

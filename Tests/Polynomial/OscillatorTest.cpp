@@ -233,6 +233,7 @@ TEST_CASE("Duffing's oscillator in chaos: the model predicts ten periods and has
     const Vector2d begin = z;
     const VectorXd y = positions(flow, z, drive.tail(16000 * 40), T, 4);
     options.estimateInitialStates = true;
+    options.search = PnlssSearch::guided;
     options.guideGains = {0.3, 0.1, 0.03};
     options.maximumIterations = 40;
     const auto fit = fitPnlss(start, cut(drive.head(16000), y.head(16000), 400), {}, options);
@@ -272,6 +273,7 @@ TEST_CASE("Van der Pol's oscillator is identified, and the model says that its l
     records.resize(16);
     PnlssFitOptions options;
     options.estimateInitialStates = true;
+    options.search = PnlssSearch::guided;
     options.guideGains = {1.0, 0.3, 0.1};
     options.maximumIterations = 60;
     for (const int degree : {3, 5}) {
@@ -303,8 +305,9 @@ TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the os
     const auto records = cut(u.head(12000), y.head(12000), 250);
     PnlssFitOptions options;
     options.estimateInitialStates = true;
+    options.search = PnlssSearch::guided;
     options.guideGains = {1.0, 0.3, 0.1, 0.03};
-    options.maximumIterations = 80;
+    options.maximumIterations = 200;
     const auto fit = fitPnlss(startOn(records, T, 5), records, {}, options);
     REQUIRE(fit.initialStates.size() == 48);
     const VectorXd played = simulate(fit.model, u, fit.initialStates[0]);
@@ -314,11 +317,11 @@ TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the os
     Vector2d beside = begin + Vector2d(1e-6, 0.0);
     const VectorXd again = positions(flow, beside, u, T, 4);
     CAPTURE(fit.estimationDb, own, found, missed(y, played, 0, 500), missed(y, played, 50000, 100000), apart(y, played), apart(y, again));
-    CHECK(fit.estimationDb < -65.0);
+    CHECK(fit.estimationDb < -90.0);
     CHECK_FALSE(fit.stable);   // at rest it is not: it runs into its cycle
     CHECK(own > 0.05);
     CHECK(found == Approx(own).epsilon(0.15));
-    CHECK(missed(y, played, 0, 500) < 2e-3);   // four periods of the drive
+    CHECK(missed(y, played, 0, 500) < 1e-4);   // four periods of the drive
     CHECK(missed(y, played, 50000, 100000) > 0.3);
     CHECK(apart(y, again) < 0.04);
     CHECK(apart(y, played) < 0.04);

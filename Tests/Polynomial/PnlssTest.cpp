@@ -174,6 +174,28 @@ TEST_CASE("A guided recursion and its Jacobian follow the measured output")
     }
 }
 
+TEST_CASE("Weights of the outputs are pulled back to the parameters as by the Jacobian's transpose")
+{
+    const auto model = drawn(3, 2, 2, 3);
+    const auto u = noise(600, 2), y = noise(600, 2), w = noise(600, 2);
+    const Recursion recursion(model, true);
+    const Recursion::Guide observer {0.1 * Eigen::MatrixXd::Random(3, 2), &y};
+    for (const Recursion::Guide* guide : {static_cast<const Recursion::Guide*>(nullptr), &observer}) {
+        Eigen::MatrixXd states, outputs;
+        REQUIRE(recursion.run(model, u, Eigen::Vector3d(0.1, -0.2, 0.1), 1e6, states, outputs, guide));
+        Eigen::VectorXd expected = Eigen::VectorXd::Zero(recursion.parameters() + 3);
+        recursion.differentiate(
+            model, u, states,
+            [&](Index first, std::vector<Eigen::MatrixXd>& J) {
+                for (Index o = 0; o < 2; ++o)
+                    expected += J[static_cast<std::size_t>(o)].transpose() * w.col(o).segment(first, J[0].rows());
+            },
+            guide);
+        const auto found = recursion.pullBack(model, u, states, w, guide);
+        CHECK((found - expected).norm() < 1e-12 * expected.norm());
+    }
+}
+
 TEST_CASE("A model that runs away is stopped at its bound")
 {
     auto model = drawn(2, 1, 1, 2);

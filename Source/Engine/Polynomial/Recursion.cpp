@@ -106,13 +106,44 @@ bool Recursion::run(const Pnlss& model, const MatrixXd& input, const VectorXd& i
     return true;
 }
 
+Recursion::Stretch Recursion::room() const
+{
+    Stretch along {MatrixXd(pitch, monomials_.nodes()), MatrixXd(pitch, (n_ + p_) * n_)};
+    along.values.col(0).setOnes();
+    return along;
+}
+
+Index Recursion::nodeOf(Index regressor) const { return regressor < n_ + m_ ? 1 + regressor : monomials_.termNode(regressor - n_ - m_); }
+
+void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Guide* guide, Index first, Index T, Stretch& along) const
+{
+    for (Index i = 0; i < n_; ++i)
+        along.values.col(1 + i).head(T) = states.row(i).segment(first, T).transpose();
+    for (Index i = 0; i < m_; ++i)
+        along.values.col(1 + n_ + i).head(T) = input.col(i).segment(first, T);
+    Index node = 1 + n_ + m_;
+    for (const auto& product : monomials_.products())
+        lanes::multiply(along.values.col(node++).data(), along.values.col(product.left).data(), along.values.col(product.right).data(), T);
+    for (Index i = 0; i < n_ + p_; ++i)
+        for (Index j = 0; j < n_; ++j)
+            along.MG.col(i * n_ + j).setConstant(i < n_ ? model.linear.A(i, j) : model.linear.C(i - n_, j));
+    for (const auto& slope : monomials_.slopes())
+        for (Index i = 0; i < n_ + p_; ++i) {
+            const double c = i < n_ ? model.E(i, slope.term) : model.F(i - n_, slope.term);
+            if (c != 0.0)
+                lanes::addScaled(along.MG.col(i * n_ + slope.state).data(), c * slope.factor, along.values.col(slope.node).data(), T);
+        }
+    if (guide)   // M - L G
+        for (Index i = 0; i < n_; ++i)
+            for (Index o = 0; o < p_; ++o)
+                for (Index j = 0; j < n_; ++j)
+                    lanes::addScaled(along.MG.col(i * n_ + j).data(), -guide->gain(i, o), along.MG.col((n_ + o) * n_ + j).data(), T);
+}
+
 void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Taker& take, const Guide* guide) const
 {
     const auto N = input.rows(), P = parameters();
-    const auto nodes = monomials_.nodes();
-    MatrixXd values(pitch, nodes);   // [node][time]
-    values.col(0).setOnes();
-    MatrixXd MG(pitch, (n_ + p_) * n_);
+    auto along = room();
     // Columns of a row side by side, padded to whole lanes; then those of the initial state.
     std::vector<Group> groups = groups_;
     groups.push_back({-1, P, n_});
@@ -137,29 +168,9 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
     std::vector<MatrixXd> derivatives(static_cast<std::size_t>(p_));
     for (Index first = 0; first < N; first += stretch) {
         const auto T = std::min(stretch, N - first);
-        for (Index i = 0; i < n_; ++i)
-            values.col(1 + i).head(T) = states.row(i).segment(first, T).transpose();
-        for (Index i = 0; i < m_; ++i)
-            values.col(1 + n_ + i).head(T) = input.col(i).segment(first, T);
-        Index node = 1 + n_ + m_;
-        for (const auto& product : monomials_.products())
-            lanes::multiply(values.col(node++).data(), values.col(product.left).data(), values.col(product.right).data(), T);
-        for (Index i = 0; i < n_ + p_; ++i)
-            for (Index j = 0; j < n_; ++j)
-                MG.col(i * n_ + j).setConstant(i < n_ ? model.linear.A(i, j) : model.linear.C(i - n_, j));
-        for (const auto& slope : monomials_.slopes())
-            for (Index i = 0; i < n_ + p_; ++i) {
-                const double c = i < n_ ? model.E(i, slope.term) : model.F(i - n_, slope.term);
-                if (c != 0.0)
-                    lanes::addScaled(MG.col(i * n_ + slope.state).data(), c * slope.factor, values.col(slope.node).data(), T);
-            }
-        if (guide)   // M - L G
-            for (Index i = 0; i < n_; ++i)
-                for (Index o = 0; o < p_; ++o)
-                    for (Index j = 0; j < n_; ++j)
-                        lanes::addScaled(MG.col(i * n_ + j).data(), -guide->gain(i, o), MG.col((n_ + o) * n_ + j).data(), T);
-        const double* M = MG.data();
-        const double* G = MG.data() + n_ * n_ * pitch;
+        follow(model, input, states, guide, first, T, along);
+        const double* M = along.MG.data();
+        const double* G = M + n_ * n_ * pitch;
         for (std::size_t g = 0; g < groups.size(); ++g) {
             const auto& group = groups[g];
             const bool initial = group.row < 0;
@@ -168,7 +179,7 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                     const double* from[abreast];
                     for (Index l = 0; l < abreast; ++l) {   // the last one again where there are no more
                         const auto regressor = columns_[static_cast<std::size_t>(group.first + std::min(c + l, group.count - 1))].regressor;
-                        from[l] = values.col(regressor < n_ + m_ ? 1 + regressor : monomials_.termNode(regressor - n_ - m_)).data();
+                        from[l] = along.values.col(nodeOf(regressor)).data();
                     }
                     lanes::toRows(regressors.data() + place[g] + c, width, from, T);
                 }
@@ -193,6 +204,40 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
         }
         take(first, derivatives);
     }
+}
+
+VectorXd Recursion::pullBack(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const MatrixXd& weights, const Guide* guide) const
+{
+    const auto N = input.rows();
+    auto along = room();
+    // Of every row the weight that its regressors bear, at every time: lambda(t+1) of the states, w(t) of the outputs less what the guide passes on.
+    MatrixXd bears(n_ + p_, stretch), sums = MatrixXd::Zero(n_ + p_, monomials_.nodes());
+    VectorXd lambda = VectorXd::Zero(n_), before(n_);
+    for (Index first = (N - 1) / stretch * stretch; first >= 0; first -= stretch) {
+        const auto T = std::min(stretch, N - first);
+        follow(model, input, states, guide, first, T, along);
+        for (Index t = T - 1; t >= 0; --t) {
+            bears.col(t) << lambda, weights.row(first + t).transpose();
+            if (guide)
+                bears.col(t).tail(p_) -= guide->gain.transpose() * lambda;
+            const double* entry = along.MG.data() + t;
+            before.setZero();
+            for (Index row = 0; row < n_ + p_; ++row) {
+                const double weight = row < n_ ? lambda[row] : weights(first + t, row - n_);
+                for (Index j = 0; j < n_; ++j, entry += pitch)
+                    before[j] += *entry * weight;
+            }
+            lambda.swap(before);
+        }
+        sums.noalias() += bears.leftCols(T) * along.values.topRows(T);
+    }
+    VectorXd result(parameters() + n_);
+    for (Index c = 0; c < parameters(); ++c) {
+        const auto& [row, regressor] = columns_[static_cast<std::size_t>(c)];
+        result[c] = sums(row, nodeOf(regressor));
+    }
+    result.tail(n_) = lambda;
+    return result;
 }
 
 } // namespace excursion

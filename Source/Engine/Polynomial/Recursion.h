@@ -50,7 +50,23 @@ public:
     /// The exact Jacobian along a run, block by block in ascending time; memory does not grow with the record.
     void differentiate(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states, const Taker&, const Guide* guide = nullptr) const;
 
+    /// J^T w along a run, one number a parameter and then one a state of the beginning, by the adjoint recursion backwards in time:
+    ///     lambda(t) = M(t)^T lambda(t+1) + G(t)^T w(t),  by the coefficient of r_j in state row i: sum_t lambda_i(t+1) r_j(t), in output row o: sum_t w_o(t) r_j(t)
+    /// at the cost of a few simulations, whatever the number of parameters.
+    /// @param weights  w, N x p
+    Eigen::VectorXd pullBack(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states, const Eigen::MatrixXd& weights,
+                             const Guide* guide = nullptr) const;
+
 private:
+    /// What the model is along a stretch of time.
+    struct Stretch {
+        Eigen::MatrixXd values;   ///< of the regressors' nodes: [node][time], `pitch` apart
+        Eigen::MatrixXd MG;       ///< entries of M, then of G, row by row: [entry][time]
+    };
+    Stretch room() const;
+    void follow(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states, const Guide*, Eigen::Index first, Eigen::Index T, Stretch&) const;
+    Eigen::Index nodeOf(Eigen::Index regressor) const;
+
     struct Group {   // columns of one row, side by side
         Eigen::Index row, first, count;
     };

@@ -2,6 +2,7 @@
 #include "Engine/Polynomial/TakeRecords.h"
 
 #include "Engine/Measurement/Periods.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,27 @@ namespace {
 Eigen::MatrixXd columnOf(std::span<const double> samples)
 {
     return Eigen::Map<const Eigen::VectorXd>(samples.data(), static_cast<Eigen::Index>(samples.size()));
+}
+
+/// Of the mean of each realization's periods: the variance of that mean over its power.
+std::optional<double> noiseOf(const Measurement& take, const Channel& output, int level)
+{
+    const auto& excitation = *take.excitation;
+    if (excitation.periods < 2)
+        return std::nullopt;
+    double scatter = 0.0, power = 0.0;
+    for (int r = 0; r < excitation.realizations; ++r) {
+        const auto mean = averagePeriod(take, output, level, r);
+        for (const double y : mean)
+            power += y * y;
+        for (int p = 0; p < excitation.periods; ++p) {
+            const auto period = onePeriod(take, output, level, r, p);
+            for (std::size_t t = 0; t < mean.size(); ++t)
+                scatter += std::pow(period[t] - mean[t], 2);
+        }
+    }
+    const double P = excitation.periods;
+    return decibelsOf(scatter / (P * (P - 1.0)) / power);
 }
 
 } // namespace
@@ -36,6 +58,7 @@ PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Chan
         const bool last = excitation.realizations > 1 && r + 1 == excitation.realizations;
         (last ? records.validation : records.estimation).push_back(record);
     }
+    records.noiseDb = noiseOf(take, output, level);
     return records;
 }
 

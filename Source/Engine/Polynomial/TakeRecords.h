@@ -2,12 +2,16 @@
 #pragma once
 
 #include "Engine/Measurement/Measurement.h"
-#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/PnlssRecord.h"
+
+#include <optional>
+#include <vector>
 
 namespace excursion {
 
 struct PnlssRecords {
     std::vector<PnlssRecord> estimation, validation;
+    std::optional<double> noiseDb;   ///< of the averaged periods, by their scatter, relative to the output: the floor of every error; of several periods only
 };
 
 /// What black-box models of one input and output are fitted to and judged by: the averaged period of every realization of one level, led in by

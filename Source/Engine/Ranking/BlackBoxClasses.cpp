@@ -125,21 +125,19 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     identifying.sampleRate = data.take.sampleRate;
     PnlssFitOptions fitting;
     fitting.maximumIterations = data.options.iterations;
+    if (data.records.noiseDb)
+        fitting.enoughDb = *data.records.noiseDb + 3.0;
     PnlssFit best;
     const auto error = [](const PnlssFit& f) { return std::isnan(f.validationDb) ? f.estimationDb : f.validationDb; };
-    // A pole that only the linear model needed may hold the search up, so a driver's three states are tried as well; and a search that stands still may
-    // go on from a model that followed the output first.
+    // A pole that only the linear model needed may hold the search up, so a driver's three states are tried as well.
     for (const int order : data.options.order > 0 || data.order == 3 ? std::vector {data.order} : std::vector {3, data.order}) {
+        if (best.model.linear.order() > 0 && error(best) < fitting.enoughDb)
+            break;
         identifying.order = order;
-        const auto start = withTerms(identify(data.response, identifying).model, data.options.degree);
-        for (const auto& gains : {std::vector<double> {}, std::vector {1.0, 0.3, 0.1}}) {
-            if (best.model.linear.order() > 0 && error(best) < data.noiseDb.value_or(-1000.0) + 3.0)
-                continue;
-            fitting.guideGains = gains;
-            auto fit = fitPnlss(start, data.records.estimation, data.records.validation, fitting, progress);
-            if (best.model.linear.order() == 0 || error(fit) < error(best))
-                best = std::move(fit);
-        }
+        auto fit = fitPnlss(withTerms(identify(data.response, identifying).model, data.options.degree), data.records.estimation, data.records.validation,
+                            fitting, progress);
+        if (best.model.linear.order() == 0 || error(fit) < error(best))
+            best = std::move(fit);
     }
     return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
             ofOrder("", best.model.linear.order(), data.options.degree), static_cast<int>(Recursion(best.model, true).parameters()), best.stable};

@@ -20,7 +20,6 @@ struct RankedTake {
     RankOptions options;
     int order;                  ///< of the polynomial models
     StateSpace linear;          ///< of the best order, in discrete time
-    std::optional<double> noiseDb;   ///< as Ranking
 };
 
 /// A fitted class: how it plays a record from rest (N x 1), and what it says of itself.

@@ -80,27 +80,6 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
     return model;
 }
 
-/// Of the averaged periods that errors are told of: their scatter.
-std::optional<double> noiseOf(const Measurement& take, const Channel& output, int level)
-{
-    if (!take.excitation || take.excitation->lines.empty() || take.excitation->periods < 2)
-        return std::nullopt;
-    const auto& excitation = *take.excitation;
-    double scatter = 0.0, power = 0.0;
-    for (int r = 0; r < excitation.realizations; ++r) {
-        const auto mean = averagePeriod(take, output, level, r);
-        for (const double y : mean)
-            power += y * y;
-        for (int p = 0; p < excitation.periods; ++p) {
-            const auto period = onePeriod(take, output, level, r, p);
-            for (std::size_t t = 0; t < mean.size(); ++t)
-                scatter += std::pow(period[t] - mean[t], 2);
-        }
-    }
-    const double P = excitation.periods;
-    return decibelsOf(scatter / (P * (P - 1.0)) / power);
-}
-
 } // namespace
 
 bool RankOptions::isValid(std::string* reason) const
@@ -152,13 +131,12 @@ Ranking rank(const Measurement& given, const RankOptions& options, const Progres
     const auto sweep = sweepOrders(response, sweeping);
     const auto linear = sweep.entries[sweep.chosen].found.model;
     const int order = options.order > 0 ? options.order : std::min(4, static_cast<int>(linear.order()));
-    const RankedTake data {take, input, *output, level, recordsOf(take, input, *output, level), response, options, order, linear,
-                          noiseOf(take, *output, level)};
+    const RankedTake data {take, input, *output, level, recordsOf(take, input, *output, level), response, options, order, linear};
 
     Ranking ranking;
     ranking.input = input.quantity;
     ranking.output = output->quantity;
-    ranking.noiseDb = data.noiseDb;
+    ranking.noiseDb = data.records.noiseDb;
     double done = 0.02;
     for (const auto& fitting : fittings()) {
         const bool wanted = options.classes.empty() || std::find(options.classes.begin(), options.classes.end(), fitting.told.name) != options.classes.end();

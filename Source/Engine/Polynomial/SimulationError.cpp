@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/SimulationError.h"
+
+#include "Engine/Linear/TallQr.h"
+#include "Engine/Signal/Fft.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace excursion {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The gain L of the stationary Kalman filter x(t+1|t) of a linear model, process noise on all states in the proportion of their
+/// movement: by iterating Riccati's equation, which converges for an unstable A as well.
+MatrixXd kalmanGain(const StateSpace& model, const VectorXd& movement, const VectorXd& outputPower, double ratio)
+{
+    const auto n = model.order();
+    const MatrixXd Q = movement.cwiseAbs2().asDiagonal();
+    const MatrixXd R = (ratio * outputPower).asDiagonal();
+    MatrixXd P = Q;
+    MatrixXd L = MatrixXd::Zero(n, model.outputs());
+    for (int k = 0; k < 500; ++k) {
+        const MatrixXd S = model.C * P * model.C.transpose() + R;
+        L = model.A * P * model.C.transpose() * S.inverse();
+        P = model.A * P * model.A.transpose() - L * S * L.transpose() + Q;
+        P = (0.5 * (P + P.transpose())).eval();
+    }
+    return L;
+}
+
+/// The mean power of each output over all records.
+VectorXd outputPower(const std::vector<PnlssRecord>& records)
+{
+    VectorXd sum = VectorXd::Zero(records.front().output.cols());
+    for (const auto& record : records)
+        sum += record.output.colwise().squaredNorm().transpose() / static_cast<double>(record.output.rows());
+    return sum / static_cast<double>(records.size());
+}
+
+} // namespace
+
+SimulationError::SimulationError(const std::vector<PnlssRecord>& records, const PnlssFitOptions& options, const Pnlss& structure)
+    : structure_(structure), records_(records), options_(options), recursion_(structure, options.linearFree), n_(structure.linear.order()),
+      states_(records.size()), outputs_(records.size())
+{
+    for (const auto& record : records)
+        power_ += weighted(record.output.bottomRows(record.output.rows() - record.skip)).squaredNorm();
+}
+
+Index SimulationError::parameters() const
+{
+    return recursion_.parameters() + (options_.estimateInitialStates ? n_ * static_cast<Index>(records_.size()) : 0);
+}
+
+VectorXd SimulationError::valuesOf(const Pnlss& model) const
+{
+    VectorXd values = VectorXd::Zero(parameters());
+    values.head(recursion_.parameters()) = recursion_.valuesOf(model);
+    return values;
+}
+
+Pnlss SimulationError::modelAt(const VectorXd& values) const
+{
+    auto model = structure_;
+    recursion_.setValues(model, values.head(recursion_.parameters()));
+    return model;
+}
+
+VectorXd SimulationError::initialState(const VectorXd& values, std::size_t record) const
+{
+    if (!options_.estimateInitialStates)
+        return VectorXd::Zero(n_);
+    return values.segment(recursion_.parameters() + n_ * static_cast<Index>(record), n_);
+}
+
+std::vector<VectorXd> SimulationError::initialStates(const VectorXd& values) const
+{
+    std::vector<VectorXd> states;
+    for (std::size_t k = 0; options_.estimateInitialStates && k < records_.size(); ++k)
+        states.push_back(initialState(values, k));
+    return states;
+}
+
+void SimulationError::guide(double strength, const VectorXd& values)
+{
+    bound_ = infinity;
+    gain_.resize(0, 0);
+    if (strength == 0.0)
+        return;
+    auto linear = modelAt(values);
+    linear.E.setZero();
+    linear.F.setZero();
+    const VectorXd moved = std::isfinite(cost(linear, values)) ? movement() : VectorXd::Ones(n_);
+    gain_ = strength * kalmanGain(linear.linear, 0.1 * moved, outputPower(records_), 1e-3);
+}
+
+bool SimulationError::holdBack(const VectorXd& values)
+{
+    bound_ = 1e12;
+    if (!std::isfinite(cost(values)))
+        return false;
+    bound_ = 1e3 * std::max(n_ > 0 ? movement().maxCoeff() : 0.0, 1e-300);
+    return true;
+}
+
+double SimulationError::cost(const VectorXd& values) { return cost(modelAt(values), values); }
+
+double SimulationError::cost(const Pnlss& model, const VectorXd& values)
+{
+    double sum = 0.0;
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+        if (!run(model, values, k))
+            return infinity;
+        sum += weighted(judgedError(records_[k], outputs_[k])).squaredNorm();
+    }
+    return std::isfinite(sum) ? sum / power_ : infinity;
+}
+
+MatrixXd SimulationError::factor(const VectorXd& values)
+{
+        const auto model = modelAt(values);
+        cost(model, values);   // for the states
+        const auto P = recursion_.parameters(), all = parameters();
+        TallQr qr(all + 1);
+        for (std::size_t k = 0; k < records_.size(); ++k) {
+            const auto& record = records_[k];
+            const MatrixXd rest = judgedError(record, outputs_[k]);
+            const auto guide = guideOf(record);
+            const bool spectral = options_.lineWeights.size() != 0;
+            std::vector<MatrixXd> whole;   // for weights along the spectrum the record's Jacobian has to stand as a whole
+            if (spectral)
+                whole.assign(static_cast<std::size_t>(record.output.cols()), MatrixXd::Zero(rest.rows(), all + 1));
+            recursion_.differentiate(
+                model, record.input, states_[k],
+                [&](Index first, std::vector<MatrixXd>& derivatives) {
+                    for (Index o = 0; o < record.output.cols(); ++o) {
+                        auto& block = derivatives[static_cast<std::size_t>(o)];
+                        const Index drop = std::clamp<Index>(record.skip - first, 0, block.rows());
+                        const Index rows = block.rows() - drop;
+                        if (rows == 0)
+                            continue;
+                        MatrixXd part = MatrixXd::Zero(rows, all + 1);
+                        part.leftCols(P) = block.block(drop, 0, rows, P);
+                        if (options_.estimateInitialStates)
+                            part.middleCols(P + n_ * static_cast<Index>(k), n_) = block.block(drop, P, rows, n_);
+                        const Index at = first + drop - record.skip;
+                        part.col(all) = rest.col(o).segment(at, rows);
+                        if (spectral)
+                            whole[static_cast<std::size_t>(o)].middleRows(at, rows) = part;
+                        else
+                            qr.fold(part);
+                    }
+                },
+                guide ? &*guide : nullptr);
+            for (const auto& part : whole) {
+                MatrixXd filtered = weighted(part);
+                qr.fold(filtered);
+            }
+        }
+        return qr.R();
+}
+
+VectorXd SimulationError::curvature(const VectorXd& values, const VectorXd& step)
+{
+    constexpr double h = 0.1;   // of the step: small enough for the third derivative, far above rounding
+    const auto outputsAt = [&](const VectorXd& at, std::vector<MatrixXd>& outputs) {
+        const bool stays = std::isfinite(cost(at));
+        outputs = outputs_;
+        return stays;
+    };
+    std::vector<MatrixXd> ahead, behind;
+    if (!outputsAt(values + h * step, ahead) || !outputsAt(values - h * step, behind) || !std::isfinite(cost(values)))
+        return {};
+    const auto model = modelAt(values);
+    const auto P = recursion_.parameters();
+    VectorXd sum = VectorXd::Zero(parameters());
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+        const auto& record = records_[k];
+        const auto rows = record.output.rows() - record.skip;
+        MatrixXd bend = MatrixXd::Zero(record.output.rows(), record.output.cols());
+        // The weights are a symmetric filter: once for the error, once for the Jacobian.
+        bend.bottomRows(rows) = weighted(weighted((2.0 * outputs_[k] - ahead[k] - behind[k]).bottomRows(rows) / (h * h)));
+        const auto guide = guideOf(record);
+        const VectorXd part = recursion_.pullBack(model, record.input, states_[k], bend, guide ? &*guide : nullptr);
+        sum.head(P) += part.head(P);
+        if (options_.estimateInitialStates)
+            sum.segment(P + n_ * static_cast<Index>(k), n_) += part.tail(n_);
+    }
+    return sum;
+}
+
+VectorXd SimulationError::movement() const
+{
+    VectorXd sum = VectorXd::Zero(n_);
+    double count = 0.0;
+    for (const auto& states : states_) {
+        sum += states.rowwise().squaredNorm();
+        count += static_cast<double>(states.cols());
+    }
+    return (sum / count).cwiseSqrt();
+}
+
+std::optional<Recursion::Guide> SimulationError::guideOf(const PnlssRecord& record) const
+{
+    if (gain_.size() == 0)
+        return std::nullopt;
+    return Recursion::Guide {gain_, &record.output};
+}
+
+bool SimulationError::run(const Pnlss& model, const VectorXd& values, std::size_t k)
+{
+    const auto guide = guideOf(records_[k]);
+    return recursion_.run(model, records_[k].input, initialState(values, k), bound_, states_[k], outputs_[k], guide ? &*guide : nullptr);
+}
+
+/// Columns through the weights of the spectrum; their sum of squares is the weighted power (Parseval).
+MatrixXd SimulationError::weighted(const MatrixXd& columns) const
+{
+    if (options_.lineWeights.size() == 0)
+        return columns;
+    const auto N = columns.rows();
+    MatrixXd result(N, columns.cols());
+    for (Index c = 0; c < columns.cols(); ++c) {
+        auto spectrum = fft(std::span<const double>(columns.col(c).data(), static_cast<std::size_t>(N)));
+        for (std::size_t line = 0; line < spectrum.size(); ++line)
+            spectrum[line] *= options_.lineWeights[static_cast<Index>(line)];
+        const auto back = inverseFft(spectrum, static_cast<std::size_t>(N));
+        result.col(c) = Eigen::Map<const VectorXd>(back.data(), N);
+    }
+    return result;
+}
+
+} // namespace excursion
