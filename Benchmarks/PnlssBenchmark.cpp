@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One Levenberg-Marquardt iteration of a PNLSS model of order 3 and degree 3 (136 parameters, 16384 samples): the Jacobian and the
-// factorization, beside the same recursion in NumPy where python3-numpy is at hand, and beside plain loops, one parameter after the other.
+// factorization, beside the same recursion in NumPy where python3-numpy is at hand, and beside plain loops, one parameter after the other; and the
+// kernel of the Jacobian beside what the core can do at most.
 #include "Engine/Linear/TallQr.h"
+#include "Engine/Polynomial/Lanes.h"
 #include "Engine/Polynomial/Recursion.h"
 
 #include <algorithm>
@@ -10,6 +12,12 @@
 #include <ctime>
 #include <iostream>
 #include <string>
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define EXCURSION_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define EXCURSION_WIDEST
+#endif
 
 namespace {
 
@@ -125,6 +133,42 @@ print(jacobian, time.process_time() - t0)
     return jacobian + step;
 }
 
+/// What one core can do at most: independent multiplications and additions on numbers that stay in registers, in GFlop/s.
+EXCURSION_WIDEST
+double peak()
+{
+    using Eight = double __attribute__((vector_size(64)));
+    constexpr long rounds = 3000000;
+    Eight a {}, b {}, c {}, d {}, e {}, f {}, g {}, h {};
+    double by = 0.999, plus = 1e-3;
+    asm volatile("" : "+x"(by), "+x"(plus));   // not known when this is compiled
+    const double before = seconds();
+    for (long k = 0; k < rounds; ++k) {
+        a = a * by + plus, b = b * by + plus, c = c * by + plus, d = d * by + plus;
+        e = e * by + plus, f = f * by + plus, g = g * by + plus, h = h * by + plus;
+    }
+    const double taken = seconds() - before;
+    const Eight sum = a + b + c + d + e + f + g + h;
+    double sink = sum[0];
+    asm volatile("" : "+x"(sink));
+    return 1e-9 * 8.0 * 8.0 * 2.0 * rounds / taken;
+}
+
+/// The kernel alone: three states, one output, eight parameters side by side through a stretch, in GFlop/s.
+double kernel()
+{
+    using namespace lanes;
+    constexpr int passes = 2000;
+    const MatrixXd MG = 0.3 * MatrixXd::Random(pitch, 12), r = MatrixXd::Random(abreast, stretch);
+    MatrixXd X = MatrixXd::Zero(abreast, 3), next = X, J(abreast, stretch);
+    const Eigen::Vector3d g(1.0, 0.0, 0.0);
+    const double taken = best([&] {
+        for (int k = 0; k < passes; ++k)
+            columnsThroughBlock(3, MG.data(), MG.data() + 9 * pitch, 1, r.data(), g.data(), 0, X.data(), next.data(), J.data(), J.size(), stretch);
+    });
+    return 1e-9 * passes * static_cast<double>(stretch * abreast) * 2.0 * 12.0 / taken;
+}
+
 } // namespace
 
 int main()
@@ -155,8 +199,10 @@ int main()
     const double plain = 16.0 * (seconds() - before);
     // 3 x 3 and 1 x 3 times 102 columns, a multiplication and an addition each
     const double operations = 2.0 * static_cast<double>(samples) * 102.0 * 12.0;
+    const double alone = kernel(), most = peak();
     std::cout << "simulation   " << 1e3 * simulation << " ms\n"
               << "Jacobian     " << 1e3 * jacobian << " ms, " << 1e-9 * operations / jacobian << " GFlop/s of the recursion alone\n"
+              << "kernel       " << alone << " GFlop/s, " << 100.0 * alone / most << " % of the " << most << " GFlop/s that this core can do\n"
               << "with factor  " << 1e3 * iteration << " ms\n"
               << "plain loops  " << 1e3 * plain << " ms for the Jacobian, " << plain / jacobian << " times as long\n";
     if (const double numpy = numpySeconds(); numpy > 0.0)

@@ -64,6 +64,7 @@ Cost costOf(Index samples, Index monomials)
         start.E.setConstant(0.9e-3);
         PnlssFitOptions options;
         options.linearFree = false;
+        options.search = PnlssSearch::plain;
         options.maximumIterations = 1;
         Cost cost;
         cost.seconds = 1e9;

@@ -13,8 +13,8 @@ namespace {
 
 /// One step for 8 parameters: J = G X, X <- M X + g r. M, G are laid out [entry][time], r and J [time][parameter].
 template <int N, bool general>
-[[gnu::always_inline]] inline void eightColumns(const double* M, const double* G, Index p, const double* r, Index strideR, const double* g, Index row,
-                                                double* X, double* J, Index strideJ, Index sizeJ, Index T)
+[[gnu::always_inline]] inline void eightColumns(const double* M, const double* G, Index p, const double* r, const double* g, Index row, double* X,
+                                                double* J, Index sizeJ, Index T)
 {
     Four a[N], b[N];
     for (int i = 0; i < N; ++i) {
@@ -29,28 +29,20 @@ template <int N, bool general>
                 ya += e * a[j];
                 yb += e * b[j];
             }
-            double* target = J + o * sizeJ + t * strideJ;
+            double* target = J + o * sizeJ + t * abreast;
             *reinterpret_cast<Four*>(target) = ya;
             *reinterpret_cast<Four*>(target + 4) = yb;
         }
-        const Four ra = *reinterpret_cast<const Four*>(r + t * strideR), rb = *reinterpret_cast<const Four*>(r + t * strideR + 4);
+        const Four ra = *reinterpret_cast<const Four*>(r + t * abreast), rb = *reinterpret_cast<const Four*>(r + t * abreast + 4);
         Four na[N], nb[N];
-        for (int i = 0; i < N; ++i) {
-            const double first = M[(i * N) * pitch + t];
-            na[i] = first * a[0];
-            nb[i] = first * b[0];
-            for (int j = 1; j < N; ++j) {
+        for (int i = 0; i < N; ++i) {   // what does not wait for the last step comes first: the chain from step to step is the limit
+            const double gain = general ? g[i] : i == row ? 1.0 : 0.0;
+            na[i] = gain * ra;
+            nb[i] = gain * rb;
+            for (int j = 0; j < N; ++j) {
                 const double e = M[(i * N + j) * pitch + t];
                 na[i] += e * a[j];
                 nb[i] += e * b[j];
-            }
-            if constexpr (general) {
-                na[i] += g[i] * ra;
-                nb[i] += g[i] * rb;
-            } else {
-                const double on = i == row ? 1.0 : 0.0;
-                na[i] += on * ra;
-                nb[i] += on * rb;
             }
         }
         for (int i = 0; i < N; ++i) {
@@ -65,8 +57,8 @@ template <int N, bool general>
 }
 
 /// The same for any number of states, X in memory.
-[[gnu::always_inline]] inline void eightColumnsOfMany(Index N, const double* M, const double* G, Index p, const double* r, Index strideR,
-                                                      const double* g, double* X, double* next, double* J, Index strideJ, Index sizeJ, Index T)
+[[gnu::always_inline]] inline void eightColumnsOfMany(Index N, const double* M, const double* G, Index p, const double* r,
+                                                      const double* g, double* X, double* next, double* J, Index sizeJ, Index T)
 {
     for (Index t = 0; t < T; ++t) {
         for (Index o = 0; o < p; ++o) {
@@ -76,11 +68,11 @@ template <int N, bool general>
                 ya += e * *reinterpret_cast<const Four*>(X + abreast * j);
                 yb += e * *reinterpret_cast<const Four*>(X + abreast * j + 4);
             }
-            double* target = J + o * sizeJ + t * strideJ;
+            double* target = J + o * sizeJ + t * abreast;
             *reinterpret_cast<Four*>(target) = ya;
             *reinterpret_cast<Four*>(target + 4) = yb;
         }
-        const Four ra = *reinterpret_cast<const Four*>(r + t * strideR), rb = *reinterpret_cast<const Four*>(r + t * strideR + 4);
+        const Four ra = *reinterpret_cast<const Four*>(r + t * abreast), rb = *reinterpret_cast<const Four*>(r + t * abreast + 4);
         for (Index i = 0; i < N; ++i) {
             Four na = g[i] * ra, nb = g[i] * rb;
             for (Index j = 0; j < N; ++j) {
@@ -98,20 +90,20 @@ template <int N, bool general>
 } // namespace
 
 EXCURSION_DISPATCH
-void columnsThroughBlock(Index N, const double* M, const double* G, Index p, const double* r, Index strideR, const double* g, Index row, double* X,
-                         double* next, double* J, Index strideJ, Index sizeJ, Index T)
+void columnsThroughBlock(Index N, const double* M, const double* G, Index p, const double* r, const double* g, Index row, double* X, double* next,
+                         double* J, Index sizeJ, Index T)
 {
     const bool one = row >= 0;
     switch (N) {
-    case 1: return eightColumns<1, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
+    case 1: return eightColumns<1, true>(M, G, p, r, g, row, X, J, sizeJ, T);
     case 2:
-        return one ? eightColumns<2, false>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T)
-                   : eightColumns<2, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
+        return one ? eightColumns<2, false>(M, G, p, r, g, row, X, J, sizeJ, T)
+                   : eightColumns<2, true>(M, G, p, r, g, row, X, J, sizeJ, T);
     case 3:
-        return one ? eightColumns<3, false>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T)
-                   : eightColumns<3, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
-    case 4: return eightColumns<4, true>(M, G, p, r, strideR, g, row, X, J, strideJ, sizeJ, T);
-    default: return eightColumnsOfMany(N, M, G, p, r, strideR, g, X, next, J, strideJ, sizeJ, T);
+        return one ? eightColumns<3, false>(M, G, p, r, g, row, X, J, sizeJ, T)
+                   : eightColumns<3, true>(M, G, p, r, g, row, X, J, sizeJ, T);
+    case 4: return eightColumns<4, true>(M, G, p, r, g, row, X, J, sizeJ, T);
+    default: return eightColumnsOfMany(N, M, G, p, r, g, X, next, J, sizeJ, T);
     }
 }
 
@@ -146,19 +138,41 @@ void combine(double* target, const double* W, const double* r, Index rows, Index
 }
 
 EXCURSION_DISPATCH
-void toRows(double* rows, Index stride, const double* const* columns, Index T)
+void toRows(double* rows, const double* const* columns, Index T)
 {
     for (Index t = 0; t < T; ++t)
         for (Index c = 0; c < abreast; ++c)
-            rows[t * stride + c] = columns[c][t];
+            rows[t * abreast + c] = columns[c][t];
 }
 
 EXCURSION_DISPATCH
-void toColumns(double* columns, Index columnStride, const double* rows, Index stride, Index count, Index T)
+void toColumns(double* columns, Index columnStride, const double* rows, Index count, Index T)
 {
-    for (Index t = 0; t < T; ++t)
-        for (Index c = 0; c < count; ++c)
-            columns[c * columnStride + t] = rows[t * stride + c];
+    using Places = long long __attribute__((vector_size(32)));
+    constexpr Places even {0, 4, 2, 6}, odd {1, 5, 3, 7}, low {0, 1, 4, 5}, high {2, 3, 6, 7};
+    const Index whole = T & ~Index {3};
+    Index c = 0;
+    for (; c + 4 <= count; c += 4) {   // four by four
+        double* target[4];
+        for (Index k = 0; k < 4; ++k)
+            target[k] = columns + (c + k) * columnStride;
+        for (Index t = 0; t < whole; t += 4) {
+            const double* from = rows + t * abreast + c;
+            const auto row = [from](Index k) -> const Four& { return *reinterpret_cast<const Four*>(from + k * abreast); };
+            const Four a = __builtin_shuffle(row(0), row(1), even), b = __builtin_shuffle(row(0), row(1), odd);
+            const Four d = __builtin_shuffle(row(2), row(3), even), e = __builtin_shuffle(row(2), row(3), odd);
+            *reinterpret_cast<Four*>(target[0] + t) = __builtin_shuffle(a, d, low);
+            *reinterpret_cast<Four*>(target[1] + t) = __builtin_shuffle(b, e, low);
+            *reinterpret_cast<Four*>(target[2] + t) = __builtin_shuffle(a, d, high);
+            *reinterpret_cast<Four*>(target[3] + t) = __builtin_shuffle(b, e, high);
+        }
+        for (Index t = whole; t < T; ++t)
+            for (Index k = 0; k < 4; ++k)
+                target[k][t] = rows[t * abreast + c + k];
+    }
+    for (; c < count; ++c)
+        for (Index t = 0; t < T; ++t)
+            columns[c * columnStride + t] = rows[t * abreast + c];
 }
 
 EXCURSION_DISPATCH

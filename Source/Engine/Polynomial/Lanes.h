@@ -16,11 +16,11 @@ inline constexpr Eigen::Index abreast = 8;       ///< parameters side by side
 
 /// T steps for 8 parameters: J = G X, X <- M X + g r.
 /// @param M, G    [entry][time], entries row by row, `pitch` apart
-/// @param r, J    [time][parameter], rows strideR and strideJ apart; J of output o is at o * sizeJ
+/// @param r, J    [time][parameter]; J of output o is at o * sizeJ
 /// @param g       gain of r in each of the N states @param row  not negative: g is 1 there and 0 elsewhere
-/// @param X       [state][parameter], aligned to 32 bytes @param next  scratch of the same size
-void columnsThroughBlock(Eigen::Index N, const double* M, const double* G, Eigen::Index p, const double* r, Eigen::Index strideR, const double* g,
-                         Eigen::Index row, double* X, double* next, double* J, Eigen::Index strideJ, Eigen::Index sizeJ, Eigen::Index T);
+/// @param X       [state][parameter] @param next  scratch of the same size
+void columnsThroughBlock(Eigen::Index N, const double* M, const double* G, Eigen::Index p, const double* r, const double* g, Eigen::Index row, double* X,
+                         double* next, double* J, Eigen::Index sizeJ, Eigen::Index T);
 
 void multiply(double* target, const double* a, const double* b, Eigen::Index T);
 void addScaled(double* target, double factor, const double* a, Eigen::Index T);
@@ -29,8 +29,8 @@ void addScaled(double* target, double factor, const double* a, Eigen::Index T);
 void combine(double* target, const double* W, const double* r, Eigen::Index rows, Eigen::Index count);
 
 /// Eight columns, each contiguous along time, to rows of eight, and `count` of them back: a line of the cache at a time.
-void toRows(double* rows, Eigen::Index stride, const double* const* columns, Eigen::Index T);
-void toColumns(double* columns, Eigen::Index columnStride, const double* rows, Eigen::Index stride, Eigen::Index count, Eigen::Index T);
+void toRows(double* rows, const double* const* columns, Eigen::Index T);
+void toColumns(double* columns, Eigen::Index columnStride, const double* rows, Eigen::Index count, Eigen::Index T);
 
 /// The cells of a fractional integral (see FractionalIntegrator) and its past, for P parameters side by side: z_k <- e_k z_k + sum_j b_kj v_j,
 /// held <- sum_k R_k e_k z_k + d_1 v_0 + d_2 v_1 + d_3 v_2. @param z  [cell][parameter] @param weight  b, column after column @param v  newest first

@@ -144,20 +144,20 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
 {
     const auto N = input.rows(), P = parameters();
     auto along = room();
-    // Columns of a row side by side, padded to whole lanes; then those of the initial state.
+    // Eight columns of a row side by side are a lane: one stretch of memory, [time][column]. Last those of the initial state.
     std::vector<Group> groups = groups_;
     groups.push_back({-1, P, n_});
-    std::vector<Index> place;
-    Index width = 0;
+    std::vector<Index> place;   // the first lane of a group
+    Index lanesInAll = 0;
     for (const auto& group : groups) {
-        place.push_back(width);
-        width += padded(group.count, abreast);
+        place.push_back(lanesInAll);
+        lanesInAll += (group.count + abreast - 1) / abreast;
     }
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    RowMajor regressors = RowMajor::Zero(stretch, width), J = RowMajor::Zero(stretch * p_, width);
-    MatrixXd X = MatrixXd::Zero(abreast * std::max<Index>(n_, 1), width / abreast), scratch(abreast, std::max<Index>(n_, 1));
+    const auto source = regressorLanes(groups, place);
+    MatrixXd regressors = MatrixXd::Zero(abreast * stretch, lanesInAll), J = MatrixXd::Zero(abreast * stretch, p_ * lanesInAll);
+    MatrixXd X = MatrixXd::Zero(abreast * std::max<Index>(n_, 1), lanesInAll), scratch(abreast, std::max<Index>(n_, 1));
     for (Index i = 0; i < n_; ++i)
-        X(abreast * i + i % abreast, (place.back() + i) / abreast) = 1.0;
+        X(abreast * i + i % abreast, place.back() + i / abreast) = 1.0;
     MatrixXd gains = MatrixXd::Zero(n_, static_cast<Index>(groups.size()));
     for (std::size_t g = 0; g + 1 < groups.size(); ++g) {
         if (groups[g].row < n_)
@@ -173,37 +173,57 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
         const double* G = M + n_ * n_ * pitch;
         for (std::size_t g = 0; g < groups.size(); ++g) {
             const auto& group = groups[g];
-            const bool initial = group.row < 0;
-            if (!initial)
-                for (Index c = 0; c < padded(group.count, abreast); c += abreast) {
+            const bool initial = group.row < 0, ofOutput = group.row >= n_;
+            for (Index c = 0; c < group.count; c += abreast) {
+                const Index lane = place[g] + c / abreast;
+                double* r = regressors.col(source[g] + c / abreast).data();
+                if (!initial && source[g] == place[g]) {
                     const double* from[abreast];
                     for (Index l = 0; l < abreast; ++l) {   // the last one again where there are no more
                         const auto regressor = columns_[static_cast<std::size_t>(group.first + std::min(c + l, group.count - 1))].regressor;
                         from[l] = along.values.col(nodeOf(regressor)).data();
                     }
-                    lanes::toRows(regressors.data() + place[g] + c, width, from, T);
+                    lanes::toRows(r, from, T);
                 }
-            if (!initial && group.row >= n_ && !guide) {
-                for (Index o = 0; o < p_; ++o)
-                    J.block(o * stretch, place[g], T, group.count).setZero();
-            } else if (n_ > 0)
-                for (Index c = 0; c < padded(group.count, abreast); c += abreast)
-                    lanes::columnsThroughBlock(n_, M, G, p_, regressors.data() + place[g] + c, width, gains.col(static_cast<Index>(g)).data(),
-                                        !initial && group.row < n_ ? group.row : -1, X.col((place[g] + c) / abreast).data(), scratch.data(),
-                                        J.data() + place[g] + c, width, stretch * width, T);
-            if (!initial && group.row >= n_)
-                J.block((group.row - n_) * stretch, place[g], T, group.count) += regressors.block(0, place[g], T, group.count);
+                // What the initial state moves dies away, and numbers below the normal ones are slow.
+                const bool gone = initial && X.col(lane).cwiseAbs().maxCoeff() < 1e-150;
+                if (gone || (ofOutput && !guide))
+                    for (Index o = 0; o < p_; ++o)
+                        J.col(o * lanesInAll + lane).setZero();
+                else if (n_ > 0)
+                    lanes::columnsThroughBlock(n_, M, G, p_, r, gains.col(static_cast<Index>(g)).data(), initial || ofOutput ? -1 : group.row,
+                                               X.col(lane).data(), scratch.data(), J.col(lane).data(), J.rows() * lanesInAll, T);
+                if (ofOutput)
+                    J.col((group.row - n_) * lanesInAll + lane) += regressors.col(source[g] + c / abreast);
+            }
         }
         for (Index o = 0; o < p_; ++o) {
             auto& target = derivatives[static_cast<std::size_t>(o)];
             target.resize(T, P + n_);
             for (std::size_t g = 0; g < groups.size(); ++g)
                 for (Index c = 0; c < groups[g].count; c += abreast)
-                    lanes::toColumns(target.data() + (groups[g].first + c) * T, T, J.data() + o * stretch * width + place[g] + c, width,
-                              std::min(abreast, groups[g].count - c), T);
+                    lanes::toColumns(target.data() + (groups[g].first + c) * T, T, J.col(o * lanesInAll + place[g] + c / abreast).data(),
+                                     std::min(abreast, groups[g].count - c), T);
         }
         take(first, derivatives);
     }
+}
+
+/// Rows with the same regressors share them: for each group the first lane that holds its own.
+std::vector<Index> Recursion::regressorLanes(const std::vector<Group>& groups, const std::vector<Index>& place) const
+{
+    auto source = place;
+    const auto alike = [&](const Group& a, const Group& b) {
+        const auto column = columns_.begin();
+        return a.count == b.count
+            && std::equal(column + a.first, column + a.first + a.count, column + b.first,
+                          [](const Column& x, const Column& y) { return x.regressor == y.regressor; });
+    };
+    for (std::size_t g = 1; g + 1 < groups.size(); ++g)   // not those of the initial state, which have none
+        for (std::size_t h = g; h-- > 0;)
+            if (alike(groups[h], groups[g]))
+                source[g] = source[h];
+    return source;
 }
 
 VectorXd Recursion::pullBack(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const MatrixXd& weights, const Guide* guide) const

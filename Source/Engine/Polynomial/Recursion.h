@@ -71,6 +71,8 @@ private:
         Eigen::Index row, first, count;
     };
 
+    std::vector<Eigen::Index> regressorLanes(const std::vector<Group>&, const std::vector<Eigen::Index>& place) const;
+
     Eigen::Index n_, m_, p_;
     std::vector<Column> columns_;
     std::vector<Group> groups_;
