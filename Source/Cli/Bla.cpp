@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 struct BlaArguments {
     std::string take, output, out;
     int level = -1;
-    int segment = 8192;
+    int segment = 0;
 };
 
 /// What one verb run found: the response, and the rows and fields that only one of the two estimators has.
@@ -251,7 +251,7 @@ void addBla(CLI::App& app, Terminal& terminal)
     verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
     verb->add_option("--output", options->output, "the channel to explain; by default the first beside the input");
-    verb->add_option("--segment", options->segment, "samples of a segment, for a take without periods")->capture_default_str();
+    verb->add_option("--segment", options->segment, "samples of a segment, for a take without periods; by default 8192, less where the record is short");
     verb->add_option("--out", options->out, "also write a .csv, .frd, .zma (of --output current) or .json")->type_name("FILE");
     verb->callback([options, &terminal] { run(*options, terminal); });
 }

@@ -220,7 +220,7 @@ void addPnlss(CLI::App& app, Terminal& terminal)
     verb->add_flag("--offset", o->offset, "also constants in both equations, for sensors with an offset");
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
     verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
-    verb->add_option("--iterations", o->iterations, "at most")->capture_default_str()->check(CLI::Range(1, 10000));
+    verb->add_option("--iterations", o->iterations, "at most, of each of the ways that are tried")->capture_default_str()->check(CLI::Range(1, 10000));
     verb->add_option("--model", o->model, "judge this model, which was kept, instead of fitting one")->type_name("FILE");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->add_option("--played", o->played, "also write the take as the model plays it")->type_name("DIR");

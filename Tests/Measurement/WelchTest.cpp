@@ -77,10 +77,35 @@ TEST_CASE("options that make no sense carry a reason")
 {
     CHECK(WelchOptions {}.isValid(100000));
     std::string reason;
-    CHECK_FALSE(WelchOptions {}.isValid(10000, &reason));
-    CHECK(reason.find("8192") != std::string::npos);
+    CHECK_FALSE(WelchOptions {}.isValid(100, &reason));
+    CHECK(reason.find("two segments of 64") != std::string::npos);
     CHECK_FALSE(WelchOptions {.segment = 3}.isValid(100000));
     CHECK_FALSE(WelchOptions {.overlap = std::nan("")}.isValid(100000));
     const std::vector<double> x(100, 1.0);
     CHECK_THROWS_AS(welch(x, x, 1.0, {}), Error);
+}
+
+TEST_CASE("Segments are as long as the record allows, unless their length is given")
+{
+    CHECK(segmentFor(131072, 4) == 8192);
+    CHECK(segmentFor(32768, 4) == 8192);
+    CHECK(segmentFor(32767, 4) == 4096);
+    CHECK(segmentFor(4096, 4) == 1024);
+    CHECK(segmentFor(100, 4) == 64);
+    CHECK(segmentFor(20000, 16, 16384, 1024) == 1024);
+    CHECK(segmentFor(100, 16, 16384, 1024) == 1024);
+    std::string reason;
+    CHECK(WelchOptions {}.isValid(128, &reason));
+    CHECK_FALSE(WelchOptions {}.isValid(127, &reason));
+    CHECK(reason.find("127 samples, fewer than two segments of 64") != std::string::npos);
+
+    std::vector<double> u(4096), y(4096);
+    for (std::size_t k = 0; k < u.size(); ++k) {
+        u[k] = std::sin(static_cast<double>(k * k % 997));
+        y[k] = 3.0 * u[k];
+    }
+    const auto result = welch(u, y, 1000.0);
+    CHECK(result.frf.frequency.size() == 511);
+    CHECK(result.segments == 7);
+    CHECK(std::abs(result.frf.value[100] - 3.0) < 1e-12);
 }

@@ -317,7 +317,7 @@ TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the os
     Vector2d beside = begin + Vector2d(1e-6, 0.0);
     const VectorXd again = positions(flow, beside, u, T, 4);
     CAPTURE(fit.estimationDb, own, found, missed(y, played, 0, 500), missed(y, played, 50000, 100000), apart(y, played), apart(y, again));
-    CHECK(fit.estimationDb < -90.0);
+    CHECK(fit.estimationDb < -85.0);
     CHECK_FALSE(fit.stable);   // at rest it is not: it runs into its cycle
     CHECK(own > 0.05);
     CHECK(found == Approx(own).epsilon(0.15));

@@ -21,7 +21,6 @@ public:
 
     double cost(const VectorXd& v) override
     {
-        ++costs;
         return v[0] > 3.0 ? std::numeric_limits<double>::infinity() : error(v).squaredNorm();
     }
 
@@ -40,8 +39,6 @@ public:
             return {};
         return jacobian(v).transpose() * Eigen::Vector2d(-2.0 * b_ * step[0] * step[0], 0.0);
     }
-
-    int costs = 0;
 
 private:
     VectorXd error(const VectorXd& v) const { return Eigen::Vector2d(b_ * (v[1] - v[0] * v[0]), 1.0 - v[0]); }

@@ -56,9 +56,7 @@ public:
         const auto& u = *take_.find(input);
         const auto& y = *take_.find(output);
         WelchOptions options;
-        options.segment = 16384;
-        while (options.segment > 1024 && u.samples.size() < 16 * static_cast<std::size_t>(options.segment))
-            options.segment /= 2;
+        options.segment = segmentFor(u.samples.size(), 16, 16384, 1024);
         if (!options.isValid(u.samples.size()))
             return {};
         return welch(u.samples, y.samples, take_.sampleRate, options).frf;

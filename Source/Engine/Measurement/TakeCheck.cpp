@@ -20,9 +20,7 @@ bool isCoherent(const Measurement& take, const Channel& channel, std::vector<Pro
     if (&channel == &input)
         return true;
     WelchOptions options;
-    options.segment = 4096;
-    while (options.segment > 64 && input.samples.size() < 32 * static_cast<std::size_t>(options.segment))
-        options.segment /= 2;
+    options.segment = segmentFor(input.samples.size(), 32, 4096);
     if (!options.isValid(input.samples.size()))
         return true;
     const auto spectra = welch(input.samples, channel.samples, take.sampleRate, options);

@@ -52,8 +52,17 @@ double independentAverages(const std::vector<double>& window, std::size_t hop, i
 
 } // namespace
 
+int segmentFor(std::size_t length, int count, int longest, int shortest)
+{
+    while (longest / 2 >= shortest && length < static_cast<std::size_t>(count) * static_cast<std::size_t>(longest))
+        longest /= 2;
+    return longest;
+}
+
 bool WelchOptions::isValid(std::size_t length, std::string* reason) const
 {
+    if (segment == 0)
+        return WelchOptions {segmentFor(length, 4), overlap, hann}.isValid(length, reason);
     if (segment < 16)
         return refuse(reason, "A segment needs at least 16 samples, not " + std::to_string(segment) + ".");
     if (!(overlap >= 0.0 && overlap <= 0.9))
@@ -65,12 +74,15 @@ bool WelchOptions::isValid(std::size_t length, std::string* reason) const
 }
 
 WelchResult welch(std::span<const double> input, std::span<const double> output, double sampleRate,
-                  const WelchOptions& options)
+                  const WelchOptions& given)
 {
     if (input.size() != output.size())
         throw Error(Error::Kind::data, "The input and the output channel differ in length.");
-    if (std::string reason; !options.isValid(input.size(), &reason))
+    if (std::string reason; !given.isValid(input.size(), &reason))
         throw Error(Error::Kind::usage, reason);
+    auto options = given;
+    if (options.segment == 0)
+        options.segment = segmentFor(input.size(), 4);
 
     const auto N = static_cast<std::size_t>(options.segment);
     const auto hop = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround((1.0 - options.overlap) * options.segment)));

@@ -12,13 +12,17 @@ namespace excursion {
 
 /// How a record is cut into overlapping, windowed segments.
 struct WelchOptions {
-    int segment = 8192;      ///< samples; longer than the memory of the system, or the FRF is biased low at its peaks
+    /// Samples; longer than the memory of the system, or the FRF is biased low at its peaks. 0: segmentFor() four of them.
+    int segment = 0;
     double overlap = 0.5;    ///< share of a segment that the next one repeats, 0 .. 0.9
     bool hann = true;        ///< Hann window; otherwise rectangular, for segments that are periods
 
     /// Whether the options make sense for a record of `length` samples; if not, `reason` says why in a sentence.
     bool isValid(std::size_t length, std::string* reason = nullptr) const;
 };
+
+/// The longest segment, `longest` samples or a half, a quarter .. of them, of which `count` stand side by side in a record; at least `shortest`.
+int segmentFor(std::size_t length, int count, int longest = 8192, int shortest = 64);
 
 /// Cross-spectral estimates of an aperiodic record (Welch 1967; Bendat & Piersol 2010, 9.1 and 11.5). Segments have their
 /// mean removed. Spectra are one-sided densities in unit^2/Hz on lines 1 .. segment/2 - 1.

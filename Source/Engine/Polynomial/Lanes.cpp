@@ -148,8 +148,6 @@ void toRows(double* rows, const double* const* columns, Index T)
 EXCURSION_DISPATCH
 void toColumns(double* columns, Index columnStride, const double* rows, Index count, Index T)
 {
-    using Places = long long __attribute__((vector_size(32)));
-    constexpr Places even {0, 4, 2, 6}, odd {1, 5, 3, 7}, low {0, 1, 4, 5}, high {2, 3, 6, 7};
     const Index whole = T & ~Index {3};
     Index c = 0;
     for (; c + 4 <= count; c += 4) {   // four by four
@@ -159,12 +157,12 @@ void toColumns(double* columns, Index columnStride, const double* rows, Index co
         for (Index t = 0; t < whole; t += 4) {
             const double* from = rows + t * abreast + c;
             const auto row = [from](Index k) -> const Four& { return *reinterpret_cast<const Four*>(from + k * abreast); };
-            const Four a = __builtin_shuffle(row(0), row(1), even), b = __builtin_shuffle(row(0), row(1), odd);
-            const Four d = __builtin_shuffle(row(2), row(3), even), e = __builtin_shuffle(row(2), row(3), odd);
-            *reinterpret_cast<Four*>(target[0] + t) = __builtin_shuffle(a, d, low);
-            *reinterpret_cast<Four*>(target[1] + t) = __builtin_shuffle(b, e, low);
-            *reinterpret_cast<Four*>(target[2] + t) = __builtin_shuffle(a, d, high);
-            *reinterpret_cast<Four*>(target[3] + t) = __builtin_shuffle(b, e, high);
+            const Four a = __builtin_shufflevector(row(0), row(1), 0, 4, 2, 6), b = __builtin_shufflevector(row(0), row(1), 1, 5, 3, 7);
+            const Four d = __builtin_shufflevector(row(2), row(3), 0, 4, 2, 6), e = __builtin_shufflevector(row(2), row(3), 1, 5, 3, 7);
+            *reinterpret_cast<Four*>(target[0] + t) = __builtin_shufflevector(a, d, 0, 1, 4, 5);
+            *reinterpret_cast<Four*>(target[1] + t) = __builtin_shufflevector(b, e, 0, 1, 4, 5);
+            *reinterpret_cast<Four*>(target[2] + t) = __builtin_shufflevector(a, d, 2, 3, 6, 7);
+            *reinterpret_cast<Four*>(target[3] + t) = __builtin_shufflevector(b, e, 2, 3, 6, 7);
         }
         for (Index t = whole; t < T; ++t)
             for (Index k = 0; k < 4; ++k)

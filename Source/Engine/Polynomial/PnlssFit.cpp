@@ -24,29 +24,31 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Way {
     VectorXd values;
     double damping = 1.0, judgedDb = infinity;
-    int iterations = 0;
+    int iterations = 0;   // by simulation of the whole records
     PnlssFit fit;
 };
 
-/// The searches of one fit.
+/// The ways of one fit.
 class Fitting {
 public:
     Fitting(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options,
             const Progress& progress)
-        : start_(start), estimation_(estimation), validation_(validation), options_(options), progress_(progress), problem_(estimation, options, start)
+        : start_(start), estimation_(estimation), validation_(validation), options_(options), problem_(estimation, options, start)
     {
+        const double all = options.maximumIterations, guided = static_cast<double>(guidedIterations() * static_cast<int>(options.guideGains.size()));
+        const double most = options.search == PnlssSearch::plain    ? all
+                          : options.search == PnlssSearch::guided ? all + guided
+                          : options.search == PnlssSearch::grown  ? 2.0 * all
+                                                                  : 2.5 * all + guided;
         searching_.costTolerance = options.costTolerance;
         searching_.rankTolerance = options.rankTolerance;
-        searching_.begun = [this] {
-            const double share = iterations_++ / (2.5 * options_.maximumIterations);
-            progress_.at(std::min(share, 1.0), "fitting the polynomial model");
-        };
+        searching_.begun = [this, most, &progress] { progress.at(std::min(iterations_++ / most, 1.0), "fitting the polynomial model"); };
     }
 
-    int iterations() const { return iterations_; }
+    bool isFree() const { return problem_.parameters() > 0; }
 
     /// As far as the first simulation of the whole records.
-    Way begun(PnlssSearch search, int iterations)
+    Way led(PnlssSearch search, int iterations)
     {
         Way way;
         way.values = problem_.valuesOf(start_);
@@ -55,43 +57,48 @@ public:
         way.fit.estimationDb = way.fit.validationDb = infinity;
         searching_.accepted = {};
         if (search == PnlssSearch::guided)
-            guide(way, iterations);
+            guide(way);
         else if (search == PnlssSearch::grown)
             grow(way, iterations);
         way.damping = 1.0;
         return way;
     }
 
+    /// Whether it sets out from another place than the plain way.
+    bool leadsElsewhere(const Way& way) const { return way.values != problem_.valuesOf(start_); }
+
     /// On by simulation, until the way has this many iterations.
     Way simulated(Way way, int iterations)
     {
         problem_.guide(0.0, way.values);
-        if (!problem_.holdBack(way.values))
-            return way;
-        if (!way.fit.history.empty())
-            way.fit.history.pop_back();   // the search tells of its start
-        searching_.accepted = [&](const VectorXd& values, double cost) { judge(way, values, cost); };
-        const auto summary = go(problem_, way, std::max(1, iterations - way.iterations));
-        way.fit.reason = summary.reason;
-        way.fit.converged = summary.converged;
-        way.fit.stable = isStable(way.fit.model.linear) && std::isfinite(way.fit.estimationDb);
+        if (problem_.holdBack(way.values)) {
+            if (!way.fit.history.empty())
+                way.fit.history.pop_back();   // the search tells of its start
+            searching_.accepted = [&](const VectorXd& values, double cost) { judge(way, values, cost); };
+            const auto summary = go(problem_, way, iterations - way.iterations);
+            way.iterations += summary.iterations;
+            way.fit.reason = summary.reason;
+            way.fit.converged = summary.converged;
+            way.fit.stable = isStable(way.fit.model.linear) && std::isfinite(way.fit.estimationDb);
+        }
+        way.fit.iterations = iterations_;
         return way;
     }
 
 private:
-    /// Through all gains, each with its share of a quarter of the iterations: a stage only has to lead to the next.
-    void guide(Way& way, int iterations)
+    int guidedIterations() const { return std::max(3, options_.maximumIterations / 28); }
+
+    /// Through all gains, a few iterations each: a stage only has to lead to the next.
+    void guide(Way& way)
     {
         for (const double gain : options_.guideGains) {
             problem_.guide(gain, way.values);
-            const int share = std::max(3, iterations / (4 * static_cast<int>(options_.guideGains.size() + 1)));
             way.damping = 1.0;
             if (problem_.holdBack(way.values))
-                go(problem_, way, std::min(share, iterations - way.iterations));
+                go(problem_, way, guidedIterations());
         }
     }
 
-    /// On a part of the records, which costs little and is not counted.
     void grow(Way& way, int iterations)
     {
         std::vector<PnlssRecord> parts;
@@ -104,7 +111,6 @@ private:
         SimulationError part(parts, evenly, start_);
         if (part.holdBack(way.values))
             go(part, way, iterations);
-        way.iterations = 0;
     }
 
     SearchSummary go(SimulationError& problem, Way& way, int iterations)
@@ -114,8 +120,6 @@ private:
         auto summary = search(problem, way.values, searching_);
         way.values = summary.values;
         way.damping = summary.damping;
-        way.iterations += summary.iterations;
-        way.fit.iterations = way.iterations;
         return summary;
     }
 
@@ -138,7 +142,6 @@ private:
     const Pnlss& start_;
     const std::vector<PnlssRecord>&estimation_, &validation_;
     const PnlssFitOptions& options_;
-    const Progress& progress_;
     SimulationError problem_;
     SearchOptions searching_;
     int iterations_ = 0;
@@ -158,7 +161,7 @@ bool PnlssFitOptions::isValid(std::string* reason) const
         return refuse(reason, "the error that is enough must be a number of decibels");
     for (const double g : guideGains)
         if (!(g > 0.0 && g <= 1.0))
-            return refuse(reason, "the gains of a guided start must lie above 0 and not above 1");
+            return refuse(reason, "the gains of a guided search must lie above 0 and not above 1");
     if (lineWeights.size() != 0 && (!lineWeights.allFinite() || lineWeights.minCoeff() < 0.0 || lineWeights.maxCoeff() == 0.0))
         return refuse(reason, "weights of the spectrum must be at least 0, and not all 0");
     return true;
@@ -189,19 +192,24 @@ PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation
             && (!record.periodic || (record.input.rows() - record.skip) / 2 + 1 != options.lineWeights.size()))
             throw Error(Error::Kind::data, "Weights of the spectrum need periodic records, and as many numbers as a record has lines.");
     Fitting fitting(start, estimation, validation, options, progress);
-    const int all = options.maximumIterations;
-    const auto by = [&](PnlssSearch search, int iterations) { return fitting.simulated(fitting.begun(search, iterations), iterations); };
+    if (!fitting.isFree())
+        throw Error(Error::Kind::usage, "The model cannot be fitted: nothing of it is free.");
+    const int all = options.maximumIterations, half = (all + 1) / 2;
     if (options.search != PnlssSearch::any)
-        return by(options.search, all).fit;
-    const int half = (all + 1) / 2;
-    auto best = by(PnlssSearch::plain, half);
-    for (const auto search : {PnlssSearch::guided, PnlssSearch::grown})
-        if (best.judgedDb > options.enoughDb)
-            if (auto other = by(search, half); other.judgedDb < best.judgedDb)
-                best = std::move(other);
-    if (!best.fit.converged)
+        return fitting.simulated(fitting.led(options.search, all), all).fit;
+    auto best = fitting.simulated(fitting.led(PnlssSearch::plain, half), half);
+    for (const auto search : {PnlssSearch::guided, PnlssSearch::grown}) {
+        if (best.judgedDb <= options.enoughDb)
+            break;
+        auto way = fitting.led(search, half);
+        if (!fitting.leadsElsewhere(way))
+            continue;
+        way = fitting.simulated(std::move(way), half);
+        if (way.judgedDb < best.judgedDb)
+            best = std::move(way);
+    }
+    if (!best.fit.converged && best.iterations < all)
         best = fitting.simulated(std::move(best), all);
-    best.fit.iterations = fitting.iterations();
     return best.fit;
 }
 

@@ -187,10 +187,10 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                 }
                 // What the initial state moves dies away, and numbers below the normal ones are slow.
                 const bool gone = initial && X.col(lane).cwiseAbs().maxCoeff() < 1e-150;
-                if (gone || (ofOutput && !guide))
+                if (gone || n_ == 0 || (ofOutput && !guide))
                     for (Index o = 0; o < p_; ++o)
                         J.col(o * lanesInAll + lane).setZero();
-                else if (n_ > 0)
+                else
                     lanes::columnsThroughBlock(n_, M, G, p_, r, gains.col(static_cast<Index>(g)).data(), initial || ofOutput ? -1 : group.row,
                                                X.col(lane).data(), scratch.data(), J.col(lane).data(), J.rows() * lanesInAll, T);
                 if (ofOutput)

@@ -3,8 +3,10 @@
 
 #include "Engine/Linear/ThinSvd.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -27,7 +29,7 @@ public:
         const auto P = R.cols() - 1;
         scale_ = R.leftCols(P).colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
         svd_ = thinSvd(R.topLeftCorner(P, P) * scale_.asDiagonal());
-        s_ = (svd_.s.array() > rankTolerance * (P > 0 ? svd_.s[0] : 0.0)).select(svd_.s, 0.0);
+        s_ = (svd_.s.array() > rankTolerance * svd_.s[0]).select(svd_.s, 0.0);
         gradient_ = s_.cwiseProduct(svd_.U.transpose() * R.col(P).head(P));
     }
 
@@ -101,10 +103,11 @@ SearchSummary search(SearchProblem& problem, const VectorXd& start, const Search
         ++result.iterations;
         const Linearization linear(problem.factor(result.values), options.rankTolerance);
         Trial trial;
-        double lambda = result.damping / boldness;
+        // Below the square of the least singular value that counts, less damping changes nothing.
+        double lambda = std::max(result.damping / boldness, options.rankTolerance * options.rankTolerance);
         for (int attempt = 0; attempt < 64 && lambda < 1e6; ++attempt, lambda *= caution) {
             trial = straightOrBent(problem, {result.values, result.cost}, linear, lambda);
-            result.damping = std::max(lambda, 1e-30);
+            result.damping = lambda;
             if (trial.cost < result.cost)
                 break;
         }

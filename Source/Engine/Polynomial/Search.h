@@ -19,8 +19,8 @@ public:
     /// The triangular factor of [J, error] at the same scale (see TallQr), J = -d(error)/d(values).
     virtual Eigen::MatrixXd factor(const Eigen::VectorXd& values) = 0;
 
-    /// J^T e'' at the scale of factor(), e'' = d^2 error(values + h step) / dh^2: how the error bends along a step, as the parameters see it.
-    /// Empty where it is not known; the search then goes straight.
+    /// J^T e'' at the scale of factor(), e'' = d^2 error(values + h step) / dh^2 at the values of the last factor(): how the error bends along a step, as the
+    /// parameters see it. Empty where it is not known; the search then goes straight.
     virtual Eigen::VectorXd curvature(const Eigen::VectorXd& /*values*/, const Eigen::VectorXd& /*step*/) { return {}; }
 };
 

@@ -18,6 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double far = 1e12;   // no state of a model that follows a measurement goes there
 
 /// The gain L of the stationary Kalman filter x(t+1|t) of a linear model, process noise on all states in the proportion of their
 /// movement: by iterating Riccati's equation, which converges for an unstable A as well.
@@ -92,7 +93,7 @@ std::vector<VectorXd> SimulationError::initialStates(const VectorXd& values) con
 
 void SimulationError::guide(double strength, const VectorXd& values)
 {
-    bound_ = infinity;
+    bound_ = far;
     gain_.resize(0, 0);
     if (strength == 0.0)
         return;
@@ -105,7 +106,7 @@ void SimulationError::guide(double strength, const VectorXd& values)
 
 bool SimulationError::holdBack(const VectorXd& values)
 {
-    bound_ = 1e12;
+    bound_ = far;
     if (!std::isfinite(cost(values)))
         return false;
     bound_ = 1e3 * std::max(n_ > 0 ? movement().maxCoeff() : 0.0, 1e-300);
@@ -127,58 +128,60 @@ double SimulationError::cost(const Pnlss& model, const VectorXd& values)
 
 MatrixXd SimulationError::factor(const VectorXd& values)
 {
-        const auto model = modelAt(values);
-        cost(model, values);   // for the states
-        const auto P = recursion_.parameters(), all = parameters();
-        TallQr qr(all + 1);
-        for (std::size_t k = 0; k < records_.size(); ++k) {
-            const auto& record = records_[k];
-            const MatrixXd rest = judgedError(record, outputs_[k]);
-            const auto guide = guideOf(record);
-            const bool spectral = options_.lineWeights.size() != 0;
-            std::vector<MatrixXd> whole;   // for weights along the spectrum the record's Jacobian has to stand as a whole
-            if (spectral)
-                whole.assign(static_cast<std::size_t>(record.output.cols()), MatrixXd::Zero(rest.rows(), all + 1));
-            recursion_.differentiate(
-                model, record.input, states_[k],
-                [&](Index first, std::vector<MatrixXd>& derivatives) {
-                    for (Index o = 0; o < record.output.cols(); ++o) {
-                        auto& block = derivatives[static_cast<std::size_t>(o)];
-                        const Index drop = std::clamp<Index>(record.skip - first, 0, block.rows());
-                        const Index rows = block.rows() - drop;
-                        if (rows == 0)
-                            continue;
-                        MatrixXd part = MatrixXd::Zero(rows, all + 1);
-                        part.leftCols(P) = block.block(drop, 0, rows, P);
-                        if (options_.estimateInitialStates)
-                            part.middleCols(P + n_ * static_cast<Index>(k), n_) = block.block(drop, P, rows, n_);
-                        const Index at = first + drop - record.skip;
-                        part.col(all) = rest.col(o).segment(at, rows);
-                        if (spectral)
-                            whole[static_cast<std::size_t>(o)].middleRows(at, rows) = part;
-                        else
-                            qr.fold(part);
-                    }
-                },
-                guide ? &*guide : nullptr);
-            for (const auto& part : whole) {
-                MatrixXd filtered = weighted(part);
-                qr.fold(filtered);
-            }
+    const auto model = modelAt(values);
+    cost(model, values);   // for the states
+    linearStates_ = states_;
+    linearOutputs_ = outputs_;
+    const auto P = recursion_.parameters(), all = parameters();
+    const bool spectral = options_.lineWeights.size() != 0;
+    TallQr qr(all + 1);
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+        const auto& record = records_[k];
+        const auto N = record.output.rows();
+        const MatrixXd rest = judgedError(record, outputs_[k]);
+        const auto guide = guideOf(record);
+        std::vector<MatrixXd> whole;   // for weights along the spectrum the record's Jacobian has to stand as a whole
+        if (spectral)
+            whole.assign(static_cast<std::size_t>(record.output.cols()), MatrixXd::Zero(N, all));
+        recursion_.differentiate(
+            model, record.input, states_[k],
+            [&](Index first, std::vector<MatrixXd>& derivatives) {
+                for (std::size_t o = 0; o < derivatives.size(); ++o) {
+                    const auto& block = derivatives[o];
+                    MatrixXd columns = MatrixXd::Zero(block.rows(), all);
+                    columns.leftCols(P) = block.leftCols(P);
+                    if (options_.estimateInitialStates)
+                        columns.middleCols(P + n_ * static_cast<Index>(k), n_) = block.rightCols(n_);
+                    if (spectral)
+                        whole[o].middleRows(first, block.rows()) = columns;
+                    else
+                        foldJudged(qr, record, first, columns, rest.col(static_cast<Index>(o)));
+                }
+            },
+            guide ? &*guide : nullptr);
+        for (std::size_t o = 0; o < whole.size(); ++o) {
+            MatrixXd filtered(N - record.skip, all + 1);
+            filtered << weighted(whole[o].bottomRows(N - record.skip)), weighted(rest.col(static_cast<Index>(o)));
+            qr.fold(filtered);
         }
-        return qr.R();
+    }
+    return qr.R();
 }
 
 VectorXd SimulationError::curvature(const VectorXd& values, const VectorXd& step)
 {
-    constexpr double h = 0.1;   // of the step: small enough for the third derivative, far above rounding
-    const auto outputsAt = [&](const VectorXd& at, std::vector<MatrixXd>& outputs) {
-        const bool stays = std::isfinite(cost(at));
-        outputs = outputs_;
-        return stays;
+    constexpr double h = 0.1;   // of the step: fourth derivatives count for little
+    const auto goes = [&](const VectorXd& at) {
+        const auto model = modelAt(at);
+        for (std::size_t k = 0; k < records_.size(); ++k)
+            if (!run(model, at, k))
+                return false;
+        return true;
     };
-    std::vector<MatrixXd> ahead, behind;
-    if (!outputsAt(values + h * step, ahead) || !outputsAt(values - h * step, behind) || !std::isfinite(cost(values)))
+    if (!goes(values + h * step))
+        return {};
+    const auto ahead = outputs_;
+    if (!goes(values - h * step))
         return {};
     const auto model = modelAt(values);
     const auto P = recursion_.parameters();
@@ -188,9 +191,9 @@ VectorXd SimulationError::curvature(const VectorXd& values, const VectorXd& step
         const auto rows = record.output.rows() - record.skip;
         MatrixXd bend = MatrixXd::Zero(record.output.rows(), record.output.cols());
         // The weights are a symmetric filter: once for the error, once for the Jacobian.
-        bend.bottomRows(rows) = weighted(weighted((2.0 * outputs_[k] - ahead[k] - behind[k]).bottomRows(rows) / (h * h)));
+        bend.bottomRows(rows) = weighted(weighted((2.0 * linearOutputs_[k] - ahead[k] - outputs_[k]).bottomRows(rows) / (h * h)));
         const auto guide = guideOf(record);
-        const VectorXd part = recursion_.pullBack(model, record.input, states_[k], bend, guide ? &*guide : nullptr);
+        const VectorXd part = recursion_.pullBack(model, record.input, linearStates_[k], bend, guide ? &*guide : nullptr);
         sum.head(P) += part.head(P);
         if (options_.estimateInitialStates)
             sum.segment(P + n_ * static_cast<Index>(k), n_) += part.tail(n_);

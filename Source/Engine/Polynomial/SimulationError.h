@@ -53,7 +53,8 @@ private:
     double power_ = 0.0;
     double bound_ = std::numeric_limits<double>::infinity();
     Eigen::MatrixXd gain_;   // empty: not guided
-    std::vector<Eigen::MatrixXd> states_, outputs_;
+    std::vector<Eigen::MatrixXd> states_, outputs_;           // of the last simulation
+    std::vector<Eigen::MatrixXd> linearStates_, linearOutputs_;   // of that at which factor() made the error linear
 };
 
 } // namespace excursion

@@ -15,7 +15,7 @@ struct PnlssRecords {
 };
 
 /// What black-box models of one input and output are fitted to and judged by: the averaged period of every realization of one level, led in by
-/// 0.2 s of its own last samples or more, the last realization for validation; of a take without periods the last third.
+/// 0.2 s of its own last samples or more, the last realization for validation; of a take without periods the last third, led in by what comes before.
 /// @param level  index into Excitation::levels; below 0: the last
 /// Throws Error (data) as periodicExcitation() does.
 PnlssRecords recordsOf(const Measurement&, const Channel& input, const Channel& output, int level = -1);

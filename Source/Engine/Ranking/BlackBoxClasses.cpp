@@ -11,10 +11,14 @@
 #include "Engine/Polynomial/FractionalRecursion.h"
 #include "Engine/Polynomial/HammersteinFit.h"
 #include "Engine/Polynomial/NarxFit.h"
+#include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Polynomial/Recursion.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace excursion {
 namespace {
@@ -128,17 +132,31 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     if (data.records.noiseDb)
         fitting.enoughDb = *data.records.noiseDb + 3.0;
     PnlssFit best;
-    const auto error = [](const PnlssFit& f) { return std::isnan(f.validationDb) ? f.estimationDb : f.validationDb; };
-    // A pole that only the linear model needed may hold the search up, so a driver's three states are tried as well.
-    for (const int order : data.options.order > 0 || data.order == 3 ? std::vector {data.order} : std::vector {3, data.order}) {
-        if (best.model.linear.order() > 0 && error(best) < fitting.enoughDb)
-            break;
+    double least = std::numeric_limits<double>::infinity();
+    const auto attempt = [&](int order, PnlssSearch search, const Progress& part) {
+        if (least < fitting.enoughDb)
+            return;
         identifying.order = order;
+        fitting.search = search;
         auto fit = fitPnlss(withTerms(identify(data.response, identifying).model, data.options.degree), data.records.estimation, data.records.validation,
-                            fitting, progress);
-        if (best.model.linear.order() == 0 || error(fit) < error(best))
+                            fitting, part);
+        const double error = std::isnan(fit.validationDb) ? fit.estimationDb : fit.validationDb;
+        if (best.model.linear.order() == 0 || error < least) {
+            least = error;
             best = std::move(fit);
-    }
+        }
+    };
+    // A pole that only the linear model needed may hold the search up, so a driver's three states are tried as well.
+    std::vector<int> orders {data.order};
+    if (data.options.order == 0 && data.order != 3)
+        orders.push_back(3);
+    double done = 0.0;
+    for (const auto search : {PnlssSearch::plain, PnlssSearch::guided, PnlssSearch::grown})
+        for (const int order : orders) {
+            const double share = 1.0 / (3.0 * static_cast<double>(orders.size()));
+            attempt(order, search, progress.part(done, std::min(1.0, done + share)));
+            done += share;
+        }
     return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
             ofOrder("", best.model.linear.order(), data.options.degree), static_cast<int>(Recursion(best.model, true).parameters()), best.stable};
 }

@@ -5,10 +5,8 @@
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Measurement/Bla.h"
 #include "Engine/Measurement/FindExcitation.h"
-#include "Engine/Measurement/Periods.h"
 #include "Engine/Measurement/Welch.h"
 #include "Engine/Ranking/ModelClasses.h"
-#include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
