@@ -187,8 +187,7 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
         const auto start = startFor(options, data.take);
         PnlssFitOptions fitting;
         fitting.maximumIterations = options.iterations;
-        if (data.records.noiseDb)
-            fitting.enoughDb = *data.records.noiseDb + 1.0;
+        fitting.enoughDb = data.records.enoughDb();
         const auto fit = fitPnlss(start, estimation, validation, fitting, terminal.progress());
         outcome = {relativeErrorDb(start, validation.empty() ? estimation : validation), fit.estimationDb, fit.validationDb, fit.iterations, fit.stable,
                    fit.reason, fit.history, "", {}, {}};

@@ -115,6 +115,7 @@ TEST_CASE("Order 20 with a chosen list of monomials is fitted down to the noise,
             x *= 1.0 + 1e-4 * normal();
     const auto start = withTerms(linear, chosen);
     PnlssFitOptions options;
+    options.search = PnlssSearch::plain;
     options.maximumIterations = 14;
     const auto fit = fitPnlss(start, {estimation}, {validation}, options);
     CAPTURE(fit.iterations, fit.reason, fit.history, fit.estimationDb, fit.validationDb);

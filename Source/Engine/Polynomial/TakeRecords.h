@@ -12,6 +12,9 @@ namespace excursion {
 struct PnlssRecords {
     std::vector<PnlssRecord> estimation, validation;
     std::optional<double> noiseDb;   ///< of the averaged periods, by their scatter, relative to the output: the floor of every error; of several periods only
+
+    /// The error in dB that a fit may be content with: 3 dB above the noise; -200 where that is not known.
+    double enoughDb() const { return noiseDb ? *noiseDb + 3.0 : -200.0; }
 };
 
 /// What black-box models of one input and output are fitted to and judged by: the averaged period of every realization of one level, led in by

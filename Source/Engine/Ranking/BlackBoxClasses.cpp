@@ -129,8 +129,7 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     identifying.sampleRate = data.take.sampleRate;
     PnlssFitOptions fitting;
     fitting.maximumIterations = data.options.iterations;
-    if (data.records.noiseDb)
-        fitting.enoughDb = *data.records.noiseDb + 3.0;
+    fitting.enoughDb = data.records.enoughDb();
     PnlssFit best;
     double least = std::numeric_limits<double>::infinity();
     const auto attempt = [&](int order, PnlssSearch search, const Progress& part) {
