@@ -2,6 +2,7 @@
 // Duffing's and Van der Pol's oscillators (seed 4.1.3), integrated here by Runge and Kutta's rule, as polynomial state-space models.
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Linear/Problem.h"
+#include "Polynomial/RungeKutta.h"
 
 #include <Eigen/Cholesky>
 
@@ -33,17 +34,6 @@ Flow duffing()
 Flow vanDerPol(double epsilon)
 {
     return [epsilon](const Vector2d& z, double u) { return Vector2d(z[1], u - z[0] + epsilon * (1.0 - z[0] * z[0]) * z[1]); };
-}
-
-/// One sample of a held input, in steps of order 4.
-Vector2d advanced(const Flow& flow, Vector2d z, double u, double T, int steps)
-{
-    const double h = T / steps;
-    for (int k = 0; k < steps; ++k) {
-        const Vector2d a = flow(z, u), b = flow(z + 0.5 * h * a, u), c = flow(z + 0.5 * h * b, u), d = flow(z + h * c, u);
-        z += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
-    }
-    return z;
 }
 
 /// Positions at the samples of an input; the state goes on.

@@ -59,17 +59,18 @@ int segmentFor(std::size_t length, int count, int longest, int shortest)
     return longest;
 }
 
+int WelchOptions::segmentOf(std::size_t length) const { return segment == 0 ? segmentFor(length, 4) : segment; }
+
 bool WelchOptions::isValid(std::size_t length, std::string* reason) const
 {
-    if (segment == 0)
-        return WelchOptions {segmentFor(length, 4), overlap, hann}.isValid(length, reason);
-    if (segment < 16)
-        return refuse(reason, "A segment needs at least 16 samples, not " + std::to_string(segment) + ".");
+    const int N = segmentOf(length);
+    if (N < 16)
+        return refuse(reason, "A segment needs at least 16 samples, not " + std::to_string(N) + ".");
     if (!(overlap >= 0.0 && overlap <= 0.9))
         return refuse(reason, "The overlap must lie in 0 .. 0.9.");
-    if (length < 2 * static_cast<std::size_t>(segment))
+    if (length < 2 * static_cast<std::size_t>(N))
         return refuse(reason, "The record has " + std::to_string(length) + " samples, fewer than two segments of "
-                      + std::to_string(segment) + "; choose a shorter segment.");
+                      + std::to_string(N) + "; choose a shorter segment.");
     return true;
 }
 
@@ -81,8 +82,7 @@ WelchResult welch(std::span<const double> input, std::span<const double> output,
     if (std::string reason; !given.isValid(input.size(), &reason))
         throw Error(Error::Kind::usage, reason);
     auto options = given;
-    if (options.segment == 0)
-        options.segment = segmentFor(input.size(), 4);
+    options.segment = given.segmentOf(input.size());
 
     const auto N = static_cast<std::size_t>(options.segment);
     const auto hop = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround((1.0 - options.overlap) * options.segment)));

@@ -12,10 +12,12 @@ namespace excursion {
 
 /// How a record is cut into overlapping, windowed segments.
 struct WelchOptions {
-    /// Samples; longer than the memory of the system, or the FRF is biased low at its peaks. 0: segmentFor() four of them.
-    int segment = 0;
+    int segment = 0;         ///< samples; longer than the memory of the system, or the FRF is biased low at its peaks. 0: by the record, see segmentOf()
     double overlap = 0.5;    ///< share of a segment that the next one repeats, 0 .. 0.9
     bool hann = true;        ///< Hann window; otherwise rectangular, for segments that are periods
+
+    /// `segment`, or where that is 0 the longest of at most 8192 samples of which four stand side by side in a record of `length` samples.
+    int segmentOf(std::size_t length) const;
 
     /// Whether the options make sense for a record of `length` samples; if not, `reason` says why in a sentence.
     bool isValid(std::size_t length, std::string* reason = nullptr) const;

@@ -61,11 +61,11 @@ double BlockError::cost(const VectorXd& values)
 {
     const auto model = modelAt(values);
     if (!isStable(model.linear))
-        return std::numeric_limits<double>::infinity();
+        return ranAway;
     double sum = 0.0;
     for (const auto& record : records_)
         sum += judgedError(record, simulate(model, record.input)).squaredNorm();
-    return std::isfinite(sum) ? sum / power_ : std::numeric_limits<double>::infinity();
+    return std::isfinite(sum) ? sum / power_ : ranAway;
 }
 
 MatrixXd BlockError::factor(const VectorXd& values)

@@ -47,10 +47,10 @@ public:
         double sum = 0.0;
         for (std::size_t k = 0; k < records_.size(); ++k) {
             if (!recursion_.run(model, inputs_[k], bound_, runs_[k]))
-                return std::numeric_limits<double>::infinity();
+                return ranAway;
             sum += judgedError(records_[k], runs_[k].output).squaredNorm();
         }
-        return std::isfinite(sum) ? sum / power_ : std::numeric_limits<double>::infinity();
+        return std::isfinite(sum) ? sum / power_ : ranAway;
     }
 
     MatrixXd factor(const VectorXd& values) override

@@ -110,7 +110,7 @@ public:
         double sum = 0.0;
         for (std::size_t k = 0; k < records_.size(); ++k) {
             if (recursion_.run(values, records_[k].input.col(0), bound_, outputs_[k]) < records_[k].output.rows())
-                return nowhere;
+                return ranAway;
             sum += judgedError(records_[k], outputs_[k]).squaredNorm();
         }
         return sum / power_;

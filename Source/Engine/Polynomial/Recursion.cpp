@@ -151,7 +151,7 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
     Index lanesInAll = 0;
     for (const auto& group : groups) {
         place.push_back(lanesInAll);
-        lanesInAll += (group.count + abreast - 1) / abreast;
+        lanesInAll += padded(group.count, abreast) / abreast;
     }
     const auto source = regressorLanes(groups, place);
     MatrixXd regressors = MatrixXd::Zero(abreast * stretch, lanesInAll), J = MatrixXd::Zero(abreast * stretch, p_ * lanesInAll);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace excursion {
@@ -15,7 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double nowhere = std::numeric_limits<double>::infinity();
 constexpr double boldness = 1000.0;    // by which the damping falls with a step that is taken
 const double caution = std::sqrt(10.0);   // by which it rises with one that is not
 constexpr double hopeless = 1e3;      // times the cost: no bend makes up for that
@@ -56,12 +54,12 @@ private:
 
 struct Trial {
     VectorXd values;
-    double cost = nowhere;
+    double cost = SearchProblem::ranAway;
 };
 
 Trial tried(SearchProblem& problem, VectorXd values)
 {
-    const double cost = values.allFinite() ? problem.cost(values) : nowhere;
+    const double cost = values.allFinite() ? problem.cost(values) : SearchProblem::ranAway;
     return {std::move(values), cost};
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <limits>
 #include <string>
 
 namespace excursion {
@@ -13,7 +14,9 @@ class SearchProblem {
 public:
     virtual ~SearchProblem() = default;
 
-    /// |error|^2, relative to what is to be explained; infinite where the simulation runs away.
+    static constexpr double ranAway = std::numeric_limits<double>::infinity();
+
+    /// |error|^2, relative to what is to be explained; `ranAway` where the simulation does.
     virtual double cost(const Eigen::VectorXd& values) = 0;
 
     /// The triangular factor of [J, error] at the same scale (see TallQr), J = -d(error)/d(values).

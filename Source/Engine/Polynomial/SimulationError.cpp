@@ -17,7 +17,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double far = 1e12;   // no state of a model that follows a measurement goes there
 
 /// The gain L of the stationary Kalman filter x(t+1|t) of a linear model, process noise on all states in the proportion of their
@@ -117,19 +116,28 @@ double SimulationError::cost(const VectorXd& values) { return cost(modelAt(value
 
 double SimulationError::cost(const Pnlss& model, const VectorXd& values)
 {
+    if (!play(model, values))
+        return ranAway;
     double sum = 0.0;
-    for (std::size_t k = 0; k < records_.size(); ++k) {
-        if (!run(model, values, k))
-            return infinity;
+    for (std::size_t k = 0; k < records_.size(); ++k)
         sum += weighted(judgedError(records_[k], outputs_[k])).squaredNorm();
+    return std::isfinite(sum) ? sum / power_ : ranAway;
+}
+
+bool SimulationError::play(const Pnlss& model, const VectorXd& values)
+{
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+        const auto guide = guideOf(records_[k]);
+        if (!recursion_.run(model, records_[k].input, initialState(values, k), bound_, states_[k], outputs_[k], guide ? &*guide : nullptr))
+            return false;
     }
-    return std::isfinite(sum) ? sum / power_ : infinity;
+    return true;
 }
 
 MatrixXd SimulationError::factor(const VectorXd& values)
 {
     const auto model = modelAt(values);
-    cost(model, values);   // for the states
+    play(model, values);
     linearStates_ = states_;
     linearOutputs_ = outputs_;
     const auto P = recursion_.parameters(), all = parameters();
@@ -171,17 +179,11 @@ MatrixXd SimulationError::factor(const VectorXd& values)
 VectorXd SimulationError::curvature(const VectorXd& values, const VectorXd& step)
 {
     constexpr double h = 0.1;   // of the step: fourth derivatives count for little
-    const auto goes = [&](const VectorXd& at) {
-        const auto model = modelAt(at);
-        for (std::size_t k = 0; k < records_.size(); ++k)
-            if (!run(model, at, k))
-                return false;
-        return true;
-    };
-    if (!goes(values + h * step))
+    const VectorXd forth = values + h * step, back = values - h * step;
+    if (!play(modelAt(forth), forth))
         return {};
     const auto ahead = outputs_;
-    if (!goes(values - h * step))
+    if (!play(modelAt(back), back))
         return {};
     const auto model = modelAt(values);
     const auto P = recursion_.parameters();
@@ -217,12 +219,6 @@ std::optional<Recursion::Guide> SimulationError::guideOf(const PnlssRecord& reco
     if (gain_.size() == 0)
         return std::nullopt;
     return Recursion::Guide {gain_, &record.output};
-}
-
-bool SimulationError::run(const Pnlss& model, const VectorXd& values, std::size_t k)
-{
-    const auto guide = guideOf(records_[k]);
-    return recursion_.run(model, records_[k].input, initialState(values, k), bound_, states_[k], outputs_[k], guide ? &*guide : nullptr);
 }
 
 /// Columns through the weights of the spectrum; their sum of squares is the weighted power (Parseval).

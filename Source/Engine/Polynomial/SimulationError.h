@@ -39,7 +39,7 @@ public:
 
 private:
     double cost(const Pnlss&, const Eigen::VectorXd& values);
-    bool run(const Pnlss&, const Eigen::VectorXd& values, std::size_t record);
+    bool play(const Pnlss&, const Eigen::VectorXd& values);   // all records; false where the model runs away
     Eigen::VectorXd initialState(const Eigen::VectorXd& values, std::size_t record) const;
     Eigen::VectorXd movement() const;   // of the last cost(), rms of each state
     Eigen::MatrixXd weighted(const Eigen::MatrixXd& columns) const;

@@ -15,25 +15,16 @@ Eigen::MatrixXd columnOf(std::span<const double> samples)
     return Eigen::Map<const Eigen::VectorXd>(samples.data(), static_cast<Eigen::Index>(samples.size()));
 }
 
-/// Of the mean of each realization's periods: the variance of that mean over its power.
-std::optional<double> noiseOf(const Measurement& take, const Channel& output, int level)
+/// Of all periods of a realization around their mean, summed.
+double scatterOf(const Measurement& take, const Channel& output, int level, int realization, const std::vector<double>& mean)
 {
-    const auto& excitation = *take.excitation;
-    if (excitation.periods < 2)
-        return std::nullopt;
-    double scatter = 0.0, power = 0.0;
-    for (int r = 0; r < excitation.realizations; ++r) {
-        const auto mean = averagePeriod(take, output, level, r);
-        for (const double y : mean)
-            power += y * y;
-        for (int p = 0; p < excitation.periods; ++p) {
-            const auto period = onePeriod(take, output, level, r, p);
-            for (std::size_t t = 0; t < mean.size(); ++t)
-                scatter += std::pow(period[t] - mean[t], 2);
-        }
+    double scatter = 0.0;
+    for (int p = 0; p < take.excitation->periods; ++p) {
+        const auto period = onePeriod(take, output, level, realization, p);
+        for (std::size_t t = 0; t < mean.size(); ++t)
+            scatter += std::pow(period[t] - mean[t], 2);
     }
-    const double P = excitation.periods;
-    return decibelsOf(scatter / (P * (P - 1.0)) / power);
+    return scatter;
 }
 
 } // namespace
@@ -53,12 +44,17 @@ PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Chan
     // Long enough for the slowest pole of a loudspeaker, which a few thousand samples at a high rate are not.
     const auto before = std::max<Eigen::Index>(std::min(excitation.period, 4096), std::lround(0.2 * take.sampleRate));
     const int level = wantedLevel >= 0 ? wantedLevel : static_cast<int>(excitation.levels.size()) - 1;
+    double scatter = 0.0, power = 0.0;
     for (int r = 0; r < excitation.realizations; ++r) {
-        const auto record = periodicRecord(columnOf(averagePeriod(take, input, level, r)), columnOf(averagePeriod(take, output, level, r)), before);
+        const auto mean = averagePeriod(take, output, level, r);
+        scatter += scatterOf(take, output, level, r, mean);
+        power += columnOf(mean).squaredNorm();
+        const auto record = periodicRecord(columnOf(averagePeriod(take, input, level, r)), columnOf(mean), before);
         const bool last = excitation.realizations > 1 && r + 1 == excitation.realizations;
         (last ? records.validation : records.estimation).push_back(record);
     }
-    records.noiseDb = noiseOf(take, output, level);
+    if (const double P = excitation.periods; P > 1.0)
+        records.noiseDb = decibelsOf(scatter / (P * (P - 1.0)) / power);   // the variance of the means over their power
     return records;
 }
 

@@ -132,13 +132,11 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     fitting.enoughDb = data.records.enoughDb();
     PnlssFit best;
     double least = std::numeric_limits<double>::infinity();
-    const auto attempt = [&](int order, PnlssSearch search, const Progress& part) {
+    const auto attempt = [&](const Pnlss& start, PnlssSearch search, const Progress& part) {
         if (least < fitting.enoughDb)
             return;
-        identifying.order = order;
         fitting.search = search;
-        auto fit = fitPnlss(withTerms(identify(data.response, identifying).model, data.options.degree), data.records.estimation, data.records.validation,
-                            fitting, part);
+        auto fit = fitPnlss(start, data.records.estimation, data.records.validation, fitting, part);
         const double error = std::isnan(fit.validationDb) ? fit.estimationDb : fit.validationDb;
         if (best.model.linear.order() == 0 || error < least) {
             least = error;
@@ -149,11 +147,16 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     std::vector<int> orders {data.order};
     if (data.options.order == 0 && data.order != 3)
         orders.push_back(3);
+    std::vector<Pnlss> starts;
+    for (const int order : orders) {
+        identifying.order = order;
+        starts.push_back(withTerms(identify(data.response, identifying).model, data.options.degree));
+    }
     double done = 0.0;
     for (const auto search : {PnlssSearch::plain, PnlssSearch::guided, PnlssSearch::grown})
-        for (const int order : orders) {
-            const double share = 1.0 / (3.0 * static_cast<double>(orders.size()));
-            attempt(order, search, progress.part(done, std::min(1.0, done + share)));
+        for (const auto& start : starts) {
+            const double share = 1.0 / (3.0 * static_cast<double>(starts.size()));
+            attempt(start, search, progress.part(done, std::min(1.0, done + share)));
             done += share;
         }
     return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
