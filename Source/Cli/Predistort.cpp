@@ -107,11 +107,11 @@ void run(const PredistortArguments& options, Terminal& terminal)
         const double after = options.fullScale * peakOf(bent.channels[c]);
         loudest = std::max(loudest, after);
         faults += meters.faults;
-        limited = limited || meters.displacementExcess > noticed || meters.voltageExcess > noticed;
+        limited = limited || meters.displacementReduction > noticed || meters.voltageReduction > noticed || meters.powerReduction > noticed;
         channels.push_back({{"peakIn", before}, {"peakOut", after}, {"displacement", meters.displacement},
-                            {"displacementExcess", meters.displacementExcess}, {"voltageExcess", meters.voltageExcess}, {"faults", meters.faults}});
+                            {"displacementReduction", meters.displacementReduction}, {"voltageReduction", meters.voltageReduction}, {"powerReduction", meters.powerReduction}, {"faults", meters.faults}});
         rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
-                        significant(1e3 * meters.displacement) + " mm", fixed(100.0 * meters.displacementExcess, 0) + " %", fixed(100.0 * meters.voltageExcess, 0) + " %"});
+                        significant(1e3 * meters.displacement) + " mm", fixed(meters.displacementReduction, 1) + " dB", fixed(meters.voltageReduction, 1) + " dB"});
     }
     DraftFile draft(options.out);
     writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);

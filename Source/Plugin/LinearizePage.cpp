@@ -120,8 +120,8 @@ void LinearizePage::tick()
     const auto meters = processor_.take();
     const double range = measuredDisplacement(processor_.model()), reach = std::isfinite(range) ? meters.displacement / range : 0.0;
     excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm" + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
-                    meters.displacementExcess > 1e-3);
-    voltage_.show(meters.voltage / processor_.parameters().recipe().voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageExcess > 1e-3);
+                    meters.displacementReduction > 0.01);
+    voltage_.show(meters.voltage / processor_.parameters().recipe().voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageReduction > 0.01);
     if (meters.faults > faults_)
         window_.tell("Something was not finite: the engine has started anew.", true);
     faults_ = meters.faults;

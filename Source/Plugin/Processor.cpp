@@ -143,9 +143,9 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
         if (auto* chain = channel.current()) {
             const auto meters = chain->take();
             displacement_.raise(std::max(meters.predistorter.displacement, meters.speaker.displacement));
-            displacementExcess_.raise(meters.predistorter.displacementExcess);
+            displacementReduction_.raise(meters.predistorter.displacementReduction);
             voltage_.raise(meters.predistorter.voltage);
-            voltageExcess_.raise(meters.predistorter.voltageExcess);
+            voltageReduction_.raise(meters.predistorter.voltageReduction);
             faults += meters.faults;
         }
     }
@@ -156,7 +156,7 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
 
 Processor::Meters Processor::take()
 {
-    return {displacement_.take(), displacementExcess_.take(), voltage_.take(), voltageExcess_.take(), faults_.load(std::memory_order_relaxed)};
+    return {displacement_.take(), displacementReduction_.take(), voltage_.take(), voltageReduction_.take(), faults_.load(std::memory_order_relaxed)};
 }
 
 void Processor::getStateInformation(juce::MemoryBlock& block)

@@ -41,9 +41,9 @@ public:
     /// Since the last call, over all channels.
     struct Meters {
         double displacement = 0.0;         ///< m, of the predistorter's plan or of the modelled speaker
-        double displacementExcess = 0.0;   ///< see Predistorter::Meters
+        double displacementReduction = 0.0;   ///< dB, see Predistorter::Meters
         double voltage = 0.0;              ///< V, of the predistorter
-        double voltageExcess = 0.0;
+        double voltageReduction = 0.0;
         int faults = 0;                    ///< of the chains that play now
     };
     Meters take();
@@ -87,7 +87,7 @@ private:
     std::atomic<double> measuredDisplacement_ {0.0};
     std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;   ///< changed only while no audio runs
     std::array<double, 256> block_ {};
-    Peak displacement_, displacementExcess_, voltage_, voltageExcess_;
+    Peak displacement_, displacementReduction_, voltage_, voltageReduction_;
     std::atomic<int> faults_ {0};
     std::condition_variable_any wake_;
     std::jthread worker_;

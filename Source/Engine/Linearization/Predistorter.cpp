@@ -69,9 +69,9 @@ double Predistorter::advance(double u)
     const double wanted = u + amount * (bent - u), out = softlimit::apply(wanted, now_.voltage);
     peak_.displacement = std::max(peak_.displacement, std::abs(motion.x));
     if (asked > std::abs(motion.x))
-        peak_.displacementExcess = std::max(peak_.displacementExcess, asked / std::abs(motion.x) - 1.0);
+        peak_.displacementReduction = std::max(peak_.displacementReduction, 20.0 * std::log10(asked / std::abs(motion.x)));
     if (std::abs(wanted) > std::abs(out))
-        peak_.voltageExcess = std::max(peak_.voltageExcess, wanted / out - 1.0);
+        peak_.voltageReduction = std::max(peak_.voltageReduction, 20.0 * std::log10(wanted / out));
     return out;
 }
 
@@ -147,20 +147,17 @@ void Predistorter::publish()
 {
     displacement_.raise(peak_.displacement);
     voltage_.raise(peak_.voltage);
-    displacementExcess_.raise(peak_.displacementExcess);
-    voltageExcess_.raise(peak_.voltageExcess);
+    power_.raise(peak_.power);
+    displacementReduction_.raise(peak_.displacementReduction);
+    voltageReduction_.raise(peak_.voltageReduction);
+    powerReduction_.raise(peak_.powerReduction);
     peak_ = {};
 }
 
 Predistorter::Meters Predistorter::take()
 {
-    Meters meters;
-    meters.displacement = displacement_.take();
-    meters.voltage = voltage_.take();
-    meters.displacementExcess = displacementExcess_.take();
-    meters.voltageExcess = voltageExcess_.take();
-    meters.faults = faults_.load(std::memory_order_relaxed);
-    return meters;
+    return {displacement_.take(), voltage_.take(), power_.take(), displacementReduction_.take(), voltageReduction_.take(), powerReduction_.take(),
+            faults_.load(std::memory_order_relaxed)};
 }
 
 } // namespace excursion

@@ -43,11 +43,11 @@ public:
 
     /// Since the last call of take(); may be read from another thread.
     struct Meters {
-        double displacement = 0.0;       ///< peak of what the driver is made to do, m
-        double voltage = 0.0;            ///< peak that came out, V
-        double displacementExcess = 0.0; ///< largest share by which the motion asked for exceeds the one allowed: 0: no limiting
-        double voltageExcess = 0.0;      ///< the same of the voltage
-        int faults = 0;                  ///< since construction
+        double displacement = 0.0;   ///< peak of a cone that was given the output, m
+        double voltage = 0.0;        ///< peak that came out, V
+        double power = 0.0;          ///< W, largest running mean of the coil's heat
+        double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;   ///< dB by which each limit has turned the signal down at most; 0: not at all
+        int faults = 0;              ///< since construction
     };
     Meters take();
 
@@ -71,7 +71,7 @@ private:
     double lastOut_ = 0.0, step_ = 0.0;   ///< the output; what is left of the step that a fault makes
     bool faulty_ = false;
     Meters peak_;
-    Peak displacement_, voltage_, displacementExcess_, voltageExcess_;
+    Peak displacement_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};
 };
 

@@ -22,8 +22,10 @@ bool LinearizationControls::isValid(std::string* reason) const
 {
     if (!(amount >= 0.0 && amount <= 1.0))
         return refuse(reason, "the amount must lie between 0 and 1");
-    if (!(displacementLimit > 0.0 && voltageLimit > 0.0))
+    if (!(displacementLimit > 0.0 && voltageLimit > 0.0 && powerLimit > 0.0))
         return refuse(reason, "a limit must be positive");
+    if (!(margin >= 0.0 && margin <= 0.3))
+        return refuse(reason, "the margin must lie between 0 and 0.3");
     return true;
 }
 

@@ -26,9 +26,13 @@ double measuredDisplacement(const Model&);
 /// What can be moved while a signal runs; it is followed smoothly.
 struct LinearizationControls {
     double amount = 1.0;   ///< 0: the signal as it is, 1: fully linearized
-    double displacementLimit = std::numeric_limits<double>::infinity();   ///< m
+    double displacementLimit = std::numeric_limits<double>::infinity();   ///< m, of the cone
     double voltageLimit = std::numeric_limits<double>::infinity();        ///< V, or N of a driver without a coil
+    double powerLimit = std::numeric_limits<double>::infinity();          ///< W, of the coil's heat, see averagingTime; a driver without a coil has none
+    double margin = 0.0;   ///< the limits hold for every driver whose parameters differ by no more than this share from the model's; 0 to 0.3
     bool isValid(std::string* reason) const;
+
+    static constexpr double averagingTime = 1.0;   ///< s: the heat is Re i^2, averaged by a low-pass of first order with this time constant
 };
 
 } // namespace excursion
