@@ -47,7 +47,7 @@ TEST_CASE("A chain does what its mode says, always as late", "[chain]")
     auto both = played(Mode::audition, u), apart = scaled(through(speaker, bent), gain);
     both.resize(both.size() - 200);   // `bent` ends where the signal does, and the second filter looks beyond that
     apart.resize(both.size());
-    CHECK(relativeError(both, apart) < 1e-9);
+    CHECK(relativeError(both, apart) < 1e-6);   // the chain stays at the higher rate in between; a filter is flat within 3e-6
 
     // Linearized, the speaker is a linear one; alone it is not.
     Speaker straight(linearPart(model), options);

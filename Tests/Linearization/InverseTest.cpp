@@ -5,7 +5,6 @@
 #include "Engine/Error.h"
 #include "Engine/Linearization/Inverse.h"
 #include "Engine/Linearization/Predistorter.h"
-#include "Engine/Linearization/SoftLimit.h"
 #include "Engine/Linearization/Speaker.h"
 
 #include <catch2/catch.hpp>
@@ -94,31 +93,6 @@ TEST_CASE("A driver without a coil is inverted from force to motion", "[lineariz
     const auto& x = channel(wanted, Quantity::displacement);
     CHECK(relativeError(channel(asIs, Quantity::displacement), x) > 0.03);
     CHECK(relativeError(channel(linearized, Quantity::displacement), x) < 1e-6);
-}
-
-TEST_CASE("A limited motion keeps derivatives that belong together and stays within its limit", "[linearization]")
-{
-    constexpr double limit = 2.5e-3, w = 2.0 * std::numbers::pi * 40.0, step = 1e-7;
-    const auto at = [](double t) {
-        MotionPoint point;
-        point.x = 4e-3 * std::sin(w * t);
-        point.v = 4e-3 * w * std::cos(w * t);
-        point.a = -w * w * point.x;
-        point.j = -w * w * point.v;
-        softlimit::apply(point, 1.0 / limit);
-        return point;
-    };
-    double largest = 0.0;
-    for (int n = 0; n < 400; ++n) {
-        const double t = n * 1e-4;
-        const auto before = at(t - step), here = at(t), after = at(t + step);
-        CHECK(here.v == Approx((after.x - before.x) / (2.0 * step)).epsilon(1e-5).margin(1e-7));
-        CHECK(here.a == Approx((after.v - before.v) / (2.0 * step)).epsilon(1e-5).margin(1e-3));
-        CHECK(here.j == Approx((after.a - before.a) / (2.0 * step)).epsilon(1e-4).margin(1.0));
-        largest = std::max(largest, std::abs(here.x));
-    }
-    CHECK(largest < limit);
-    CHECK(largest > 0.95 * limit);
 }
 
 TEST_CASE("The speaker in real time does what a simulation does", "[linearization]")

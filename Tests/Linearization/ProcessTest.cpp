@@ -109,7 +109,7 @@ TEST_CASE("An empty block is nothing", "[linearization]")
     CHECK(through(engine, u) == through(other, u));
 }
 
-TEST_CASE("A fault goes over into the plain signal without a step", "[linearization]")
+TEST_CASE("Around what is not finite there is silence, without a step", "[linearization]")
 {
     auto engine = predistorter();
     auto u = std::vector<double>(30000);
@@ -123,10 +123,9 @@ TEST_CASE("A fault goes over into the plain signal without a step", "[linearizat
         steepest = std::max(steepest, std::abs(dirty[n] - dirty[n - 1]));
         usual = std::max(usual, std::abs(u[n] - u[n - 1]));
     }
-    CHECK(steepest < 4.0 * usual);
-    // In between it is the signal as it was.
-    const auto place = static_cast<std::size_t>(15000 + 600);
-    CHECK(dirty[place] == Approx(u[place]).margin(0.02));
+    CHECK(steepest < 6.0 * usual);
+    CHECK(rms({dirty.begin() + 15400, dirty.begin() + 15800}) < 0.02);   // the cone has come to rest
+    CHECK(rms({dirty.end() - 4800, dirty.end()}) > 3.0);   // and it comes back
 }
 
 TEST_CASE("The amount goes from the signal as it is to all of the linearization", "[linearization]")

@@ -22,6 +22,11 @@ double sumOf(const std::vector<double>& weights, const double* values)
     return std::inner_product(weights.begin(), weights.end(), values, 0.0);
 }
 
+/// Down to what share of its value at rest the force per current is believed.
+constexpr double weakestShare = 0.1;
+/// A miss of the extrapolated current that is worth a second step, of the largest current.
+constexpr double unexpected = 1e-3;
+
 double byTime(const Tangent& t) { return t.v[0]; }
 double byCurrent(const Tangent& t) { return t.v[1]; }
 
@@ -65,7 +70,7 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
     }
     if (visited > 0.0)
         largestCurrent_ = 10.0 * visited;
-    leastForcePerCurrent_ = 0.1 * byCurrent(atRest.force);
+    forcePerCurrent_ = byCurrent(atRest.force);
 }
 
 void Inverse::reset()
@@ -74,19 +79,47 @@ void Inverse::reset()
         part.memory.reset();
     for (auto& part : curved_)
         part.memory.reset();
-    last_ = {};
-    current_ = before_ = slope_ = 0.0;
-    ahead_ = {};
+    now_ = past_ = {};
+    ease_ = 1.0;
 }
 
 double Inverse::step(const MotionPoint& to)
 {
-    const double extrapolated = to.i + 3.0 * (ahead_[0] - ahead_[1]) + ahead_[2];
+    past_ = now_;
+    const auto& ahead = now_.ahead;
+    const double extrapolated = to.i + 3.0 * (ahead[0] - ahead[1]) + ahead[2];
     const double guess = electrical_ ? std::clamp(extrapolated, -largestCurrent_, largestCurrent_) : 0.0;
-    const MotionCubic motion {Cubic::past(before_, current_, slope_ * period_, guess),
-                              Cubic::between(last_.x, last_.v * period_, to.x, to.v * period_),
-                              Cubic::between(last_.v, last_.a * period_, to.v, to.a * period_)};
-    last_ = to;
+    const double made = solve(to, guess);
+    if (std::abs(now_.current - guess) <= unexpected * largestCurrent_)
+        return made;
+    // An edge of the signal: what the extrapolation missed is too large for its square to be left.
+    const double found = now_.current;
+    takeBack();
+    return solve(to, found);
+}
+
+double Inverse::again(const MotionPoint& to)
+{
+    takeBack();
+    return step(to);
+}
+
+void Inverse::takeBack()
+{
+    for (auto& part : lagging_)
+        part.memory.stepBack();
+    for (auto& part : curved_)
+        part.memory.stepBack();
+    now_ = past_;
+}
+
+double Inverse::solve(const MotionPoint& to, double guess)
+{
+    auto& [last, current, before, slope, ahead] = now_;
+    const MotionCubic motion {Cubic::past(before, current, slope * period_, guess),
+                              Cubic::between(last.x, last.v * period_, to.x, to.v * period_),
+                              Cubic::between(last.v, last.a * period_, to.v, to.a * period_)};
+    last = to;
 
     const auto& [di, dx, dv] = linear_.drop;
     const auto& [fi, fx, fv] = linear_.force;
@@ -119,21 +152,21 @@ double Inverse::step(const MotionPoint& to)
     if (!electrical_)
         return missing;
 
-    const bool weak = byCurrent(sum.force) < leastForcePerCurrent_;
-    const double perCurrent = weak ? leastForcePerCurrent_ : byCurrent(sum.force);
-    const double current = std::clamp(guess + missing / perCurrent, -largestCurrent_, largestCurrent_);
+    const double weakest = weakestShare * forcePerCurrent_;
+    const bool weak = byCurrent(sum.force) < weakest;
+    const double perCurrent = weak ? weakest : byCurrent(sum.force);
+    before = current;
+    current = std::clamp(guess + missing / perCurrent, -largestCurrent_, largestCurrent_);
     const double off = current - guess;
-    const double slope = (sum.mass.a * to.j + byTime(sum.mass) * to.a - byTime(sum.force)) / perCurrent;
+    slope = (sum.mass.a * to.j + byTime(sum.mass) * to.a - byTime(sum.force)) / perCurrent;
     for (auto& part : lagging_)
         part.memory.correct(off);
     for (auto& part : curved_)
         part.memory.correct(off);
-    before_ = current_;
-    current_ = current;
-    slope_ = slope;
-    const double ahead = current - to.i;
+    const double difference = current - to.i;
     // Where force and current have come apart there is no trend to follow.
-    ahead_ = weak ? std::array {ahead, ahead, ahead} : std::array {ahead, ahead_[0], ahead_[1]};
+    ahead = weak ? std::array {difference, difference, difference} : std::array {difference, ahead[0], ahead[1]};
+    ease_ = forcePerCurrent_ / perCurrent;
     const auto corrected = [off](const Tangent& t) { return t.a + byCurrent(t) * off; };
     return corrected(sum.drop) + corrected(sum.inductance) * slope + corrected(sum.fluxSlope) * to.v;
 }

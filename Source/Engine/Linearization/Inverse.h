@@ -20,9 +20,9 @@ namespace excursion {
 /// Every effect contributes through the lines that simulate it (Effect::contribute), run on numbers that carry the derivatives
 /// by time and by current, and its memory is carried along (Memory.h). What is linear is asked once and summed up (LinearForm.h).
 ///
-/// No iteration: the current is extrapolated by its difference to the linear driver's, which is small and slow, to i_p, and
+/// The current is extrapolated by its difference to the linear driver's, which is small and slow, to i_p, and
 /// one Newton step, i = i_p + (M a - F)/F_i, is exact but for the square of what the extrapolation missed (reluctance force
-/// alone is not linear in i). F_i, at rest Bl, is kept from falling below a tenth of its value at rest, where a driver can no
+/// alone is not linear in i); where that is much, as at an edge, a second one follows. F_i, at rest Bl, is kept from falling below a tenth of its value at rest, where a driver can no
 /// longer be made to follow; the current is bounded by ten times what the model was measured at.
 /// A driver without a coil has u = M a - F.
 class Inverse {
@@ -35,9 +35,17 @@ public:
     /// The input (V, or N of a driver without a coil) at this point of the motion; call it for every sample of it.
     double step(const MotionPoint&);
 
-    double current() const { return current_; }   ///< A, at the latest point
+    /// The input at another end of the latest step, which is taken back.
+    double again(const MotionPoint&);
+
+    double current() const { return now_.current; }   ///< A, at the latest point
+    /// By how much of the input the force at the latest point goes with the input that it takes at rest: Bl(0)/Bl(x), and the like.
+    double ease() const { return ease_; }
 
 private:
+    double solve(const MotionPoint&, double guess);   ///< one Newton step from this current, A
+    void takeBack();
+
     /// An effect that is asked at every sample.
     struct Curved {
         const Effect* effect;
@@ -54,15 +62,18 @@ private:
 
     bool electrical_;
     double period_;
-    double leastForcePerCurrent_ = 0.0;   ///< N/A
     double largestCurrent_ = 1e3;         ///< A
     LinearForm linear_;   ///< of all that is linear, without the memories
     double dropByCurrent_ = 0.0, forceByCurrent_ = 0.0;   ///< of all that is linear, with what the current does to the memories
     std::vector<Lagging> lagging_;
     std::vector<Curved> curved_;
-    MotionPoint last_;
-    double current_ = 0.0, before_ = 0.0, slope_ = 0.0;   ///< i(n-1), i(n-2), A; di/dt, A/s
-    std::array<double, 3> ahead_ {};                      ///< the latest differences to the linear driver's current, A
+    double forcePerCurrent_ = 0.0;   ///< N/A, at rest
+    double ease_ = 1.0;
+    struct Instant {
+        MotionPoint motion;
+        double current = 0.0, before = 0.0, slope = 0.0;   ///< i(n-1), i(n-2), A; di/dt, A/s
+        std::array<double, 3> ahead {};                    ///< the latest differences to the linear driver's current, A
+    } now_, past_;   ///< past_: before the latest step
 };
 
 } // namespace excursion

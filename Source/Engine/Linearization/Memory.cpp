@@ -12,7 +12,7 @@ Memory::Memory(const Effect& effect, const Extent& extent, std::vector<double> c
     : effect_(&effect), extent_(extent), coefficients_(std::move(coefficients)), period_(1.0 / sampleRate),
       size_(static_cast<std::size_t>(effect.memorySize(extent)))
 {
-    for (auto* place : {&value_, &rate_, &byCurrent_, &next_})
+    for (auto* place : {&value_, &rate_, &byCurrent_, &next_, &before_})
         place->assign(size_, 0.0);
     for (auto& stage : stages_)
         stage.assign(size_, 0.0);
@@ -101,6 +101,7 @@ void Memory::step(const MotionCubic& motion)
 {
     const Cubic* const cubics[3] = {&motion.i, &motion.x, &motion.v};
     end_ = {motion.i.end(), motion.x.end(), motion.v.end()};
+    std::copy(value_.begin(), value_.end(), before_.begin());
     if (!linear_) {
         auto& [k1, k2, k3, k4, y] = stages_;
         const auto ask = [&](double s, const double* m, std::vector<double>& out) {

@@ -4,6 +4,7 @@
 #include "Engine/Driver/Model.h"
 #include "Engine/Linearization/Cubic.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -29,6 +30,8 @@ public:
 
     /// One step of 1/sampleRate.
     void step(const MotionCubic&);
+    /// Takes the latest step back.
+    void stepBack() { std::copy(before_.begin(), before_.end(), value_.begin()); }
 
     const double* value() const { return value_.data(); }
     const double* findRate();   ///< dm/dt at the end of the latest step, 1/s
@@ -48,7 +51,7 @@ private:
     double period_;
     std::size_t size_;
     bool linear_ = false, diagonal_ = false;
-    std::vector<double> value_, rate_, byCurrent_, next_;
+    std::vector<double> value_, rate_, byCurrent_, next_, before_;   ///< before_: the value before the latest step
     std::array<double, 3> end_ {};        ///< i, x, v at the end of the latest step
     std::vector<double> decay_;           ///< exp(A T): its diagonal, or all of it by columns
     struct Drive {

@@ -2,30 +2,33 @@
 #include "Engine/Linearization/Predistorter.h"
 
 #include "Engine/Linearization/InputGuard.h"
-#include "Engine/Linearization/SoftLimit.h"
 #include "Engine/Linearization/Subnormals.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace excursion {
 namespace {
 
-constexpr double controlTime = 0.005;     // s, time constant of the controls
-constexpr double declickTime = 0.002;    // s
+constexpr double amountTime = 0.005, nearTime = 0.0005;   // s, see Glide
+constexpr double declickTime = 0.002;                     // s
+constexpr double restTime = 0.05, returnTime = 0.05;      // s, after a fault
+constexpr double nearFrom = 0.6, nearTo = 0.8;            // of the limit of the excursion
 
-double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
+double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
+
+double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(std::max(factor, 1e-10)) : 0.0; }
 
 } // namespace
 
 Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const LinearizationControls& controls)
-    : oversampling_((requireRunnable(model, options), options.oversampling)),
-      reference_(model, options.sampleRate * options.oversampling), inverse_(model, options.sampleRate * options.oversampling),
-      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
-      smoothing_(1.0 - std::exp(-1.0 / (controlTime * options.sampleRate))), release_(std::exp(-1.0 / (declickTime * options.sampleRate))),
-      dry_(static_cast<std::size_t>(oversampling_.latency()), 0.0)
+    : oversampling_((requireRunnable(model, options), options.oversampling)), protection_(model, options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
+      linearizer_(model, options.sampleRate * options.oversampling),
+      recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
+      ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), amount_(amountTime, options.sampleRate), near_(nearTime, options.sampleRate),
+      decay_(std::exp(-1.0 / (declickTime * options.sampleRate * options.oversampling)))
 {
-    target_ = {1.0, 0.0, 0.0};
     set(controls);
     reset();
 }
@@ -33,112 +36,106 @@ Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, c
 void Predistorter::reset()
 {
     oversampling_.reset();
-    reference_.reset();
-    inverse_.reset();
+    protection_.reset();
+    linearizer_.reset();
     recovery_.reset();
-    now_ = target_;
-    std::fill(dry_.begin(), dry_.end(), 0.0);
-    dryPlace_ = 0;
-    lastOut_ = step_ = 0.0;
-    faulty_ = false;
+    amount_.jump();
+    near_.jump(0.0);
+    outcome_ = {};
+    heats_ = last_ = left_ = 0.0;
 }
 
 void Predistorter::set(const LinearizationControls& controls)
 {
-    if (!(controls.amount >= 0.0 && controls.amount <= 1.0 && controls.displacementLimit > 0.0 && controls.voltageLimit > 0.0))
-        return;
-    target_ = {controls.amount, reciprocal(controls.displacementLimit), reciprocal(controls.voltageLimit)};
+    if (controls.areSound())
+        controls_ = controls;
+    turn(on_);
+}
+
+void Predistorter::turn(bool on)
+{
+    if (on && !bends())
+        linearizer_.reset();
+    on_ = on;
+    amount_.aim(on ? controls_.amount : 0.0);
+    protection_.set(controls_, on);
 }
 
 /// One sample of the higher rate.
-double Predistorter::advance(double u)
+void Predistorter::bend(double& sample, double amount)
 {
-    auto motion = reference_.step(u);
-    const double asked = std::abs(motion.x), share = asked * now_.displacement;
-    softlimit::apply(motion, now_.displacement);
-    const double bent = inverse_.step(motion);
-    if (!(std::abs(bent) < InputGuard::loudest && asked < InputGuard::loudest)) {
-        faulty_ = true;
-        return 0.0;
+    const double asked = sample;
+    double out = linearizer_.step(asked, amount, on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity());
+    const double x = std::abs(linearizer_.cone().motion().x), i = linearizer_.current();
+    if (!(std::abs(out) < InputGuard::loudest && x < InputGuard::loudest && std::abs(linearizer_.wanted()) < InputGuard::loudest)) {
+        fault();
+        out = 0.0;
+    } else {
+        peak_.displacement = std::max(peak_.displacement, x);
+        outcome_.asked = std::max(outcome_.asked, std::abs(asked));
+        outcome_.wanted = std::max(outcome_.wanted, std::abs(linearizer_.wanted()));
+        heats_ += ohms_ * i * i;
     }
-    double amount = now_.amount;
-    if (constexpr double near = 0.75 * softlimit::knee; share > near) {
-        const double s = std::min((share - near) / (softlimit::knee - near), 1.0);
-        amount += (1.0 - amount) * s * s * (3.0 - 2.0 * s);
-    }
-    const double wanted = u + amount * (bent - u), out = softlimit::apply(wanted, now_.voltage);
-    peak_.displacement = std::max(peak_.displacement, std::abs(motion.x));
-    if (asked > std::abs(motion.x))
-        peak_.displacementReduction = std::max(peak_.displacementReduction, 20.0 * std::log10(asked / std::abs(motion.x)));
-    if (std::abs(wanted) > std::abs(out))
-        peak_.voltageReduction = std::max(peak_.voltageReduction, 20.0 * std::log10(wanted / out));
-    return out;
+    sample = last_ = out + left_;
+    left_ *= decay_;
 }
 
 void Predistorter::fault()
 {
-    faulty_ = false;
-    reference_.reset();
-    inverse_.reset();
+    linearizer_.reset();
+    recovery_.fault();
+    left_ = last_;
     faults_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Predistorter::begin(const double* in, std::size_t n)
+{
+    const FlushSubnormals flush;
+    const auto factor = static_cast<std::size_t>(oversampling_.factor());
+    if (protection_.due()) {
+        outcome_.heat = heats_ / static_cast<double>(Protection::tick * factor);
+        protection_.decide(linearizer_.cone().state(), outcome_);
+        outcome_ = {};
+        heats_ = 0.0;
+        const double share = std::clamp((protection_.share() - nearFrom) / (nearTo - nearFrom), 0.0, 1.0);
+        near_.aim(smooth(share));
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        const bool sound = std::abs(in[k]) < InputGuard::loudest;   // not for NaN
+        if (!sound)
+            faults_.fetch_add(1, std::memory_order_relaxed);
+        block_[k] = recovery_.step() * protection_.step(in[k], sound);
+    }
+    oversampling_.up(block_.data(), n, between_.data());
+    for (std::size_t k = 0; k < n; ++k) {
+        const double amount = amount_.step(), near = near_.step();
+        if (bends())
+            for (std::size_t s = 0; s < factor; ++s)
+                bend(between_[k * factor + s], on_ ? amount + (1.0 - amount) * near : amount);
+    }
+}
+
+void Predistorter::finish(double* out, std::size_t n)
+{
+    const FlushSubnormals flush;
+    oversampling_.down(between_.data(), n, out);
+    // The filter on the way down may overshoot.
+    const double limit = on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < n; ++k) {
+        out[k] = withoutSubnormals(std::clamp(out[k], -limit, limit));
+        peak_.voltage = std::max(peak_.voltage, std::abs(out[k]));
+    }
 }
 
 void Predistorter::process(const double* in, double* out, std::size_t n)
 {
-    const FlushSubnormals flush;
-    const auto factor = static_cast<std::size_t>(oversampling_.factor());
     while (n > 0) {
-        const std::size_t count = std::min(n, Oversampling::longestBlock);
-        InputGuard guard;
-        guard.pass(in, count, block_.data());
-        oversampling_.up(block_.data(), count, fine_.data());
-        std::array<Levels, Oversampling::longestBlock> levels;
-        for (std::size_t k = 0; k < count; ++k) {
-            now_.amount += smoothing_ * (target_.amount - now_.amount);
-            now_.displacement += smoothing_ * (target_.displacement - now_.displacement);
-            now_.voltage += smoothing_ * (target_.voltage - now_.voltage);
-            levels[k] = now_;
-            if (guard.faultAt[k])
-                fault();
-            for (std::size_t s = 0; s < factor; ++s) {
-                auto& sample = fine_[k * factor + s];
-                sample = advance(sample);
-                if (faulty_) {
-                    fault();
-                    guard.faultAt[k] = true;
-                }
-            }
-        }
-        // The signal as it is, delayed.
-        std::array<double, Oversampling::longestBlock> plain;
-        for (std::size_t k = 0; k < count; ++k) {
-            plain[k] = block_[k];
-            if (!dry_.empty()) {
-                std::swap(plain[k], dry_[dryPlace_]);
-                dryPlace_ = dryPlace_ + 1 == dry_.size() ? 0 : dryPlace_ + 1;
-            }
-        }
-        oversampling_.down(fine_.data(), count, block_.data());
-        for (std::size_t k = 0; k < count; ++k) {
-            if (guard.faultAt[k])
-                recovery_.fault();
-            const double weight = recovery_.step();
-            double mixed = block_[k];
-            if (weight < 1.0)
-                mixed = weight * mixed + (1.0 - weight) * softlimit::apply(plain[k], levels[k].voltage);
-            if (guard.faultAt[k])
-                step_ = lastOut_ - mixed;
-            mixed += step_;
-            step_ *= release_;
-            if (levels[k].voltage > 0.0)   // the filter on the way down may overshoot
-                mixed = std::clamp(mixed, -1.0 / levels[k].voltage, 1.0 / levels[k].voltage);
-            lastOut_ = mixed;
-            peak_.voltage = std::max(peak_.voltage, std::abs(mixed));
-            out[k] = withoutSubnormals(mixed);
-        }
-        in += count;
-        out += count;
-        n -= count;
+        const std::size_t taken = std::min(n, room());
+        begin(in, taken);
+        finish(out, taken);
+        in += taken;
+        out += taken;
+        n -= taken;
     }
     publish();
 }
@@ -147,10 +144,11 @@ void Predistorter::publish()
 {
     displacement_.raise(peak_.displacement);
     voltage_.raise(peak_.voltage);
-    power_.raise(peak_.power);
-    displacementReduction_.raise(peak_.displacementReduction);
-    voltageReduction_.raise(peak_.voltageReduction);
-    powerReduction_.raise(peak_.powerReduction);
+    power_.raise(protection_.heat());
+    const auto& factors = protection_.factors();
+    displacementReduction_.raise(decibelsDown(factors.displacement));
+    voltageReduction_.raise(decibelsDown(factors.voltage));
+    powerReduction_.raise(decibelsDown(factors.power));
     peak_ = {};
 }
 

@@ -1,45 +1,58 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Linearization/Inverse.h"
+#include "Engine/Linearization/Fade.h"
+#include "Engine/Linearization/Glide.h"
+#include "Engine/Linearization/Linearizer.h"
 #include "Engine/Linearization/Oversampling.h"
 #include "Engine/Linearization/Peak.h"
+#include "Engine/Linearization/Protection.h"
 #include "Engine/Linearization/RealTime.h"
 #include "Engine/Linearization/Recovery.h"
-#include "Engine/Linearization/Reference.h"
 
 #include <array>
 #include <atomic>
 #include <cstddef>
-#include <vector>
 
 namespace excursion {
 
-/// Bends the voltage so that the driver moves as if it were linear, sample by sample and without looking ahead:
-///     u -> up -> Reference (x, v, a, j of the linear driver) -> limit of the excursion -> Inverse -> u' -> limit of the voltage -> down
-/// The output is u + amount (u' - u). From 60 % of the limit of the excursion on it becomes u', at 80 % it is u' whatever the amount, as a
-/// protection that can be turned down is none.
+/// Bends the voltage so that the driver moves as if it were linear, and turns it down before that so that the driver comes to no harm:
+///     u -> Protection (looks ahead) -> up -> Linearizer -> down
+/// As a protection that can be turned down is none, the amount goes to 1 where the excursion comes near its limit.
 ///
-/// It is prepared by its construction, which allocates; reset(), set() and process() are for the audio thread: no allocation, no
-/// lock, no system call, no exception. Blocks may have any length, and the output does not depend on how a signal is cut
-/// into blocks. A sample that is not a finite number counts as silence. When anything inside is not finite, or beyond any loudspeaker,
-/// the predistorter starts anew, the signal goes through as it is (delayed as ever, within the limit of the voltage) and, once
-/// the filters have run full, is faded back. No subnormal number comes out.
+/// It is prepared by its construction, which allocates; everything else is for the audio thread: no allocation, no lock, no system call, no
+/// exception. Blocks may have any length, and the output does not depend on how a signal is cut into blocks. Around a sample that is not a finite
+/// number, or beyond any amplifier, there is silence. When anything inside is not finite, or beyond any loudspeaker, what comes out goes to
+/// silence within milliseconds, the driver is taken to be at rest and, once it is, the signal is faded in again. No subnormal number comes out.
 class Predistorter {
 public:
+    static constexpr std::size_t longestPart = Protection::tick;
+
     /// Throws Error, see requireRunnable.
     Predistorter(const Model&, const RealTimeOptions&, const LinearizationControls& = {});
 
-    int latency() const { return oversampling_.latency(); }   ///< samples; fixed
+    int latency() const { return Protection::latency + oversampling_.latency(); }   ///< samples; fixed
 
     /// As if new, but for the controls, which are at their targets at once.
     void reset();
 
-    /// Where the controls are to go, within some 20 ms. A control that is not valid is left as it was.
+    /// Where the controls are to go, within some 50 ms. A control that is not valid is left as it was.
     void set(const LinearizationControls&);
+
+    /// Whether it does anything: switched off, the signal goes through as it is, within 0.45 of the sample rate. Switched on, all that comes
+    /// from then on is kept to the limits.
+    void turn(bool on);
 
     /// @param in, out  V (or N); n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);
+
+    /// The same in two halves, between which the signal is at the higher rate.
+    /// @param n  at most room()
+    void begin(const double* in, std::size_t n);
+    double* between() { return between_.data(); }   ///< as many times n as the oversampling says
+    void finish(double* out, std::size_t n);
+    std::size_t room() const { return protection_.left(); }   ///< 1 to longestPart samples
+    void publish();   ///< lets take() see what has come out
 
     /// Since the last call of take(); may be read from another thread.
     struct Meters {
@@ -52,24 +65,23 @@ public:
     Meters take();
 
 private:
-    double advance(double u);
+    bool bends() const { return on_ || amount_.value() > 0.0; }
+    void bend(double& sample, double amount);
     void fault();
-    void publish();
 
     Oversampling oversampling_;
-    Reference reference_;
-    Inverse inverse_;
+    Protection protection_;
+    Linearizer linearizer_;
     Recovery recovery_;
-    double smoothing_, release_;
-    struct Levels {
-        double amount, displacement, voltage;   ///< the limits as reciprocals: 0: none
-    } now_ {}, target_ {};
-    std::array<double, Oversampling::longestBlock> block_ {};
-    std::array<double, 4 * Oversampling::longestBlock> fine_ {};
-    std::vector<double> dry_;   ///< a ring, as long as the latency
-    std::size_t dryPlace_ = 0;
-    double lastOut_ = 0.0, step_ = 0.0;   ///< the output; what is left of the step that a fault makes
-    bool faulty_ = false;
+    double ohms_;
+    bool on_ = true;
+    LinearizationControls controls_;
+    Glide amount_, near_;   ///< near_: the excursion is near its limit
+    Protection::Outcome outcome_;
+    double heats_ = 0.0;    ///< of the tick, samples of the higher rate times W
+    double last_ = 0.0, left_ = 0.0, decay_;   ///< V: the latest sample of the higher rate; what is left of the step that a fault makes
+    std::array<double, longestPart> block_ {};
+    std::array<double, 4 * longestPart> between_ {};
     Meters peak_;
     Peak displacement_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};

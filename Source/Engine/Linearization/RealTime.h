@@ -31,6 +31,8 @@ struct LinearizationControls {
     double powerLimit = std::numeric_limits<double>::infinity();          ///< W, of the coil's heat, see averagingTime; a driver without a coil has none
     double margin = 0.0;   ///< the limits hold for every driver whose parameters differ by no more than this share from the model's; 0 to 0.3
     bool isValid(std::string* reason) const;
+    /// The same for the audio thread, which has no use for a reason.
+    bool areSound() const { return amount >= 0.0 && amount <= 1.0 && displacementLimit > 0.0 && voltageLimit > 0.0 && powerLimit > 0.0 && margin >= 0.0 && margin <= 0.3; }
 
     static constexpr double averagingTime = 1.0;   ///< s: the heat is Re i^2, averaged by a low-pass of first order with this time constant
 };

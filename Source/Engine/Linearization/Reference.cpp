@@ -102,6 +102,7 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
     const auto size = balance(A);
     Eigen::MatrixXd vectors = eigenvectors(size.cwiseInverse().asDiagonal() * A * size.asDiagonal(), pairs_);
     const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(vectors).singularValues();
+    basis_ = Eigen::MatrixXd::Identity(n, n);
     dense_ = !(singular[0] < worstCondition * singular[n - 1]);
     if (dense_) {
         pairs_ = 0;
@@ -111,6 +112,7 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
         }
     } else {
         vectors = size.asDiagonal() * vectors;
+        basis_ = vectors;
         const Eigen::FullPivLU<Eigen::MatrixXd> solver(vectors);
         transition = solver.solve(transition * vectors).eval();
         inputs = solver.solve(inputs).eval();
@@ -123,6 +125,8 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
         inputs_[k] = padded(inputs.col(static_cast<Eigen::Index>(k)), rows_);
     for (std::size_t k = 0; k < outputs_.size(); ++k)
         outputs_[k] = padded(outputs.row(static_cast<Eigen::Index>(k)).transpose(), rows_);
+    const Eigen::VectorXd direct = outputs * inputs.col(0);
+    byInput_ = {direct[0], direct[1], direct[2] + accelerationInput_, electrical_ ? direct[3] + jerkInput_ : 0.0, direct[4]};
     state_.assign(rows_, 0.0);
     next_.assign(rows_, 0.0);
 }
@@ -163,6 +167,20 @@ const MotionPoint& Reference::step(double u)
     std::swap(state_, next_);
     point_ = {sums[0].sum(), sums[1].sum(), sums[2].sum() + accelerationInput_ * u,
               electrical_ ? sums[3].sum() + jerkInput_ * u : 0.0, sums[4].sum()};
+    return point_;
+}
+
+const MotionPoint& Reference::correct(double difference)
+{
+    past_[0] += difference;
+    for (std::size_t row = 0; row < rows_; ++row)
+        state_[row] += difference * inputs_[0][row];
+    const auto add = [difference](double& value, double byInput) { value += difference * byInput; };
+    add(point_.x, byInput_.x);
+    add(point_.v, byInput_.v);
+    add(point_.a, byInput_.a);
+    add(point_.j, byInput_.j);
+    add(point_.i, byInput_.i);
     return point_;
 }
 

@@ -36,6 +36,14 @@ public:
     void reset();
     const MotionPoint& step(double u);   ///< V, or N of a driver without a coil; returns the motion at this sample
 
+    /// As if the latest sample had been larger by that much.
+    const MotionPoint& correct(double difference);
+
+    const MotionPoint& motion() const { return point_; }   ///< at the latest sample
+    Eigen::Map<const Eigen::VectorXd> state() const { return {state_.data(), static_cast<Eigen::Index>(order_)}; }
+    /// The state of Linearize.h per state that is kept here: z = basis state.
+    const Eigen::MatrixXd& basis() const { return basis_; }
+
 private:
     static constexpr int lanes = 4;   ///< states at a time
     using Lanes = Eigen::Array<double, lanes, 1>;
@@ -50,6 +58,8 @@ private:
     std::array<Rows, 4> inputs_;      ///< g_0 .. g_3
     std::array<Rows, 5> outputs_;     ///< of x, v, a, j and i
     double accelerationInput_ = 0.0, jerkInput_ = 0.0;
+    Eigen::MatrixXd basis_;
+    MotionPoint byInput_;             ///< of the motion, by u(n)
     std::array<double, 4> past_ {};   ///< u(n) .. u(n-3)
     Rows state_, next_;
     MotionPoint point_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Speaker.h"
 
-#include "Engine/Driver/Simulate.h"
-#include "Engine/Linearization/Cubic.h"
 #include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/Subnormals.h"
 
@@ -10,61 +8,18 @@
 #include <cmath>
 
 namespace excursion {
-namespace {
-
-constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
-constexpr double followingTime = 0.005;  // s
-
-} // namespace
 
 Speaker::Speaker(const Model& model, const RealTimeOptions& options)
-    : oversampling_((requireRunnable(model, options), options.oversampling)),
-      substeps_(stableSubsteps(model, options.sampleRate * options.oversampling, ExponentialAdams::stable)),
-      motion_(model, 1.0 / (options.sampleRate * options.oversampling * substeps_)), reference_(model, options.sampleRate * options.oversampling),
-      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
-      smoothing_(1.0 - std::exp(-1.0 / (followingTime * options.sampleRate)))
+    : oversampling_((requireRunnable(model, options), options.oversampling)), cone_(model, options.sampleRate * options.oversampling),
+      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate))
 {
-}
-
-void Speaker::rest()
-{
-    motion_.reset();
-    past_ = {};
-    reference_.reset();
 }
 
 void Speaker::reset()
 {
-    rest();
+    cone_.reset();
     oversampling_.reset();
     recovery_.reset();
-    share_ = shareTarget_;
-    faulty_ = false;
-}
-
-void Speaker::setLinearShareRemoved(double share)
-{
-    if (share >= 0.0 && share <= 1.0)
-        shareTarget_ = share;
-}
-
-/// One sample of the higher rate.
-double Speaker::advance(double u)
-{
-    const auto drive = Cubic::through(past_[2], past_[1], past_[0], u);
-    double acceleration = 0.0;
-    for (int s = 0; s < substeps_; ++s)
-        acceleration = motion_.step(drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
-    past_ = {u, past_[0], past_[1]};
-    const double linear = reference_.step(u).a;
-    if (!(std::abs(motion_.state()[0]) < implausibleState && std::abs(motion_.state()[1]) < implausibleState && std::abs(motion_.state()[2]) < implausibleState
-          && std::isfinite(acceleration) && std::isfinite(linear))) {
-        faulty_ = true;
-        return 0.0;
-    }
-    peakCurrent_ = std::max(peakCurrent_, std::abs(motion_.state()[0]));
-    peakDisplacement_ = std::max(peakDisplacement_, std::abs(motion_.state()[1]));
-    return acceleration - share_ * linear;
 }
 
 void Speaker::process(const double* in, double* out, std::size_t n)
@@ -76,19 +31,18 @@ void Speaker::process(const double* in, double* out, std::size_t n)
         InputGuard guard;
         guard.pass(in, count, block_.data());
         oversampling_.up(block_.data(), count, fine_.data());
-        for (std::size_t k = 0; k < count; ++k) {
-            share_ += smoothing_ * (shareTarget_ - share_);
-            faulty_ = guard.faultAt[k];
+        for (std::size_t k = 0; k < count; ++k)
             for (std::size_t s = 0; s < factor; ++s) {
-                if (!faulty_)
-                    fine_[k * factor + s] = advance(fine_[k * factor + s]);
-                if (faulty_) {
-                    rest();
-                    fine_[k * factor + s] = 0.0;
+                auto& sample = fine_[k * factor + s];
+                if (guard.faultAt[k]) {
+                    cone_.rest();
+                    sample = 0.0;
+                } else if (!cone_.step(sample)) {
                     guard.faultAt[k] = true;
                 }
+                peak_.displacement = std::max(peak_.displacement, std::abs(cone_.displacement()));
+                peak_.current = std::max(peak_.current, std::abs(cone_.current()));
             }
-        }
         oversampling_.down(fine_.data(), count, block_.data());
         for (std::size_t k = 0; k < count; ++k) {
             if (guard.faultAt[k]) {
@@ -101,9 +55,9 @@ void Speaker::process(const double* in, double* out, std::size_t n)
         out += count;
         n -= count;
     }
-    displacement_.raise(peakDisplacement_);
-    current_.raise(peakCurrent_);
-    peakDisplacement_ = peakCurrent_ = 0.0;
+    displacement_.raise(peak_.displacement);
+    current_.raise(peak_.current);
+    peak_ = {};
 }
 
 Speaker::Meters Speaker::take() { return {displacement_.take(), current_.take(), faults_.load(std::memory_order_relaxed)}; }

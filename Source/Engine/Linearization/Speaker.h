@@ -1,37 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/ExponentialAdams.h"
+#include "Engine/Linearization/Cone.h"
 #include "Engine/Linearization/Oversampling.h"
 #include "Engine/Linearization/Peak.h"
 #include "Engine/Linearization/RealTime.h"
 #include "Engine/Linearization/Recovery.h"
-#include "Engine/Linearization/Reference.h"
 
 #include <array>
 #include <atomic>
 #include <cstddef>
-#include <vector>
 
 namespace excursion {
 
 /// The driver with its effects, in real time: from the voltage to the acceleration of the cone, which is what is heard in front of it.
-///     u -> up -> exponential steps (see ExponentialAdams) -> (a - share a_linear) -> down
-/// The linear part a_linear is that of Reference; with a share of 1 only the distortion is left.
-/// The steps are as many as the laws ask for and do not adapt; between samples the input is a cubic through the
-/// latest four. As for blocks, faults and the audio thread see Predistorter; after a fault the driver starts from rest and fades in from
-/// silence.
+///     u -> up -> Cone -> down
+/// As for blocks and the audio thread see Predistorter. A sample that is not a finite number is played as silence; after it, and when the
+/// motion is not finite, the driver starts from rest and fades in from silence.
 class Speaker {
 public:
     /// Throws Error, see requireRunnable.
     Speaker(const Model&, const RealTimeOptions&);
 
     int latency() const { return oversampling_.latency(); }   ///< samples; fixed
-    int substeps() const { return substeps_; }                 ///< steps a sample of the higher rate
+    int substeps() const { return cone_.substeps(); }          ///< steps a sample of the higher rate
     void reset();
 
     /// @param share  how much of the linear driver's output is taken away, 0 to 1; followed smoothly
-    void setLinearShareRemoved(double share);
+    void setLinearShareRemoved(double share) { cone_.setLinearShareRemoved(share); }
 
     /// @param in   V (or N); n samples
     /// @param out  m/s^2; may be the same place
@@ -46,20 +42,12 @@ public:
     Meters take();
 
 private:
-    double advance(double u);
-    void rest();
-
     Oversampling oversampling_;
-    int substeps_;
-    ExponentialAdams motion_;
-    Reference reference_;
+    Cone cone_;
     Recovery recovery_;
-    double smoothing_, share_ = 0.0, shareTarget_ = 0.0;
-    std::array<double, 3> past_ {};   ///< u(n-1), u(n-2), u(n-3)
     std::array<double, Oversampling::longestBlock> block_ {};
     std::array<double, 4 * Oversampling::longestBlock> fine_ {};
-    bool faulty_ = false;
-    double peakDisplacement_ = 0.0, peakCurrent_ = 0.0;
+    Meters peak_;
     Peak displacement_, current_;
     std::atomic<int> faults_ {0};
 };

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/Cone.h"
+
+#include "Engine/Driver/Simulate.h"
+#include "Engine/Linearization/Cubic.h"
+
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
+constexpr double shareTime = 0.003;        // s, see Glide
+
+} // namespace
+
+Cone::Cone(const Model& model, double sampleRate)
+    : substeps_(stableSubsteps(model, sampleRate, ExponentialAdams::stable)), motion_(model, 1.0 / (sampleRate * substeps_)),
+      reference_(model, sampleRate), share_(shareTime, sampleRate)
+{
+}
+
+void Cone::rest()
+{
+    motion_.reset();
+    past_ = {};
+    reference_.reset();
+}
+
+void Cone::reset()
+{
+    rest();
+    share_.jump();
+}
+
+void Cone::setLinearShareRemoved(double share)
+{
+    if (share >= 0.0 && share <= 1.0)
+        share_.aim(share);
+}
+
+bool Cone::step(double& sample)
+{
+    const double u = sample;
+    const auto drive = Cubic::through(past_[2], past_[1], past_[0], u);
+    double acceleration = 0.0;
+    for (int s = 0; s < substeps_; ++s)
+        acceleration = motion_.step(drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
+    past_ = {u, past_[0], past_[1]};
+    const double linear = reference_.step(u).a, share = share_.step();
+    sample = acceleration - share * linear;
+    const double* const z = motion_.state();
+    if (std::abs(z[0]) < implausibleState && std::abs(z[1]) < implausibleState && std::abs(z[2]) < implausibleState && std::isfinite(acceleration)
+        && std::isfinite(linear))
+        return true;
+    rest();
+    sample = 0.0;
+    return false;
+}
+
+} // namespace excursion

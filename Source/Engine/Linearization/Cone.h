@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/ExponentialAdams.h"
+#include "Engine/Linearization/Glide.h"
+#include "Engine/Linearization/RealTime.h"
+#include "Engine/Linearization/Reference.h"
+
+#include <array>
+
+namespace excursion {
+
+/// The driver with its effects, sample by sample: from the voltage to the acceleration of the cone, less a share of what a linear driver's would be
+/// (Reference). With a share of 1 only the distortion is left. The steps are as many as the laws ask for and do not adapt; between samples
+/// the input is a cubic through the latest four (ExponentialAdams).
+///
+/// Thread: after construction nothing allocates, locks or throws.
+class Cone {
+public:
+    /// @param sampleRate  Hz, of step()
+    Cone(const Model&, double sampleRate);
+
+    int substeps() const { return substeps_; }   ///< steps a sample
+    void rest();    ///< at rest from now on
+    void reset();   ///< and the share is at its target
+
+    /// @param share  how much of the linear driver's output is taken away, 0 to 1; followed smoothly
+    void setLinearShareRemoved(double share);
+
+    /// @param sample  V (or N); becomes m/s^2
+    /// @returns false when the motion is not finite or beyond any loudspeaker: then the cone is at rest and the sample 0
+    bool step(double& sample);
+
+    double displacement() const { return motion_.state()[1]; }   ///< m
+    double current() const { return motion_.state()[0]; }        ///< A
+
+private:
+    int substeps_;
+    ExponentialAdams motion_;
+    Reference reference_;
+    Glide share_;
+    std::array<double, 3> past_ {};   ///< u(n-1), u(n-2), u(n-3)
+};
+
+} // namespace excursion

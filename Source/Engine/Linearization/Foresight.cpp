@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/Foresight.h"
+
+#include "Engine/Driver/Linearize.h"
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace excursion {
+
+Foresight::Foresight(const Model& model, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps, double step, double since)
+    : coasting(times.size(), reference.basis().cols()), driven(Eigen::MatrixXd::Zero(times.size(), steps))
+{
+    const auto linear = linearize(model);
+    const auto n = linear.A.rows();
+    Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(n + 1, n + 1);   // the input beside the state
+    chain.topLeftCorner(n, n) = linear.A;
+    chain.topRightCorner(n, 1) = linear.B;
+    const Eigen::MatrixXd onward = (chain * step).exp();
+    for (Eigen::Index i = 0; i < times.size(); ++i) {
+        // x after a time, per state at its start and per input that is held meanwhile
+        const Eigen::RowVectorXd all = (chain * times[i]).exp().row(1);
+        coasting.row(i) = all.head(n) * reference.basis();
+        // From the end of the last step that has begun by then; the time grows by a step each round.
+        const auto last = std::min(steps, static_cast<Eigen::Index>(std::floor((times[i] + since) / step)));
+        Eigen::RowVectorXd after = (chain * (times[i] + since - static_cast<double>(last) * step)).exp().row(1);
+        if (last < steps)
+            driven(i, last) = last > 0 ? after[n] : all[n];
+        for (Eigen::Index k = last - 1; k >= 0; --k) {
+            const double shorter = after[n];
+            after = (after * onward).eval();
+            driven(i, k) = (k > 0 ? after[n] : all[n]) - shorter;
+        }
+    }
+}
+
+Bands::Values largestWithin(const Eigen::VectorXd& rest, const Eigen::MatrixXd& parts, Bands::Values most, double limit)
+{
+    Bands::Values factors {};
+    for (std::size_t b = 0; b < Bands::count; ++b) {
+        // The bands above this one as they may be at most, those below given up.
+        double low = 0.0, high = most[b];
+        for (Eigen::Index i = 0; i < rest.size(); ++i) {
+            double others = rest[i];
+            for (std::size_t above = b + 1; above < Bands::count; ++above)
+                others += most[above] * parts(i, static_cast<Eigen::Index>(above));
+            const double part = parts(i, static_cast<Eigen::Index>(b));
+            if (part == 0.0) {
+                if (std::abs(others) > limit)
+                    high = -1.0;
+                continue;
+            }
+            const double one = (limit - others) / part, other = (-limit - others) / part;
+            low = std::max(low, std::min(one, other));
+            high = std::min(high, std::max(one, other));
+        }
+        if (low <= high) {
+            factors[b] = high;
+            std::copy(most.begin() + static_cast<std::ptrdiff_t>(b) + 1, most.end(), factors.begin() + static_cast<std::ptrdiff_t>(b) + 1);
+            return factors;
+        }
+    }
+    return factors;
+}
+
+} // namespace excursion

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Linearization/Protection.h"
+
+#include "Engine/Driver/Linearize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace excursion {
+namespace {
+
+constexpr double firstCorner = 2.5, secondCorner = 12.0;   // of the resonance: above the first one moves a cone little
+constexpr double swing = 0.75;                             // periods of the resonance: a cone left alone has gone farthest long before
+constexpr Eigen::Index coastingPoints = 32;
+constexpr double wishShare = 0.98, planShare = 0.992;      // of the limit; the rest is for points between those that are looked at
+constexpr double limitTime = 0.005;                        // s, see Glide
+constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3, voltageHoldTime = 0.03, voltageReleaseTime = 0.1;   // s
+constexpr double powerHoldTime = 0.05, powerReleaseTime = 0.2;                                                // s
+constexpr double muteTime = 0.02, muteReleaseTime = 0.05;  // s
+constexpr double largestExcess = 4.0, largestHeatExcess = 30.0, excessTime = 1.0;    // of what linearizing adds to peaks; s
+constexpr double powerShare = 0.985, powerSlope = 20.0;    // see forPower()
+
+double resonance(const Model& model)
+{
+    return std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / (2.0 * std::numbers::pi);
+}
+
+double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
+
+int ticks(double seconds, double rate) { return static_cast<int>(std::ceil(seconds * rate / Protection::tick)); }
+
+double perTick(double seconds, double rate) { return 1.0 - std::exp(-Protection::tick / (seconds * rate)); }
+
+Eigen::VectorXd coastingTimes(double f0) { return Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing / f0); }
+
+/// While inputs are known, once a step, then coasting.
+Eigen::VectorXd planTimes(double f0, double rate, int known, int planStep)
+{
+    const int points = known / planStep;
+    Eigen::VectorXd times(points + coastingPoints);
+    for (int k = 0; k < points; ++k)
+        times[k] = planStep * (k + 1.0) / rate;
+    times.tail(coastingPoints) = coastingTimes(f0).tail(coastingPoints).array() + known / rate;
+    return times;
+}
+
+/// The largest sum over the parameters of |d ln|X| / d ln p| where a voltage moves the cone far.
+double worstSensitivity(const Model& model)
+{
+    std::vector<double> frequency;
+    for (int k = 0; k < 24; ++k)
+        frequency.push_back(resonance(model) * 0.1 * std::pow(30.0, k / 23.0));
+    const auto response = respond(model, {Quantity::displacement}, frequency, true).front();
+    const auto parameters = parametersOf(model);
+    double worst = 0.0;
+    for (std::size_t f = 0; f < frequency.size(); ++f) {
+        double sum = 0.0;
+        for (std::size_t p = 0; p < parameters.size(); ++p)
+            sum += std::abs((response.gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(p)) * parameters[p]->value / response.value[f]).real());
+        worst = std::max(worst, sum);
+    }
+    return worst;
+}
+
+int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
+
+} // namespace
+
+Protection::Protection(const Model& model, const RealTimeOptions& options, double delay)
+    : rate_(options.sampleRate), ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), committed_(roundedUp(delay - 0.5, planStep)),
+      split_(firstCorner * resonance(model), secondCorner * resonance(model), rate_),
+      wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep)}, load_(model, rate_),
+      coast_(model, wish_.front(), coastingTimes(resonance(model)), 0, 1.0, 0.0),
+      ahead_(model, wish_.front(), planTimes(resonance(model), rate_, roundedUp(committed_ + latency, planStep), planStep),
+             roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_,
+             (committed_ - delay + 0.5) / rate_),
+      uncertainty_(worstSensitivity(model)), sent_(static_cast<std::size_t>(committed_), 0.0), displacement_(limitTime, rate_ / tick),
+      voltage_(limitTime, rate_ / tick), power_(limitTime, rate_ / tick), voltageNow_(std::numeric_limits<double>::infinity()),
+      wishHold_ {PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_))},
+      voltageHold_(ticks(voltageHoldTime, rate_)), powerHold_(ticks(powerHoldTime, rate_)), askedHold_(ticks(wishHoldTime, rate_)),
+      wantedHold_(ticks(wishHoldTime, rate_)), expectedHold_(ticks(powerHoldTime, rate_)), heatHold_(ticks(powerHoldTime, rate_))
+{
+    static_assert(tick % wishStep == 0);
+    std::array<double, window> weight {};
+    double sum = 0.0;
+    for (int k = 0; k < window; ++k)
+        sum += weight[static_cast<std::size_t>(k)] = std::pow(std::sin(std::numbers::pi * (k + 0.5) / window), 4.0);
+    for (int k = 0; k < window; ++k)
+        for (int j = 0; j < tick; ++j)
+            shape_[static_cast<std::size_t>(k + j)] += weight[static_cast<std::size_t>(k)] / sum;
+    const auto steps = ahead_.driven.cols();
+    future_.resize(ahead_.coasting.rows());
+    rest_.resize(ahead_.coasting.rows());
+    drive_.resize(steps);
+    partDrives_.resize(steps, static_cast<Eigen::Index>(bands));
+    parts_.resize(ahead_.coasting.rows(), static_cast<Eigen::Index>(bands));
+    coasted_.resize(coast_.coasting.rows());
+    wishes_.resize(coast_.coasting.rows(), static_cast<Eigen::Index>(bands));
+    reset();
+}
+
+void Protection::reset()
+{
+    split_.reset();
+    for (auto& wish : wish_)
+        wish.reset();
+    load_.reset();
+    for (auto& delayed : delayed_)
+        delayed.fill(0.0);
+    std::fill(sent_.begin(), sent_.end(), 0.0);
+    sum_.fill(0.0);
+    oldest_ = sentAt_ = 0;
+    summed_ = place_ = muteFor_ = 0;
+    peak_ = heatPeak_ = heat_ = share_ = 0.0;
+    for (auto& gain : gain_) {   // as after factors of 1
+        gain.fill(0.0);
+        for (std::size_t k = 0; k < gain.size(); ++k)
+            for (std::size_t later = k + tick; later < gain.size(); later += tick)
+                gain[k] += shape_[later];
+    }
+    for (auto* limit : {&displacement_, &voltage_, &power_})
+        limit->jump();
+    for (auto* hold : {&wishHold_[0], &wishHold_[1], &wishHold_[2], &voltageHold_, &powerHold_, &askedHold_, &wantedHold_, &expectedHold_, &heatHold_})
+        hold->reset();
+    held_.fill(1.0);
+    loud_ = excess_ = heatExcess_ = cool_ = mute_ = 1.0;
+    factors_ = {};
+}
+
+void Protection::set(const LinearizationControls& controls, bool on)
+{
+    // What is switched on holds at once, for all that comes from now on.
+    const bool fresh = on && !on_;
+    on_ = on;
+    displacement_.aim(on ? std::exp(uncertainty_ * controls.margin) * reciprocal(controls.displacementLimit) : 0.0);
+    voltage_.aim(on ? reciprocal(controls.voltageLimit) : 0.0);
+    power_.aim(on && ohms_ > 0.0 ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin)) : 0.0);
+    if (fresh)
+        for (auto* limit : {&displacement_, &voltage_, &power_})
+            limit->jump();
+    if (fresh)
+        for (auto& wish : wish_)
+            wish.reset();
+}
+
+/// Of each band, what a cone that moved as the wish asks, and were then left alone, would ask for.
+Protection::Values Protection::forWish()
+{
+    Values need {1.0, 1.0, 1.0};
+    if (const double limit = displacement_.value(); limit > 0.0) {
+        for (std::size_t b = 0; b < bands; ++b)
+            wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
+        double farthest = 0.0;
+        for (Eigen::Index i = 0; i < wishes_.rows(); ++i)
+            farthest = std::max(farthest, std::abs(wishes_(i, 0) + wishes_(i, 1) + wishes_(i, 2)));
+        if (farthest * limit > wishShare) {
+            coasted_.setZero();
+            need = largestWithin(coasted_, wishes_, need, wishShare / limit);
+        }
+    }
+    const double release = on_ ? perTick(wishReleaseTime, rate_) : 0.2;
+    for (std::size_t b = 0; b < bands; ++b) {
+        const double floor = 1.0 - wishHold_[b].step(1.0 - need[b]);
+        held_[b] = floor < held_[b] ? floor : held_[b] + release * (floor - held_[b]);
+    }
+    return held_;
+}
+
+double Protection::forVoltage()
+{
+    const double peak = voltageHold_.step(std::exchange(peak_, 0.0)), limit = voltage_.value();
+    const double need = peak * excess_ * limit > 1.0 ? 1.0 / (peak * excess_ * limit) : 1.0;
+    loud_ = need < loud_ ? need : loud_ + perTick(voltageReleaseTime, rate_) * (need - loud_);
+    return loud_;
+}
+
+/// The heat p may be P (1 + s (1 - y/P)) with the running mean y and the limit P: y' = (p - y)/T then falls to zero as y comes near P, and y never
+/// passes it.
+double Protection::forPower()
+{
+    double peak = powerHold_.step(std::exchange(heatPeak_, 0.0));
+    const double limit = power_.value() / powerShare;
+    const double allowed = limit > 0.0 ? std::max(0.0, (1.0 + powerSlope * (1.0 - heat_ * limit)) / limit) : peak;
+    peak *= heatExcess_;
+    const double need = peak > allowed ? std::sqrt(allowed / peak) : 1.0;
+    cool_ = need < cool_ ? need : cool_ + perTick(powerReleaseTime, rate_) * (need - cool_);
+    return cool_;
+}
+
+/// Turns the factors down until a cone that gets them for a tick, and silence then, stays within its limit.
+void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, Values& factors)
+{
+    const double limit = displacement_.value();
+    share_ = 0.0;
+    if (!(limit > 0.0))
+        return;
+    drive_.setZero();
+    partDrives_.setZero();
+    for (std::size_t k = 0; k < sent_.size(); ++k)
+        drive_[static_cast<Eigen::Index>(k / planStep)] += sent_[(sentAt_ + k) % sent_.size()] / planStep;
+    for (std::size_t k = 0, from = oldest_; k < latency; ++k, from = from + 1 == latency ? 0 : from + 1) {
+        const auto step = static_cast<Eigen::Index>((sent_.size() + k) / planStep);
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double u = delayed_[b][from] / planStep;
+            drive_[step] += u * gain_[b][k];
+            partDrives_(step, static_cast<Eigen::Index>(b)) += u * shape_[k];
+        }
+    }
+    const Eigen::Map<const Eigen::Vector3d> now(factors.data());
+    rest_.noalias() = ahead_.coasting * cone;
+    rest_.noalias() += ahead_.driven * drive_;
+    drive_.noalias() = partDrives_ * now;
+    future_ = rest_;
+    future_.noalias() += ahead_.driven * drive_;
+    share_ = future_.cwiseAbs().maxCoeff() * limit;
+    if (share_ > planShare) {
+        for (Eigen::Index b = 0; b < parts_.cols(); ++b)   // a product of two matrices would allocate
+            parts_.col(b).noalias() = ahead_.driven * partDrives_.col(b);
+        factors = largestWithin(rest_, parts_, factors, planShare / limit);
+    }
+}
+
+void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Outcome& last)
+{
+    for (auto* limit : {&displacement_, &voltage_, &power_})
+        limit->step();
+    voltageNow_ = voltage_.value() > 0.0 ? 1.0 / voltage_.value() : std::numeric_limits<double>::infinity();
+    heat_ += perTick(LinearizationControls::averagingTime, rate_) * (last.heat - heat_);
+    const double asked = askedHold_.step(last.asked), wanted = wantedHold_.step(last.wanted);
+    if (wanted * voltage_.value() > 0.9 && wanted > excess_ * asked)
+        excess_ = std::min(wanted / asked, largestExcess);
+    else
+        excess_ += perTick(excessTime, rate_) * (1.0 - excess_);
+    const double expected = expectedHold_.step(powerHold_.value() * cool_ * cool_), heat = heatHold_.step(last.heat);
+    if (heat * power_.value() > 0.3 && heat > heatExcess_ * expected)
+        heatExcess_ = std::min(heat / expected, largestHeatExcess);
+    else
+        heatExcess_ += perTick(excessTime, rate_) * (1.0 - heatExcess_);
+    if (muteFor_ > 0) {
+        --muteFor_;
+        mute_ = 0.0;
+    } else {
+        mute_ = std::min(1.0, mute_ + tick / (muteReleaseTime * rate_));
+    }
+
+    auto factors = forWish();
+    const double loud = forVoltage(), cool = forPower();
+    for (auto& factor : factors)
+        factor *= loud * cool * mute_;
+    const double before = factors[0];
+    plan(cone, factors);
+    factors_ = {(before > 0.0 ? factors[0] / before : 1.0) * held_[0], loud, cool};
+    for (std::size_t b = 0; b < bands; ++b)
+        for (std::size_t k = 0; k < gain_[b].size(); ++k)
+            gain_[b][k] += factors[b] * shape_[k];
+}
+
+double Protection::step(double u, bool sound)
+{
+    const auto values = split_.split(sound ? u : 0.0);
+    if (!sound)
+        muteFor_ = latency / tick + ticks(muteTime, rate_);
+    double left = 0.0, out = 0.0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        sum_[b] += values[b];
+        left += held_[b] * values[b];
+        out += gain_[b][static_cast<std::size_t>(place_)] * std::exchange(delayed_[b][oldest_], values[b]);
+    }
+    oldest_ = oldest_ + 1 == latency ? 0 : oldest_ + 1;
+    peak_ = std::max(peak_, std::abs(left));
+    if (!power_.still() || power_.value() > 0.0) {
+        const double i = load_.step(loud_ * left).i;
+        heatPeak_ = std::max(heatPeak_, ohms_ * i * i);
+    }
+    if (on_ && ++summed_ == wishStep) {
+        for (std::size_t b = 0; b < bands; ++b)
+            wish_[b].step(sum_[b] / wishStep);
+        sum_.fill(0.0);
+        summed_ = 0;
+    }
+    if (!sent_.empty()) {
+        sent_[sentAt_] = out;
+        sentAt_ = sentAt_ + 1 == sent_.size() ? 0 : sentAt_ + 1;
+    }
+    if (++place_ == tick) {
+        place_ = 0;
+        for (auto& gain : gain_) {
+            std::copy(gain.begin() + tick, gain.end(), gain.begin());
+            std::fill(gain.end() - tick, gain.end(), 0.0);
+        }
+    }
+    return out;
+}
+
+} // namespace excursion

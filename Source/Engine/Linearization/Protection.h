@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Linearization/Bands.h"
+#include "Engine/Linearization/Foresight.h"
+#include "Engine/Linearization/Glide.h"
+#include "Engine/Linearization/PeakHold.h"
+#include "Engine/Linearization/RealTime.h"
+#include "Engine/Linearization/Reference.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace excursion {
+
+/// Turns a voltage down before it is linearized, so that excursion, voltage and power keep their limits together. It looks ahead: what it turns
+/// down left the input `latency` samples ago. Every `tick` samples it chooses one factor for each of three bands (Bands.h), and the gain of a band
+/// is these factors through a smooth window that is shorter than the look-ahead. The factors are, multiplied:
+///  - what keeps the motion of the wish within the limit of the excursion: the lowest band first. Judged is how far a cone would coast that
+///    were left alone at any instant; a factor is held for 0.1 s at least and released slowly, so a steady tone has a steady gain;
+///  - what keeps the peaks of the voltage, as they are after that, within the limit, with what linearizing has lately added to them;
+///  - what keeps the heat of the coil within a bound that falls to the limit as the running mean comes near it;
+///  - silence around a sample that is not finite.
+/// The last word has a plan: from the state of a cone that was given what came out, under the inputs that are known, with these factors now and
+/// silence from the next tick on. If that cone would leave its limit, the factors are turned down until it does not. As silence is always a way on
+/// that was found to be safe a tick before, the limit holds; as nothing but turning down is ever done, no voltage is spent on braking.
+///
+/// Thread: after construction nothing allocates, locks or throws.
+class Protection {
+public:
+    static constexpr int latency = 73;         ///< samples
+    static constexpr int tick = 16;            ///< samples
+    static constexpr std::size_t bands = Bands::count;
+
+    /// @param delay  samples from the cone, as decide() is told of it, to the next input
+    Protection(const Model&, const RealTimeOptions&, double delay);
+
+    void reset();
+
+    /// From now on the limits are those of the controls, or there are none.
+    void set(const LinearizationControls&, bool on);
+
+    /// Whether the next sample begins a tick, before which decide() has to be called.
+    bool due() const { return place_ == 0; }
+    std::size_t left() const { return static_cast<std::size_t>(tick - place_); }   ///< samples of the tick
+
+    /// What came out in the tick before.
+    struct Outcome {
+        double asked = 0.0, wanted = 0.0;   ///< peaks of what went into the linearizer and of what it asked for, V
+        double heat = 0.0;                  ///< mean of Re i^2, W
+    };
+    void decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Outcome&);
+
+    /// @param sound  false: a sample that is not finite came here
+    double step(double u, bool sound);
+
+    double voltageLimit() const { return voltageNow_; }         ///< V, as it is at the moment
+    double heat() const { return heat_; }                       ///< W, the running mean
+    /// How near to its limit the cone will come, by the latest plan; 0: there is no limit.
+    double share() const { return share_; }
+    /// By how much each limit turns the signal down at the moment: factors.
+    struct Factors {
+        double displacement = 1.0, voltage = 1.0, power = 1.0;
+    };
+    const Factors& factors() const { return factors_; }
+
+private:
+    static constexpr int window = latency - tick + 1;   ///< samples over which a factor is smoothed
+    static constexpr int pulse = window + tick - 1;     ///< samples over which one tick's factor acts
+    static constexpr int planStep = 4, wishStep = 8;    ///< samples: steps of plan and wish
+    using Values = Bands::Values;
+    using Path = std::array<double, pulse>;
+
+    void plan(const Eigen::Map<const Eigen::VectorXd>& cone, Values& factors);
+    Values forWish();
+    double forVoltage();
+    double forPower();
+
+    double rate_, ohms_;
+    int committed_;                 ///< samples on their way to the cone
+    Bands split_;
+    std::array<Reference, bands> wish_;   ///< the motion of each band as it comes, undiminished
+    Reference load_;                ///< the current of what the limits of excursion and voltage leave
+    Foresight coast_, ahead_;
+    double uncertainty_;            ///< by how much the excursion can differ, relatively, per relative error of the parameters
+
+    // What is known of the input.
+    std::array<std::array<double, latency>, bands> delayed_ {};
+    std::size_t oldest_ = 0;
+    std::vector<double> sent_;      ///< the latest outputs, as many as are committed, a ring
+    std::size_t sentAt_ = 0;
+    Values sum_ {};                 ///< of the step of the wish
+    int summed_ = 0;
+    double peak_ = 0.0, heatPeak_ = 0.0;   ///< of the tick, with the factors that were
+
+    // Gains: factors through the window.
+    Path shape_ {};
+    std::array<Path, bands> gain_ {};   ///< from the next sample on, if silence followed
+    int place_ = 0;
+
+    // Limits and what they come to.
+    bool on_ = false;
+    Glide displacement_, voltage_, power_;   ///< as reciprocals: 0: none
+    double voltageNow_, heat_ = 0.0, share_ = 0.0;
+    std::array<PeakHold, bands> wishHold_;   ///< of 1 - factor
+    Values held_;
+    PeakHold voltageHold_, powerHold_, askedHold_, wantedHold_, expectedHold_, heatHold_;
+    double loud_ = 1.0, cool_ = 1.0, excess_ = 1.0, heatExcess_ = 1.0;   ///< the last two: what linearizing adds to the peaks, and to the heat
+    double mute_ = 1.0;
+    int muteFor_ = 0;
+    Factors factors_;
+
+    // Room for decide().
+    Eigen::VectorXd future_, rest_, drive_, coasted_;
+    Eigen::MatrixXd parts_, partDrives_, wishes_;
+};
+
+} // namespace excursion
