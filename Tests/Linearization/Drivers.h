@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -14,6 +15,7 @@
 namespace excursion {
 
 inline constexpr double xmax = 4e-3;   ///< m, of midbass()
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Brunet's driver.
 inline Model midbass()

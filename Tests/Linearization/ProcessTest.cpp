@@ -15,7 +15,6 @@ using namespace excursion;
 namespace {
 
 constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool allFinite(const std::vector<double>& values)
 {

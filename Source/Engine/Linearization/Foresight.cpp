@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace excursion {
 
@@ -41,23 +40,20 @@ Bands::Values largestWithin(const Eigen::VectorXd& rest, const Eigen::MatrixXd& 
 {
     Bands::Values factors {};
     for (std::size_t b = 0; b < Bands::count; ++b) {
-        // The bands above this one as they may be at most, those below given up.
-        double low = 0.0, high = most[b];
-        for (Eigen::Index i = 0; i < rest.size(); ++i) {
+        // The bands above this one as they may be at most, those below given up. They have to keep the limit by themselves: what one
+        // band takes back of another today it need not take back tomorrow.
+        double high = most[b];
+        for (Eigen::Index i = 0; i < rest.size() && high >= 0.0; ++i) {
             double others = rest[i];
             for (std::size_t above = b + 1; above < Bands::count; ++above)
                 others += most[above] * parts(i, static_cast<Eigen::Index>(above));
-            const double part = parts(i, static_cast<Eigen::Index>(b));
-            if (part == 0.0) {
-                if (std::abs(others) > limit)
-                    high = -1.0;
-                continue;
-            }
-            const double one = (limit - others) / part, other = (-limit - others) / part;
-            low = std::max(low, std::min(one, other));
-            high = std::min(high, std::max(one, other));
+            const double part = parts(i, static_cast<Eigen::Index>(b)), room = limit - std::copysign(others, part * others);
+            if (std::abs(others) > limit)
+                high = -1.0;
+            else if (room < high * std::abs(part))
+                high = room / std::abs(part);
         }
-        if (low <= high) {
+        if (high >= 0.0) {
             factors[b] = high;
             std::copy(most.begin() + static_cast<std::ptrdiff_t>(b) + 1, most.end(), factors.begin() + static_cast<std::ptrdiff_t>(b) + 1);
             return factors;

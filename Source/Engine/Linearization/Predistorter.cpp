@@ -18,7 +18,7 @@ constexpr double nearFrom = 0.6, nearTo = 0.8;            // of the limit of the
 
 double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
 
-double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(std::max(factor, 1e-10)) : 0.0; }
+double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(std::max(factor, 1e-5)) : 0.0; }
 
 } // namespace
 
@@ -97,6 +97,8 @@ void Predistorter::begin(const double* in, std::size_t n)
         protection_.decide(linearizer_.cone().state(), outcome_);
         outcome_ = {};
         heats_ = 0.0;
+        const auto& factors = protection_.factors();
+        least_ = {std::min(least_.displacement, factors.displacement), std::min(least_.voltage, factors.voltage), std::min(least_.power, factors.power)};
         const double share = std::clamp((protection_.share() - nearFrom) / (nearTo - nearFrom), 0.0, 1.0);
         near_.aim(smooth(share));
     }
@@ -145,10 +147,10 @@ void Predistorter::publish()
     displacement_.raise(peak_.displacement);
     voltage_.raise(peak_.voltage);
     power_.raise(protection_.heat());
-    const auto& factors = protection_.factors();
-    displacementReduction_.raise(decibelsDown(factors.displacement));
-    voltageReduction_.raise(decibelsDown(factors.voltage));
-    powerReduction_.raise(decibelsDown(factors.power));
+    displacementReduction_.raise(decibelsDown(least_.displacement));
+    voltageReduction_.raise(decibelsDown(least_.voltage));
+    powerReduction_.raise(decibelsDown(least_.power));
+    least_ = {};
     peak_ = {};
 }
 

@@ -59,7 +59,7 @@ public:
         double displacement = 0.0;   ///< peak of a cone that was given the output, m
         double voltage = 0.0;        ///< peak that came out, V
         double power = 0.0;          ///< W, largest running mean of the coil's heat
-        double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;   ///< dB by which each limit has turned the signal down at most; 0: not at all
+        double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;   ///< dB by which each limit has turned down at most: the motion that was asked for, the voltage, the current; 0: not at all
         int faults = 0;              ///< since construction
     };
     Meters take();
@@ -83,6 +83,7 @@ private:
     std::array<double, longestPart> block_ {};
     std::array<double, 4 * longestPart> between_ {};
     Meters peak_;
+    Protection::Factors least_;
     Peak displacement_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};
 };

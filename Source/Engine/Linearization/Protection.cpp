@@ -15,17 +15,31 @@ namespace {
 constexpr double firstCorner = 2.5, secondCorner = 12.0;   // of the resonance: above the first one moves a cone little
 constexpr double swing = 0.75;                             // periods of the resonance: a cone left alone has gone farthest long before
 constexpr Eigen::Index coastingPoints = 32;
-constexpr double wishShare = 0.98, planShare = 0.992;      // of the limit; the rest is for points between those that are looked at
-constexpr double limitTime = 0.005;                        // s, see Glide
+constexpr double wishShare = 0.96, planShare = 0.992;      // of the limit; the rest is for points between those that are looked at
+constexpr double limitTime = 0.008, powerLimitTime = 0.05, easeTime = 0.0025;   // s, see Glide
+constexpr double patience = 0.08;                          // s, in which a signal follows a limit that falls before it is made to
 constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3, voltageHoldTime = 0.03, voltageReleaseTime = 0.1;   // s
 constexpr double powerHoldTime = 0.05, powerReleaseTime = 0.2;                                                // s
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;  // s
 constexpr double largestExcess = 4.0, largestHeatExcess = 30.0, excessTime = 1.0;    // of what linearizing adds to peaks; s
-constexpr double powerShare = 0.985, powerSlope = 20.0;    // see forPower()
+constexpr double powerShare = 0.985, powerSlope = 20.0, powerDescent = 0.96;    // see forPower()
 
 double resonance(const Model& model)
 {
     return std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / (2.0 * std::numbers::pi);
+}
+
+Glide ease(double rate) { return {easeTime, rate / Protection::tick, 1.0}; }
+
+/// A factor that follows slowly while its limit is on the way, else at once.
+double eased(Glide& glide, double factor, bool slowly)
+{
+    if (!slowly) {
+        glide.jump(factor);
+        return factor;
+    }
+    glide.aim(factor);
+    return glide.step();
 }
 
 double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
@@ -78,7 +92,8 @@ Protection::Protection(const Model& model, const RealTimeOptions& options, doubl
              roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_,
              (committed_ - delay + 0.5) / rate_),
       uncertainty_(worstSensitivity(model)), sent_(static_cast<std::size_t>(committed_), 0.0), displacement_(limitTime, rate_ / tick),
-      voltage_(limitTime, rate_ / tick), power_(limitTime, rate_ / tick), voltageNow_(std::numeric_limits<double>::infinity()),
+      voltage_(limitTime, rate_ / tick), power_(powerLimitTime, rate_ / tick), ease_ {ease(rate_), ease(rate_), ease(rate_)},
+      loudEase_(ease(rate_)), coolEase_(ease(rate_)), past_(static_cast<std::size_t>(ticks(patience, rate_))), voltageNow_(std::numeric_limits<double>::infinity()),
       wishHold_ {PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_))},
       voltageHold_(ticks(voltageHoldTime, rate_)), powerHold_(ticks(powerHoldTime, rate_)), askedHold_(ticks(wishHoldTime, rate_)),
       wantedHold_(ticks(wishHoldTime, rate_)), expectedHold_(ticks(powerHoldTime, rate_)), heatHold_(ticks(powerHoldTime, rate_))
@@ -123,8 +138,11 @@ void Protection::reset()
     }
     for (auto* limit : {&displacement_, &voltage_, &power_})
         limit->jump();
+    std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
     for (auto* hold : {&wishHold_[0], &wishHold_[1], &wishHold_[2], &voltageHold_, &powerHold_, &askedHold_, &wantedHold_, &expectedHold_, &heatHold_})
         hold->reset();
+    for (auto* ease : {&ease_[0], &ease_[1], &ease_[2], &loudEase_, &coolEase_})
+        ease->jump(1.0);
     held_.fill(1.0);
     loud_ = excess_ = heatExcess_ = cool_ = mute_ = 1.0;
     factors_ = {};
@@ -138,12 +156,13 @@ void Protection::set(const LinearizationControls& controls, bool on)
     displacement_.aim(on ? std::exp(uncertainty_ * controls.margin) * reciprocal(controls.displacementLimit) : 0.0);
     voltage_.aim(on ? reciprocal(controls.voltageLimit) : 0.0);
     power_.aim(on && ohms_ > 0.0 ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin)) : 0.0);
-    if (fresh)
+    if (fresh) {
         for (auto* limit : {&displacement_, &voltage_, &power_})
             limit->jump();
-    if (fresh)
+        std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
         for (auto& wish : wish_)
             wish.reset();
+    }
 }
 
 /// Of each band, what a cone that moved as the wish asks, and were then left alone, would ask for.
@@ -160,11 +179,12 @@ Protection::Values Protection::forWish()
             coasted_.setZero();
             need = largestWithin(coasted_, wishes_, need, wishShare / limit);
         }
+        factors_.displacement = wishShare / std::max(wishShare, farthest * limit);
     }
     const double release = on_ ? perTick(wishReleaseTime, rate_) : 0.2;
     for (std::size_t b = 0; b < bands; ++b) {
         const double floor = 1.0 - wishHold_[b].step(1.0 - need[b]);
-        held_[b] = floor < held_[b] ? floor : held_[b] + release * (floor - held_[b]);
+        held_[b] = eased(ease_[b], floor < held_[b] ? floor : held_[b] + release * (floor - held_[b]), displacement_.value() != displacementNow_);
     }
     return held_;
 }
@@ -173,27 +193,28 @@ double Protection::forVoltage()
 {
     const double peak = voltageHold_.step(std::exchange(peak_, 0.0)), limit = voltage_.value();
     const double need = peak * excess_ * limit > 1.0 ? 1.0 / (peak * excess_ * limit) : 1.0;
-    loud_ = need < loud_ ? need : loud_ + perTick(voltageReleaseTime, rate_) * (need - loud_);
+    loud_ = eased(loudEase_, need < loud_ ? need : loud_ + perTick(voltageReleaseTime, rate_) * (need - loud_), limit > 0.0 && limit * voltageNow_ != 1.0);
     return loud_;
 }
 
 /// The heat p may be P (1 + s (1 - y/P)) with the running mean y and the limit P: y' = (p - y)/T then falls to zero as y comes near P, and y never
-/// passes it.
+/// passes it. Where a lower limit finds y above it already, y is led down to it: the signal becomes quiet, not silent.
 double Protection::forPower()
 {
     double peak = powerHold_.step(std::exchange(heatPeak_, 0.0));
-    const double limit = power_.value() / powerShare;
+    const double least = heat_ > 0.0 ? 1.0 / (powerDescent * heat_) : std::numeric_limits<double>::infinity();
+    const double limit = std::min(power_.value() / powerShare, least);
     const double allowed = limit > 0.0 ? std::max(0.0, (1.0 + powerSlope * (1.0 - heat_ * limit)) / limit) : peak;
     peak *= heatExcess_;
     const double need = peak > allowed ? std::sqrt(allowed / peak) : 1.0;
-    cool_ = need < cool_ ? need : cool_ + perTick(powerReleaseTime, rate_) * (need - cool_);
+    cool_ = eased(coolEase_, need < cool_ ? need : cool_ + perTick(powerReleaseTime, rate_) * (need - cool_), !power_.still());
     return cool_;
 }
 
 /// Turns the factors down until a cone that gets them for a tick, and silence then, stays within its limit.
 void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, Values& factors)
 {
-    const double limit = displacement_.value();
+    const double limit = displacementNow_;
     share_ = 0.0;
     if (!(limit > 0.0))
         return;
@@ -227,7 +248,12 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
 {
     for (auto* limit : {&displacement_, &voltage_, &power_})
         limit->step();
-    voltageNow_ = voltage_.value() > 0.0 ? 1.0 / voltage_.value() : std::numeric_limits<double>::infinity();
+    // A limit that falls is first followed by what is to come, then asked of what comes out.
+    past_[pastAt_] = {displacement_.value(), voltage_.value()};
+    pastAt_ = pastAt_ + 1 == past_.size() ? 0 : pastAt_ + 1;
+    displacementNow_ = std::min(displacement_.value(), past_[pastAt_].displacement);
+    const double voltage = std::min(voltage_.value(), past_[pastAt_].voltage);
+    voltageNow_ = voltage > 0.0 ? 1.0 / voltage : std::numeric_limits<double>::infinity();
     heat_ += perTick(LinearizationControls::averagingTime, rate_) * (last.heat - heat_);
     const double asked = askedHold_.step(last.asked), wanted = wantedHold_.step(last.wanted);
     if (wanted * voltage_.value() > 0.9 && wanted > excess_ * asked)
@@ -246,13 +272,15 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
         mute_ = std::min(1.0, mute_ + tick / (muteReleaseTime * rate_));
     }
 
+    factors_ = {};
     auto factors = forWish();
-    const double loud = forVoltage(), cool = forPower();
+    factors_.voltage = forVoltage();
+    factors_.power = forPower();
     for (auto& factor : factors)
-        factor *= loud * cool * mute_;
-    const double before = factors[0];
+        factor *= factors_.voltage * factors_.power * mute_;
     plan(cone, factors);
-    factors_ = {(before > 0.0 ? factors[0] / before : 1.0) * held_[0], loud, cool};
+    if (share_ > planShare)
+        factors_.displacement = std::min(factors_.displacement, planShare / share_);
     for (std::size_t b = 0; b < bands; ++b)
         for (std::size_t k = 0; k < gain_[b].size(); ++k)
             gain_[b][k] += factors[b] * shape_[k];

@@ -55,11 +55,11 @@ public:
     /// @param sound  false: a sample that is not finite came here
     double step(double u, bool sound);
 
-    double voltageLimit() const { return voltageNow_; }         ///< V, as it is at the moment
+    double voltageLimit() const { return voltageNow_; }         ///< V, of what comes out at the moment
     double heat() const { return heat_; }                       ///< W, the running mean
     /// How near to its limit the cone will come, by the latest plan; 0: there is no limit.
     double share() const { return share_; }
-    /// By how much each limit turns the signal down at the moment: factors.
+    /// By how much each limit turns down at the moment: the motion that is asked for, the voltage, the current.
     struct Factors {
         double displacement = 1.0, voltage = 1.0, power = 1.0;
     };
@@ -102,6 +102,14 @@ private:
     // Limits and what they come to.
     bool on_ = false;
     Glide displacement_, voltage_, power_;   ///< as reciprocals: 0: none
+    struct Limits {
+        double displacement = 0.0, voltage = 0.0;   ///< reciprocals
+    };
+    std::array<Glide, bands> ease_;          ///< of the factors below
+    Glide loudEase_, coolEase_;
+    std::vector<Limits> past_;               ///< of the latest ticks, a ring
+    std::size_t pastAt_ = 0;
+    double displacementNow_ = 0.0;           ///< reciprocal
     double voltageNow_, heat_ = 0.0, share_ = 0.0;
     std::array<PeakHold, bands> wishHold_;   ///< of 1 - factor
     Values held_;
