@@ -27,6 +27,8 @@ void Meter::show(double share, const juce::String& words, double reduction)
     repaint();
 }
 
+juce::String Meter::words() const { return told_ > 0 ? words_ + ", turned down by " + juce::String(reduction_, 1) + " dB" : words_; }
+
 void Meter::paint(juce::Graphics& g)
 {
     auto area = getLocalBounds().toFloat();
@@ -35,7 +37,7 @@ void Meter::paint(juce::Graphics& g)
     g.setColour(look::text);
     g.drawText(title_, head.removeFromLeft(70.0f), juce::Justification::left);
     g.setColour(told_ > 0 ? look::warning : look::dim);
-    g.drawFittedText(told_ > 0 ? words_ + ", turned down by " + juce::String(reduction_, 1) + " dB" : words_, head.toNearestInt(), juce::Justification::right, 1);
+    g.drawFittedText(words(), head.toNearestInt(), juce::Justification::right, 1);
     area = area.removeFromTop(8.0f);
     g.setColour(look::panel);
     g.fillRoundedRectangle(area, 4.0f);
