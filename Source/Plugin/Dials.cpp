@@ -2,16 +2,6 @@
 #include "Plugin/Dials.h"
 
 namespace excursion::plugin {
-namespace {
-
-void setAsGesture(juce::AudioProcessorParameter& parameter, float value)
-{
-    parameter.beginChangeGesture();
-    parameter.setValueNotifyingHost(value);
-    parameter.endChangeGesture();
-}
-
-} // namespace
 
 NumberDial::NumberDial(Number& number) : number_(number)
 {
@@ -54,16 +44,24 @@ void NumberDial::follow()
 
 OnOffButton::OnOffButton(OnOff& which) : switch_(which), button_(which.getName(80))
 {
-    button_.onClick = [this] { setAsGesture(switch_, button_.getToggleState() ? 1.0f : 0.0f); };
+    button_.onClick = [this] {
+        switch_.beginChangeGesture();
+        switch_ = button_.getToggleState();
+        switch_.endChangeGesture();
+    };
     follow();
 }
 
 void OnOffButton::follow() { button_.setToggleState(switch_.get(), juce::dontSendNotification); }
 
-ChoiceBox::ChoiceBox(juce::AudioParameterChoice& choice) : choice_(choice)
+ChoiceBox::ChoiceBox(Choice& choice) : choice_(choice)
 {
     box_.addItemList(choice.choices, 1);
-    box_.onChange = [this] { setAsGesture(choice_, choice_.convertTo0to1(static_cast<float>(box_.getSelectedItemIndex()))); };
+    box_.onChange = [this] {
+        choice_.beginChangeGesture();
+        choice_ = box_.getSelectedItemIndex();
+        choice_.endChangeGesture();
+    };
     follow();
 }
 

@@ -37,13 +37,13 @@ private:
 
 class ChoiceBox {
 public:
-    explicit ChoiceBox(juce::AudioParameterChoice&);
+    explicit ChoiceBox(Choice&);
 
     juce::ComboBox& box() { return box_; }
     void follow();
 
 private:
-    juce::AudioParameterChoice& choice_;
+    Choice& choice_;
     juce::ComboBox box_;
 };
 

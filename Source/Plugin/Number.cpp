@@ -35,24 +35,21 @@ double Number::snapped(double value) const noexcept
     return std::clamp(std::round(value * scale_.stepsPerUnit) / scale_.stepsPerUnit, scale_.range.least, scale_.range.most);
 }
 
-void Number::setValue(float proportion)
+void Number::setValue(float sent)
 {
-    const float sent = proportion > 0.0f ? std::min(proportion, 1.0f) : 0.0f;   // what is no number is 0
-    if (sent != getValue())
-        value_.store(snapped(at(static_cast<double>(sent))), std::memory_order_relaxed);
+    const float proportion = sent > 0.0f ? std::min(sent, 1.0f) : 0.0f;   // what is no number is 0
+    if (proportion != getValue())
+        value_.store(at(static_cast<double>(proportion)), std::memory_order_relaxed);
 }
 
 juce::String Number::text(double value) const
 {
-    const double shown = value * scale_.shown;
-    if (std::abs(value - snapped(value)) > 1e-9 * std::abs(value))
-        return juce::String(shown);
-    return juce::String(shown, static_cast<int>(std::lround(std::log10(scale_.stepsPerUnit / scale_.shown))));
+    return juce::String(value * scale_.shown, static_cast<int>(std::lround(std::log10(scale_.stepsPerUnit / scale_.shown))));
 }
 
 juce::String Number::getText(float proportion, int longest) const
 {
-    const auto words = text(proportion == getValue() ? get() : snapped(at(static_cast<double>(std::clamp(proportion, 0.0f, 1.0f)))));
+    const auto words = text(at(static_cast<double>(std::clamp(proportion, 0.0f, 1.0f))));
     return longest > 0 ? words.substring(0, longest) : words;
 }
 

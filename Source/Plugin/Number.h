@@ -2,21 +2,19 @@
 #pragma once
 
 #include "Engine/Linearization/Recipe.h"
-#include "Plugin/Juce.h"
+#include "Plugin/Stepped.h"
 
 #include <atomic>
 
 namespace excursion::plugin {
 
-constexpr int versionHint = 1;
-
-/// A number of the settings that a host sees and automates. What a host or a dial sends is put on the nearest step; what a document says is held as
-/// it is, to the last bit, and stays so when a host sends back what it has read. Setting and reading are wait-free.
+/// A number of the settings that a host sees and automates. What a document says and what a host sends is held as it is, between the steps of a dial
+/// too, and stays so when a host sends back what it has read. Setting and reading are wait-free.
 class Number : public juce::AudioProcessorParameterWithID {
 public:
     struct Scale {
         Settings::Range range;
-        int stepsPerUnit;
+        int stepsPerUnit;       ///< of a dial
         double centre;          ///< in the middle of a dial
         double shown = 1.0;     ///< for a value of 1, as 100 for a share in %
         const char* unit = "";
@@ -29,13 +27,13 @@ public:
     void set(double value);
 
     const Scale& scale() const noexcept { return scale_; }
-    double at(double proportion) const noexcept;        ///< 0 to 1, not on a step
+    double at(double proportion) const noexcept;        ///< 0 to 1
     double proportionOf(double value) const noexcept;
-    double snapped(double value) const noexcept;
-    juce::String text(double value) const;              ///< with the unit's decimals, all of them when it is not on a step
+    double snapped(double value) const noexcept;        ///< on the next step
+    juce::String text(double value) const;              ///< to the decimals of a step
 
     float getValue() const override { return static_cast<float>(proportionOf(get())); }
-    void setValue(float proportion) override;
+    void setValue(float sent) override;
     float getDefaultValue() const override { return static_cast<float>(proportionOf(default_)); }
     juce::String getText(float proportion, int longest) const override;
     float getValueForText(const juce::String&) const override;
@@ -45,20 +43,6 @@ private:
     double default_, skew_;
     std::atomic<double> value_;
     static_assert(std::atomic<double>::is_always_lock_free);
-};
-
-/// A switch that a host sees: on or off, nothing between.
-class OnOff : public juce::AudioParameterBool {
-public:
-    using AudioParameterBool::AudioParameterBool;
-    OnOff& operator=(bool on)
-    {
-        AudioParameterBool::operator=(on);
-        return *this;
-    }
-
-private:
-    float getValue() const override { return get() ? 1.0f : 0.0f; }
 };
 
 } // namespace excursion::plugin

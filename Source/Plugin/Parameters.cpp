@@ -8,34 +8,28 @@
 #include <cmath>
 
 namespace excursion::plugin {
-namespace {
-
-template <class Parameter>
-Parameter* added(juce::AudioProcessor& processor, Parameter* parameter)
-{
-    processor.addParameter(parameter);
-    return parameter;
-}
-
-} // namespace
 
 Parameters::Parameters(juce::AudioProcessor& processor)
 {
     const Settings first;
-    const auto number = [&processor](const char* id, const char* title, const Number::Scale& scale, double value) {
-        return added(processor, new Number(id, title, scale, value));
+    const auto added = [&](auto* parameter) {
+        processor.addParameter(parameter);
+        return parameter;
+    };
+    const auto number = [&added](const char* id, const char* title, const Number::Scale& scale, double value) {
+        return added(new Number(id, title, scale, value));
     };
     juce::StringArray titles;
     for (const auto which : modes)
         titles.add(words(title(which)));
-    mode_ = added(processor, new juce::AudioParameterChoice({"mode", versionHint}, "Mode", titles, static_cast<int>(first.mode)));
+    mode_ = added(new Choice("mode", "Mode", titles));
     fullScale_ = number("fullScale", "Volts at 0 dBFS", {Settings::fullScales, 100, 10.0, 1.0, "V"}, first.fullScale);
     amount_ = number("amount", "Amount", {Settings::amounts, 1000, 0.5, 100.0, "%"}, first.amount);
     displacementLimit_ = number("displacementLimit", "Excursion limit", {Settings::displacements, 1000, 1.0, 100.0, "%"}, first.displacementLimit);
     voltageLimit_ = number("voltageLimit", "Voltage limit", {Settings::voltages, 100, 30.0, 1.0, "V"}, first.voltageLimit);
     trim_ = number("trim", "Output trim", {Settings::trims, 10, 0.0, 1.0, "dB"}, first.trimDb);
     for (const auto* effect : catalogue())
-        effects_.push_back(added(processor, new OnOff({"effect-" + words(effect->id()), versionHint}, words(effect->title()), true)));
+        effects_.push_back(added(new OnOff("effect-" + words(effect->id()), words(effect->title()))));
     // Later ones stand behind, so that the earlier ones keep their places.
     powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 100, 30.0, 1.0, "W"}, first.powerLimit);
     margin_ = number("margin", "Model margin", {Settings::margins, 1000, 0.15, 100.0, "%"}, first.margin);
@@ -81,14 +75,33 @@ Recipe Parameters::recipe() const
     return recipe;
 }
 
-void Parameters::set(const Recipe& recipe)
+Between Parameters::between() const
 {
+    Between found;
+    const auto look = [&found](const Stepped& parameter) {
+        if (const float sent = parameter.getValue(); sent != parameter.step(sent))
+            found[parameter.paramID.toStdString()] = static_cast<double>(sent);
+    };
+    look(*mode_);
+    for (const auto* effect : effects_)
+        look(*effect);
+    return found;
+}
+
+void Parameters::set(const Recipe& recipe, const Between& between)
+{
+    // The recipe has the word: a number that stands for anything else is none.
+    const auto put = [&between](Stepped& parameter, float step) {
+        const auto found = between.find(parameter.paramID.toStdString());
+        const float sent = found != between.end() ? static_cast<float>(found->second) : step;
+        parameter.set(parameter.step(sent) == step ? sent : step);
+    };
     {
         const std::lock_guard lock(mutex_);
         title_ = recipe.title;
         words_ = recipe.words;
     }
-    *mode_ = static_cast<int>(recipe.mode);
+    put(*mode_, mode_->proportionOf(static_cast<int>(recipe.mode)));
     fullScale_->set(recipe.fullScale);
     amount_->set(recipe.amount);
     displacementLimit_->set(recipe.displacementLimit);
@@ -97,7 +110,7 @@ void Parameters::set(const Recipe& recipe)
     margin_->set(recipe.margin);
     trim_->set(recipe.trimDb);
     for (std::size_t k = 0; k < effects_.size(); ++k)
-        *effects_[k] = std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end();
+        put(*effects_[k], std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);
 }
 
 } // namespace excursion::plugin

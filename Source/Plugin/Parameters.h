@@ -3,6 +3,7 @@
 
 #include "Engine/Linearization/Chain.h"
 #include "Plugin/Number.h"
+#include "Plugin/State.h"
 
 #include <cstdint>
 #include <mutex>
@@ -21,19 +22,23 @@ public:
     explicit Parameters(juce::AudioProcessor&);
 
     Recipe recipe() const;     ///< title and words are of the one that was set last; not for the audio thread
-    void set(const Recipe&);   ///< a valid one; tells the host; not for the audio thread
+    /// A valid one; tells the host; not for the audio thread.
+    void set(const Recipe&, const Between& = {});
+
+    /// Of the parameters with steps those that a host has put between two: id and number. Kept with a state, see Stepped.
+    Between between() const;
 
     /// For the audio thread as well.
     Settings settings() const;
     ChainControls controls(double measuredDisplacement) const;
     std::uint64_t switches() const;   ///< a bit for every effect that is on
 
-    juce::AudioParameterChoice& mode() { return *mode_; }
+    Choice& mode() { return *mode_; }
     std::vector<Number*> numbers() const { return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, margin_, trim_}; }
     const std::vector<OnOff*>& effects() const { return effects_; }
 
 private:
-    juce::AudioParameterChoice* mode_;
+    Choice* mode_;
     Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_;
     std::vector<OnOff*> effects_;   ///< in the order of the catalogue
     mutable std::mutex mutex_;      ///< of what follows; never locked on the audio thread

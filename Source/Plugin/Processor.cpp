@@ -209,7 +209,7 @@ Processor::Meters Processor::take()
 
 void Processor::getStateInformation(juce::MemoryBlock& block)
 {
-    const auto bytes = bytesOf({parameters_.recipe(), model()});
+    const auto bytes = bytesOf({parameters_.recipe(), model(), parameters_.between()});
     block.replaceAll(bytes.data(), bytes.size());
 }
 
@@ -218,7 +218,7 @@ void Processor::setStateInformation(const void* data, int size)
     try {
         const auto state = stateFrom({static_cast<const char*>(data), static_cast<std::size_t>(std::max(size, 0))});
         requireRunnable(withoutOff(state.model, state.recipe), {48000.0, oversampling});
-        parameters_.set(state.recipe);
+        parameters_.set(state.recipe, state.between);
         setModel(state.model);
     } catch (const Error&) {
         // A state that cannot be used is none: what is there stays.

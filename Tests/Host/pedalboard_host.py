@@ -64,6 +64,23 @@ def main(path):
     other.raw_state = state
     assert other.raw_state == state
     assert str(other.mode) == "Audition"
+
+    # Whatever numbers were sent, the host shows the same ones when their state has been restored.
+    draw = np.random.default_rng(0x444)
+
+    def sent():
+        for one in plugin.parameters.values():
+            one.raw_value = draw.random()
+
+    for _ in range(20):
+        sent()
+        plugin.process(np.zeros((2, 480), np.float32), rate, reset=False)
+        state, shown = plugin.raw_state, [one.raw_value for one in plugin.parameters.values()]
+        sent()
+        plugin.raw_state = state
+        again = [one.raw_value for one in plugin.parameters.values()]
+        assert np.max(np.abs(np.subtract(again, shown)[:-1])) < 3e-3, list(zip(plugin.parameters, shown, again))   # the last is the wrapper's bypass
+        assert plugin.raw_state == state
     print("pedalboard: passed")
 
 
