@@ -117,6 +117,8 @@ void LinearizePage::follow()
         dial.second->follow();
     for (auto& one : switches_)
         one->follow();
+    if (const auto title = words(processor_.parameters().recipe().title); title.isNotEmpty() && title != recipes_.getText())
+        recipes_.setText(title, juce::dontSendNotification);
 }
 
 void LinearizePage::showMeters()
