@@ -6,6 +6,7 @@ namespace excursion::plugin {
 NumberDial::NumberDial(Number& number) : number_(number)
 {
     const auto& scale = number.scale();
+    slider_.setTextBoxStyle(juce::Slider::TextBoxRight, false, 90, 20);
     slider_.setTextValueSuffix(juce::String(" ") + scale.unit);
     slider_.setNormalisableRange({scale.range.least, scale.range.most, [&number](double, double, double proportion) { return number.at(proportion); },
                                   [&number](double, double, double value) { return number.proportionOf(value); }});

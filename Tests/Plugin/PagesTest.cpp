@@ -146,22 +146,26 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     recipe.voltageLimit = 5.0;
     recipe.powerLimit = 20.0;
     processor.parameters().set(recipe);
-    juce::MidiBuffer midi;
-    for (int block = 0; block < 100; ++block) {
-        juce::AudioBuffer<float> buffer(2, 480);
-        for (int n = 0; n < 480; ++n)
-            for (int c = 0; c < 2; ++c)
-                buffer.setSample(c, n, static_cast<float>(std::sin(2.0 * 3.14159265 * 40.0 * (480 * block + n) / 48000.0)));
-        processor.processBlock(buffer, midi);
-    }
+    const auto play = [&processor] {
+        juce::MidiBuffer midi;
+        for (int block = 0; block < 100; ++block) {
+            juce::AudioBuffer<float> buffer(2, 480);
+            for (int n = 0; n < 480; ++n)
+                for (int c = 0; c < 2; ++c)
+                    buffer.setSample(c, n, static_cast<float>(std::sin(2.0 * 3.14159265 * 40.0 * (480 * block + n) / 48000.0)));
+            processor.processBlock(buffer, midi);
+        }
+    };
+    play();
     editor.update();
     REQUIRE(meters().size() == 3);
     CHECK(meters()[0]->words().contains("% of what was measured, turned down by "));
     CHECK(meters()[1]->words().contains(" V, turned down by "));
     CHECK(meters()[2]->words().contains(" W"));
-    forecast(editor);
     for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {1000, 680}}) {
         editor.setSize(width, height);
+        play();
+        editor.update();
         picture(editor, "linearize-limits-" + juce::String(width));
         const auto& children = page->getChildren();
         for (int a = 0; a < children.size(); ++a) {
