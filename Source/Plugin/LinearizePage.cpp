@@ -126,8 +126,11 @@ void LinearizePage::showMeters()
     const auto meters = processor_.take();
     const double range = measuredDisplacement(processor_.model()), reach = std::isfinite(range) ? meters.displacement / range : 0.0;
     const auto limits = processor_.parameters().controls(range).linearization;
-    excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm" + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
-                    meters.displacementReduction);
+    if (!processor_.standstill().empty())
+        excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
+    else
+        excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm" + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
+                        meters.displacementReduction);
     voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageReduction);
     power_.setVisible(std::isfinite(limits.powerLimit));
     power_.show(meters.power / limits.powerLimit, juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W", meters.powerReduction);

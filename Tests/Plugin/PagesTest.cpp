@@ -178,6 +178,12 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
                 CHECK_FALSE((children[b]->isVisible() && children[b]->getBounds().intersects(children[a]->getBounds())));
         }
     }
+    processor.prepareToPlay(1e6, 480);
+    editor.update();
+    CHECK(meters()[0]->words().contains("as it is"));
+    processor.prepareToPlay(96000.0, 480);
+    editor.update();
+    CHECK_FALSE(meters()[0]->words().contains("as it is"));
 }
 
 TEST_CASE("Work in the background is cancelled, and what cannot be read is told", "[plugin]")
