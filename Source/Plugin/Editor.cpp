@@ -110,6 +110,10 @@ void Editor::update()
             for (auto* page : pages_)
                 page->show(findings);
     }
+    if (auto standstill = owner_.standstill(); standstill != standstill_) {
+        standstill_ = std::move(standstill);
+        tell(standstill_.empty() ? juce::String("The engine runs again.") : words(standstill_), !standstill_.empty());
+    }
     // A host may have restored another state.
     if (const auto version = owner_.modelVersion(); version != shown_) {
         shown_ = version;

@@ -54,6 +54,7 @@ private:
     std::size_t page_ = 0;
     std::uint64_t seen_ = 0;          ///< version of the findings that the pages show
     std::string said_;                ///< of the session's status
+    std::string standstill_;          ///< of the processor, as it was told
     std::uint64_t shown_ = 0;         ///< version of the model that the last page shows
 };
 

@@ -14,7 +14,7 @@
 
 namespace excursion::plugin {
 
-LinearizePage::LinearizePage(Window& window) : Page(window), processor_(window.processor())
+LinearizePage::LinearizePage(Window& window) : Page(window), processor_(window.processor()), mode_(processor_.parameters().mode())
 {
     name_.setFont(juce::Font(20.0f));
     for (auto* label : {&name_, &forecastWords_})
@@ -39,25 +39,19 @@ LinearizePage::LinearizePage(Window& window) : Page(window), processor_(window.p
             window_.tell(words(recipe.words), false);
         }
     };
-    mode_.addItemList(processor_.parameters().mode().choices, 1);
-    modeAttachment_ = std::make_unique<juce::ComboBoxParameterAttachment>(processor_.parameters().mode(), mode_);
     load_.onClick = [this] { choose(); };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {&drivers_, &recipes_, &mode_, &load_, &excursion_, &voltage_, &distortion_})
+    for (juce::Component* component : std::initializer_list<juce::Component*> {&drivers_, &recipes_, &mode_.box(), &load_, &excursion_, &voltage_, &distortion_})
         addAndMakeVisible(component);
-    for (auto* parameter : processor_.parameters().numbers()) {
-        Dial dial {std::make_unique<juce::Label>(), std::make_unique<juce::Slider>(juce::Slider::LinearHorizontal, juce::Slider::TextBoxRight), nullptr};
-        dial.title->setText(parameter->getName(40), juce::dontSendNotification);
-        dial.slider->setTextValueSuffix(" " + parameter->getLabel());
-        dial.attachment = std::make_unique<juce::SliderParameterAttachment>(*parameter, *dial.slider);
-        addAndMakeVisible(*dial.title);
-        addAndMakeVisible(*dial.slider);
-        dials_.push_back(std::move(dial));
+    addChildComponent(power_);
+    for (auto* number : processor_.parameters().numbers()) {
+        dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number));
+        dials_.back().first->setText(number->getName(40), juce::dontSendNotification);
+        addAndMakeVisible(*dials_.back().first);
+        addAndMakeVisible(dials_.back().second->slider());
     }
-    for (auto* parameter : processor_.parameters().effects()) {
-        Switch one {std::make_unique<juce::ToggleButton>(parameter->getName(80)), nullptr};
-        one.attachment = std::make_unique<juce::ButtonParameterAttachment>(*parameter, *one.button);
-        addAndMakeVisible(*one.button);
-        switches_.push_back(std::move(one));
+    for (auto* effect : processor_.parameters().effects()) {
+        switches_.push_back(std::make_unique<OnOffButton>(*effect));
+        addAndMakeVisible(switches_.back()->button());
     }
     showModel(processor_.model());
 }
@@ -73,7 +67,7 @@ void LinearizePage::showModel(const Model& model)
         addAndMakeVisible(*laws_.back());
     }
     for (std::size_t k = 0; k < switches_.size(); ++k)
-        switches_[k].button->setEnabled(model.has(catalogue()[k]->id()));
+        switches_[k]->button().setEnabled(model.has(catalogue()[k]->id()));
     resized();
 }
 
@@ -115,16 +109,40 @@ void LinearizePage::showForecast()
                            juce::dontSendNotification);
 }
 
-void LinearizePage::tick()
+/// What a host has moved.
+void LinearizePage::follow()
+{
+    mode_.follow();
+    for (auto& dial : dials_)
+        dial.second->follow();
+    for (auto& one : switches_)
+        one->follow();
+    if (const auto title = words(processor_.parameters().recipe().title); title.isNotEmpty() && title != recipes_.getText())
+        recipes_.setText(title, juce::dontSendNotification);
+}
+
+void LinearizePage::showMeters()
 {
     const auto meters = processor_.take();
     const double range = measuredDisplacement(processor_.model()), reach = std::isfinite(range) ? meters.displacement / range : 0.0;
-    excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm" + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
-                    meters.displacementReduction > 0.01);
-    voltage_.show(meters.voltage / processor_.parameters().recipe().voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageReduction > 0.01);
+    const auto limits = processor_.parameters().controls(range).linearization;
+    if (!processor_.standstill().empty())
+        excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
+    else
+        excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm" + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
+                        meters.displacementReduction);
+    voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageReduction);
+    power_.setVisible(std::isfinite(limits.powerLimit));
+    power_.show(meters.power / limits.powerLimit, juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W", meters.powerReduction);
     if (meters.faults > faults_)
         window_.tell("Something was not finite: the engine has started anew.", true);
     faults_ = meters.faults;
+}
+
+void LinearizePage::tick()
+{
+    follow();
+    showMeters();
     showForecast();
 }
 
@@ -141,20 +159,21 @@ void LinearizePage::resized()
     area.removeFromTop(8);
     auto left = area.removeFromLeft(juce::jmax(380, area.getWidth() * 2 / 5));
     area.removeFromLeft(12);
-    mode_.setBounds(left.removeFromTop(30));
+    mode_.box().setBounds(left.removeFromTop(30));
     left.removeFromTop(8);
     for (auto& dial : dials_) {
         auto row = left.removeFromTop(28);
-        dial.title->setBounds(row.removeFromLeft(130));
-        dial.slider->setBounds(row);
+        dial.first->setBounds(row.removeFromLeft(130));
+        dial.second->slider().setBounds(row);
     }
     left.removeFromTop(8);
     for (auto& one : switches_)
-        one.button->setBounds(left.removeFromTop(24));
+        one->button().setBounds(left.removeFromTop(24));
     left.removeFromTop(12);
-    excursion_.setBounds(left.removeFromTop(32));
-    left.removeFromTop(6);
-    voltage_.setBounds(left.removeFromTop(32));
+    for (auto* meter : {&excursion_, &voltage_, &power_}) {
+        meter->setBounds(left.removeFromTop(32));
+        left.removeFromTop(6);
+    }
     forecastWords_.setBounds(area.removeFromBottom(24));
     distortion_.setBounds(area.removeFromBottom(area.getHeight() * 2 / 5));
     const int columns = laws_.size() > 1 ? 2 : 1, rows = juce::jmax(1, (static_cast<int>(laws_.size()) + columns - 1) / columns);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Plugin/Dials.h"
 #include "Plugin/Forecast.h"
 #include "Plugin/Meter.h"
 #include "Plugin/Page.h"
@@ -25,29 +26,21 @@ public:
     void resized() override;
 
 private:
-    struct Dial {
-        std::unique_ptr<juce::Label> title;
-        std::unique_ptr<juce::Slider> slider;
-        std::unique_ptr<juce::SliderParameterAttachment> attachment;
-    };
-    struct Switch {
-        std::unique_ptr<juce::ToggleButton> button;
-        std::unique_ptr<juce::ButtonParameterAttachment> attachment;
-    };
-
     void choose();
+    void follow();
+    void showMeters();
     void showForecast();
 
     Processor& processor_;
     juce::Label name_, forecastWords_;
-    juce::ComboBox drivers_, recipes_, mode_;
+    juce::ComboBox drivers_, recipes_;
     juce::TextButton load_ {"Load a model..."};
-    std::unique_ptr<juce::ComboBoxParameterAttachment> modeAttachment_;
-    std::vector<Dial> dials_;
-    std::vector<Switch> switches_;
+    ChoiceBox mode_;
+    std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;   ///< each behind its title
+    std::vector<std::unique_ptr<OnOffButton>> switches_;
     std::vector<std::unique_ptr<PlotView>> laws_;
     PlotView distortion_;
-    Meter excursion_ {"Excursion"}, voltage_ {"Voltage"};
+    Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
     Forecast forecast_;
     std::pair<std::uint64_t, std::string> asked_;   ///< version of the model, and the recipe, that the forecast is of
     std::unique_ptr<juce::FileChooser> chooser_;

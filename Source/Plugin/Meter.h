@@ -10,16 +10,18 @@ class Meter : public juce::Component {
 public:
     explicit Meter(juce::String title) : title_(std::move(title)) {}
 
-    /// @param share    of the limit, 1: as far as allowed
-    /// @param words    the value with its unit
-    /// @param limited  more was asked for than is allowed
-    void show(double share, const juce::String& words, bool limited);
+    /// @param share      of the limit, 1: as far as allowed
+    /// @param words      the value with its unit
+    /// @param reduction  dB by which the limit has turned the signal down; told, for a second, where it can be heard
+    void show(double share, const juce::String& words, double reduction);
+    juce::String words() const;   ///< as they are shown
     void paint(juce::Graphics&) override;
 
 private:
     juce::String title_, words_;
     double share_ = 0.0;
-    int limited_ = 0;   ///< how many more times it is shown
+    double reduction_ = 0.0;   ///< the largest of those that are told
+    int told_ = 0;             ///< how many more times
 };
 
 } // namespace excursion::plugin

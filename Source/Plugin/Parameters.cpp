@@ -4,95 +4,113 @@
 #include "Engine/Driver/Catalogue.h"
 #include "Plugin/Text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace excursion::plugin {
-namespace {
-
-constexpr int versionHint = 1;
-
-juce::AudioParameterFloat* number(juce::AudioProcessor& processor, const char* id, const char* title, const char* unit, float least, float most,
-                                  float step, float centre, float value)
-{
-    juce::NormalisableRange<float> range(least, most, step);
-    range.setSkewForCentre(centre);
-    auto* parameter = new juce::AudioParameterFloat({id, versionHint}, title, range, value, juce::AudioParameterFloatAttributes().withLabel(unit));
-    processor.addParameter(parameter);
-    return parameter;
-}
-
-/// The parameter's number without what the way through a float has added: a whole number of steps.
-double exactly(const juce::AudioParameterFloat& parameter)
-{
-    const double perUnit = std::round(1.0 / static_cast<double>(parameter.range.interval));
-    return std::round(static_cast<double>(parameter.get()) * perUnit) / perUnit;
-}
-
-} // namespace
 
 Parameters::Parameters(juce::AudioProcessor& processor)
 {
+    const Settings first;
+    const auto added = [&](auto* parameter) {
+        processor.addParameter(parameter);
+        return parameter;
+    };
+    const auto number = [&added](const char* id, const char* title, const Number::Scale& scale, double value) {
+        return added(new Number(id, title, scale, value));
+    };
     juce::StringArray titles;
     for (const auto which : modes)
         titles.add(words(title(which)));
-    mode_ = new juce::AudioParameterChoice({"mode", versionHint}, "Mode", titles, 0);
-    processor.addParameter(mode_);
-    fullScale_ = number(processor, "fullScale", "Volts at 0 dBFS", "V", 0.01f, 200.0f, 0.01f, 10.0f, 10.0f);
-    amount_ = number(processor, "amount", "Amount", "%", 0.0f, 100.0f, 0.1f, 50.0f, 100.0f);
-    displacementLimit_ = number(processor, "displacementLimit", "Excursion limit", "%", 5.0f, 400.0f, 0.1f, 100.0f, 100.0f);
-    voltageLimit_ = number(processor, "voltageLimit", "Voltage limit", "V", 0.01f, 1000.0f, 0.01f, 30.0f, 100.0f);
-    trim_ = number(processor, "trim", "Output trim", "dB", -60.0f, 24.0f, 0.1f, 0.0f, 0.0f);
-    for (const auto* effect : catalogue()) {
-        auto* on = new juce::AudioParameterBool({"effect-" + words(effect->id()), versionHint}, words(effect->title()), true);
-        processor.addParameter(on);
-        on->addListener(this);
-        effects_.push_back(on);
-    }
+    mode_ = added(new Choice("mode", "Mode", titles));
+    fullScale_ = number("fullScale", "Volts at 0 dBFS", {Settings::fullScales, 100, 10.0, 1.0, "V"}, first.fullScale);
+    amount_ = number("amount", "Amount", {Settings::amounts, 1000, 0.5, 100.0, "%"}, first.amount);
+    displacementLimit_ = number("displacementLimit", "Excursion limit", {Settings::displacements, 1000, 1.0, 100.0, "%"}, first.displacementLimit);
+    voltageLimit_ = number("voltageLimit", "Voltage limit", {Settings::voltages, 100, 30.0, 1.0, "V"}, first.voltageLimit);
+    trim_ = number("trim", "Output trim", {Settings::trims, 10, 0.0, 1.0, "dB"}, first.trimDb);
+    for (const auto* effect : catalogue())
+        effects_.push_back(added(new OnOff("effect-" + words(effect->id()), words(effect->title()))));
+    // Later ones stand behind, so that the earlier ones keep their places.
+    powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 100, 30.0, 1.0, "W"}, first.powerLimit);
+    margin_ = number("margin", "Model margin", {Settings::margins, 1000, 0.15, 100.0, "%"}, first.margin);
 }
 
-Parameters::~Parameters()
+Settings Parameters::settings() const
 {
-    for (auto* on : effects_)
-        on->removeListener(this);
-}
-
-Recipe Parameters::recipe() const
-{
-    Recipe recipe;
-    recipe.mode = modes[static_cast<std::size_t>(mode_->getIndex())];
-    recipe.fullScale = exactly(*fullScale_);
-    recipe.amount = exactly(*amount_) / 100.0;
-    recipe.displacementLimit = exactly(*displacementLimit_) / 100.0;
-    recipe.voltageLimit = exactly(*voltageLimit_);
-    recipe.trimDb = exactly(*trim_);
-    for (std::size_t k = 0; k < effects_.size(); ++k)
-        if (!effects_[k]->get())
-            recipe.off.push_back(catalogue()[k]->id());
-    return recipe;
-}
-
-void Parameters::set(const Recipe& recipe)
-{
-    *mode_ = static_cast<int>(recipe.mode);
-    *fullScale_ = static_cast<float>(recipe.fullScale);
-    *amount_ = static_cast<float>(100.0 * recipe.amount);
-    *displacementLimit_ = static_cast<float>(100.0 * recipe.displacementLimit);
-    *voltageLimit_ = static_cast<float>(recipe.voltageLimit);
-    *trim_ = static_cast<float>(recipe.trimDb);
-    for (std::size_t k = 0; k < effects_.size(); ++k)
-        *effects_[k] = std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end();
+    Settings settings;
+    settings.mode = modes[static_cast<std::size_t>(mode_->getIndex())];
+    settings.fullScale = fullScale_->get();
+    settings.amount = amount_->get();
+    settings.displacementLimit = displacementLimit_->get();
+    settings.voltageLimit = voltageLimit_->get();
+    settings.powerLimit = powerLimit_->get();
+    settings.margin = margin_->get();
+    settings.trimDb = trim_->get();
+    return settings;
 }
 
 ChainControls Parameters::controls(double measuredDisplacement) const
 {
-    ChainControls controls;
-    controls.mode = modes[static_cast<std::size_t>(mode_->getIndex())];
-    controls.fullScale = fullScale_->get();
-    controls.trim = std::pow(10.0, 0.05 * static_cast<double>(trim_->get()));
-    controls.linearization.amount = 0.01 * static_cast<double>(amount_->get());
-    controls.linearization.displacementLimit = 0.01 * static_cast<double>(displacementLimit_->get()) * measuredDisplacement;
-    controls.linearization.voltageLimit = voltageLimit_->get();
-    return controls;
+    const auto now = settings();
+    return {now.mode, now.fullScale, std::pow(10.0, 0.05 * now.trimDb), controlsOf(now, measuredDisplacement)};
+}
+
+std::uint64_t Parameters::switches() const
+{
+    std::uint64_t bits = 0;
+    for (std::size_t k = 0; k < effects_.size(); ++k)
+        bits |= std::uint64_t {effects_[k]->get()} << k;
+    return bits;
+}
+
+Recipe Parameters::recipe() const
+{
+    Recipe recipe {settings(), {}, {}, {}};
+    for (std::size_t k = 0; k < effects_.size(); ++k)
+        if (!effects_[k]->get())
+            recipe.off.push_back(catalogue()[k]->id());
+    const std::lock_guard lock(mutex_);
+    recipe.title = title_;
+    recipe.words = words_;
+    return recipe;
+}
+
+Between Parameters::between() const
+{
+    Between found;
+    const auto look = [&found](const Stepped& parameter) {
+        if (const float sent = parameter.getValue(); sent != parameter.step(sent))
+            found[parameter.paramID.toStdString()] = static_cast<double>(sent);
+    };
+    look(*mode_);
+    for (const auto* effect : effects_)
+        look(*effect);
+    return found;
+}
+
+void Parameters::set(const Recipe& recipe, const Between& between)
+{
+    // The recipe has the word: a number that stands for anything else is none.
+    const auto put = [&between](Stepped& parameter, float step) {
+        const auto found = between.find(parameter.paramID.toStdString());
+        const float sent = found != between.end() ? static_cast<float>(found->second) : step;
+        parameter.set(parameter.step(sent) == step ? sent : step);
+    };
+    {
+        const std::lock_guard lock(mutex_);
+        title_ = recipe.title;
+        words_ = recipe.words;
+    }
+    put(*mode_, mode_->proportionOf(static_cast<int>(recipe.mode)));
+    fullScale_->set(recipe.fullScale);
+    amount_->set(recipe.amount);
+    displacementLimit_->set(recipe.displacementLimit);
+    voltageLimit_->set(recipe.voltageLimit);
+    powerLimit_->set(recipe.powerLimit);
+    margin_->set(recipe.margin);
+    trim_->set(recipe.trimDb);
+    for (std::size_t k = 0; k < effects_.size(); ++k)
+        put(*effects_[k], std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);
 }
 
 } // namespace excursion::plugin

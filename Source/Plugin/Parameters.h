@@ -2,44 +2,47 @@
 #pragma once
 
 #include "Engine/Linearization/Chain.h"
-#include "Plugin/Juce.h"
+#include "Plugin/Number.h"
+#include "Plugin/State.h"
 
-#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
 #include <vector>
 
 namespace excursion::plugin {
 
 /// The parameters that a host sees and automates: those of a Recipe, and a switch for every effect of the catalogue.
 ///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V), trim (dB),
-///     effect-<id>
-/// Reading them (recipe(), controls()) is safe on any thread; controls() is for the audio thread.
-class Parameters : private juce::AudioProcessorParameter::Listener {
+///     effect-<id>, powerLimit (W), margin (%)
+/// No listener hangs at them, as those are called on the audio thread: who wants to know reads them, now and then.
+class Parameters {
 public:
     /// Adds them to the processor, which owns them from then on and must outlive this.
     explicit Parameters(juce::AudioProcessor&);
-    ~Parameters() override;
 
-    Recipe recipe() const;
-    void set(const Recipe&);   ///< tells the host; not for the audio thread
+    Recipe recipe() const;     ///< title and words are of the one that was set last; not for the audio thread
+    /// A valid one; tells the host; not for the audio thread.
+    void set(const Recipe&, const Between& = {});
 
+    /// Of the parameters with steps those that a host has put between two: id and number. Kept with a state, see Stepped.
+    Between between() const;
+
+    /// For the audio thread as well.
+    Settings settings() const;
     ChainControls controls(double measuredDisplacement) const;
+    std::uint64_t switches() const;   ///< a bit for every effect that is on
 
-    /// Whether a switch of an effect was moved since the last call.
-    bool takeSwitched() { return switched_.exchange(false, std::memory_order_acq_rel); }
-
-    juce::AudioParameterChoice& mode() { return *mode_; }
-    std::vector<juce::AudioParameterFloat*> numbers() const { return {fullScale_, amount_, displacementLimit_, voltageLimit_, trim_}; }
-    const std::vector<juce::AudioParameterBool*>& effects() const { return effects_; }
+    Choice& mode() { return *mode_; }
+    std::vector<Number*> numbers() const { return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, margin_, trim_}; }
+    const std::vector<OnOff*>& effects() const { return effects_; }
 
 private:
-    // May be called on the audio thread: sets a flag and leaves.
-    void parameterValueChanged(int, float) override { switched_.store(true, std::memory_order_release); }
-    void parameterGestureChanged(int, bool) override {}
-
-    juce::AudioParameterChoice* mode_;
-    juce::AudioParameterFloat *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_;
-    std::vector<juce::AudioParameterBool*> effects_;   ///< in the order of the catalogue
-    std::atomic<bool> switched_ {false};
+    Choice* mode_;
+    Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_;
+    std::vector<OnOff*> effects_;   ///< in the order of the catalogue
+    mutable std::mutex mutex_;      ///< of what follows; never locked on the audio thread
+    std::string title_, words_;
 };
 
 } // namespace excursion::plugin

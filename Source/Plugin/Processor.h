@@ -3,6 +3,7 @@
 
 #include "Engine/Linearization/Crossfade.h"
 #include "Engine/Linearization/Peak.h"
+#include "Plugin/Delay.h"
 #include "Plugin/Juce.h"
 #include "Plugin/Parameters.h"
 #include "Plugin/Session.h"
@@ -20,6 +21,7 @@ namespace excursion::plugin {
 
 /// The plugin without its window. One Chain a channel plays; a thread of its own builds new chains when the model or the switches of
 /// the effects change, and frees the old ones. The audio thread sees parameters (atomics) and the hand-over, nothing else.
+/// At a rate at which no chain can run the signal goes through as it is, as late as ever.
 class Processor : public juce::AudioProcessor {
 public:
     static constexpr int oversampling = 2;
@@ -38,13 +40,15 @@ public:
     Model model() const;
     std::uint64_t modelVersion() const { return modelVersion_.load(std::memory_order_acquire); }   ///< counts the models, from 1
 
-    /// Since the last call, over all channels.
+    /// Why the signal goes through as it is, in a sentence; empty while the engine runs.
+    std::string standstill() const;
+
+    /// Since the last call, over all channels; see Predistorter::Meters.
     struct Meters {
-        double displacement = 0.0;         ///< m, of the predistorter's plan or of the modelled speaker
-        double displacementReduction = 0.0;   ///< dB, see Predistorter::Meters
-        double voltage = 0.0;              ///< V, of the predistorter
-        double voltageReduction = 0.0;
-        int faults = 0;                    ///< of the chains that play now
+        double displacement = 0.0;   ///< m, of the predistorter's plan or of the modelled speaker
+        double voltage = 0.0, power = 0.0;
+        double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;   ///< dB
+        int faults = 0;              ///< of the chains that play now
     };
     Meters take();
 
@@ -75,9 +79,9 @@ public:
 private:
     template <class Sample>
     void play(juce::AudioBuffer<Sample>&, bool bypassed);
-    void build();
+    void build(const Model&);
     void work(const std::stop_token&);
-    std::vector<std::unique_ptr<Chain>> chains(const Model&) const;
+    RealTimeOptions options() const;
 
     Parameters parameters_;
     mutable std::mutex mutex_;   ///< of what follows; never locked on the audio thread
@@ -85,9 +89,12 @@ private:
     std::atomic<std::uint64_t> modelVersion_ {1};
     double sampleRate_ = 0.0;    ///< 0: not prepared
     std::atomic<double> measuredDisplacement_ {0.0};
-    std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;   ///< changed only while no audio runs
+    std::uint64_t switches_ = 0;   ///< of the effects, as they were when chains were built
+    std::string standstill_;
+    std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;   ///< these two are changed only while no audio runs
+    std::vector<Delay> delays_;                                 ///< in place of the channels, where no chain can run
     std::array<double, 256> block_ {};
-    Peak displacement_, displacementReduction_, voltage_, voltageReduction_;
+    Peak displacement_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};
     std::condition_variable_any wake_;
     std::jthread worker_;

@@ -30,7 +30,10 @@ double resonance(const Model& model) { return model.baseParameter("K").value / m
 
 std::string bytesOf(const State& state)
 {
-    return jsonText({{"format", formatName}, {"version", formatVersion}, {"recipe", toJson(state.recipe)}, {"model", toJson(state.model)}});
+    nlohmann::ordered_json document {{"format", formatName}, {"version", formatVersion}, {"recipe", toJson(state.recipe)}, {"model", toJson(state.model)}};
+    if (!state.between.empty())
+        document["between"] = state.between;
+    return jsonText(document);
 }
 
 State stateFrom(std::string_view bytes)
@@ -39,7 +42,13 @@ State stateFrom(std::string_view bytes)
     const auto document = parsed(bytes, where);
     const JsonField field(document, "", where);
     field.requireFormat(formatName, formatVersion);
-    return {recipeFromJson(field.at("recipe")), modelFromJson(field.at("model"))};
+    State state {recipeFromJson(field.at("recipe")), modelFromJson(field.at("model")), {}};
+    if (field.has("between")) {
+        const auto between = field.at("between");
+        for (const auto& id : between.keys())
+            state.between[id] = between.at(id.c_str()).numberWithin(0.0, 1.0);
+    }
+    return state;
 }
 
 Model modelFromText(std::string_view text, const std::string& where)

@@ -3,17 +3,22 @@
 
 #include "Engine/Linearization/Recipe.h"
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace excursion::plugin {
 
+/// Numbers that a host has sent between the steps of parameters, by their ids.
+using Between = std::map<std::string, double>;
+
 /// What a host keeps of the plugin, format "excursion-plugin-state", version 1: the recipe and the model itself, not a path to it.
 /// Same state, same bytes.
 struct State {
     Recipe recipe;
     Model model;
+    Between between;   ///< if any
 };
 
 std::string bytesOf(const State&);

@@ -5,8 +5,10 @@
 #include <catch2/catch.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <thread>
+#include <vector>
 
 using namespace excursion;
 using plugin::Editor;
@@ -116,6 +118,72 @@ TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clic
     click(editor, "Take the last effect back");
     settle(editor);
     CHECK(processor.session().findings()->file.ladder.rungs.size() == 1);
+}
+
+TEST_CASE("The last page shows every limit and what it does, and nothing on it is cut off or covered", "[plugin]")
+{
+    Processor processor;
+    processor.prepareToPlay(48000.0, 480);
+    Editor editor(processor);
+    editor.go(PageName::linearize);
+    editor.update();
+    plugin::LinearizePage* page = nullptr;
+    for (auto* child : editor.getChildren())
+        if (auto* found = dynamic_cast<plugin::LinearizePage*>(child))
+            page = found;
+    REQUIRE(page != nullptr);
+    const auto meters = [page] {
+        std::vector<plugin::Meter*> all;
+        for (auto* child : page->getChildren())
+            if (auto* meter = dynamic_cast<plugin::Meter*>(child); meter != nullptr && meter->isVisible())
+                all.push_back(meter);
+        return all;
+    };
+    CHECK(meters().size() == 2);   // no limit of the power is set
+    auto recipe = processor.parameters().recipe();
+    recipe.mode = Mode::linearize;
+    recipe.displacementLimit = 0.4;
+    recipe.voltageLimit = 5.0;
+    recipe.powerLimit = 20.0;
+    processor.parameters().set(recipe);
+    const auto play = [&processor] {
+        juce::MidiBuffer midi;
+        for (int block = 0; block < 100; ++block) {
+            juce::AudioBuffer<float> buffer(2, 480);
+            for (int n = 0; n < 480; ++n)
+                for (int c = 0; c < 2; ++c)
+                    buffer.setSample(c, n, static_cast<float>(std::sin(2.0 * 3.14159265 * 40.0 * (480 * block + n) / 48000.0)));
+            processor.processBlock(buffer, midi);
+        }
+    };
+    play();
+    editor.update();
+    REQUIRE(meters().size() == 3);
+    CHECK(meters()[0]->words().contains("% of what was measured, turned down by "));
+    CHECK(meters()[1]->words().contains(" V, turned down by "));
+    CHECK(meters()[2]->words().contains(" W"));
+    for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {1000, 680}}) {
+        editor.setSize(width, height);
+        play();
+        editor.update();
+        picture(editor, "linearize-limits-" + juce::String(width));
+        const auto& children = page->getChildren();
+        for (int a = 0; a < children.size(); ++a) {
+            if (!children[a]->isVisible())
+                continue;
+            INFO(width << " x " << height << ", " << children[a]->getBounds().toString());
+            CHECK_FALSE(children[a]->getBounds().isEmpty());
+            CHECK(page->getLocalBounds().contains(children[a]->getBounds()));
+            for (int b = 0; b < a; ++b)
+                CHECK_FALSE((children[b]->isVisible() && children[b]->getBounds().intersects(children[a]->getBounds())));
+        }
+    }
+    processor.prepareToPlay(1e6, 480);
+    editor.update();
+    CHECK(meters()[0]->words().contains("as it is"));
+    processor.prepareToPlay(96000.0, 480);
+    editor.update();
+    CHECK_FALSE(meters()[0]->words().contains("as it is"));
 }
 
 TEST_CASE("Work in the background is cancelled, and what cannot be read is told", "[plugin]")

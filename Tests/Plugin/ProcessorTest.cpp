@@ -179,10 +179,7 @@ TEST_CASE("A recipe reaches the parameters and comes back as it was", "[plugin]"
         auto recipe = plugin::recipeFromText(factory.text, factory.title);
         recipe.off = {"creep"};
         processor.parameters().set(recipe);
-        auto back = processor.parameters().recipe();
-        back.title = recipe.title;
-        back.words = recipe.words;
-        CHECK(toJson(back).dump() == toJson(recipe).dump());
+        CHECK(toJson(processor.parameters().recipe()).dump() == toJson(recipe).dump());
     }
 }
 
@@ -228,7 +225,7 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
     for (int operation = 0; operation < 2000; ++operation) {
         switch (random() % 12) {
         case 0:
-            rate = std::array {44100.0, 48000.0, 96000.0}[random() % 3];
+            rate = std::array {44100.0, 48000.0, 96000.0, 100.0, 1e6}[random() % 5];   // where no engine runs, too
             processor.prepareToPlay(rate, 256);
             break;
         case 1:

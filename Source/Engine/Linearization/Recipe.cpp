@@ -11,7 +11,7 @@ namespace excursion {
 namespace {
 
 constexpr auto formatName = "excursion-recipe";
-constexpr int formatVersion = 1;
+constexpr int formatVersion = 2;
 
 struct Names {
     std::string_view name, title;
@@ -22,11 +22,16 @@ constexpr std::array<Names, modes.size()> names {{{"bypass", "Bypass"},
                                                   {"linearize", "Linearize"},
                                                   {"audition", "Audition"}}};
 
-struct Range {
-    double least, most;
-    bool holds(double value) const { return value >= least && value <= most; }
-};
-constexpr Range fullScales {0.01, 1000.0}, amounts {0.0, 1.0}, displacements {0.05, 4.0}, voltages {0.01, 1000.0}, trims {-60.0, 24.0};
+/// Version 1 knew neither a limit of the power nor a margin.
+int versionOf(const JsonField& field)
+{
+    const auto number = field.at("version");
+    const int version = number.value() == 1 ? 1 : formatVersion;
+    if (number.value() != version)
+        number.refuse("1 or 2, the versions that this program reads");
+    field.requireFormat(formatName, version);
+    return version;
+}
 
 } // namespace
 
@@ -40,6 +45,8 @@ bool Recipe::isValid(std::string* reason) const
         && check(amounts.holds(amount), "the amount must lie between 0 and 1")
         && check(displacements.holds(displacementLimit), "the limit of the excursion must lie between 0.05 and 4 times what was measured")
         && check(voltages.holds(voltageLimit), "the limit of the voltage must lie between 0.01 and 1000 V")
+        && check(powers.holds(powerLimit), "the limit of the power must lie between 0.01 and 10000 W")
+        && check(margins.holds(margin), "the margin must lie between 0 and 0.3")
         && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB");
 }
 
@@ -52,23 +59,35 @@ Model withoutOff(const Model& model, const Recipe& recipe)
     return result;
 }
 
+LinearizationControls controlsOf(const Settings& settings, double measuredDisplacement)
+{
+    LinearizationControls controls;
+    controls.amount = settings.amount;
+    controls.displacementLimit = settings.displacementLimit * measuredDisplacement;
+    controls.voltageLimit = std::min(settings.voltageLimit, settings.fullScale);
+    if (settings.powerLimit < Settings::powers.most)
+        controls.powerLimit = settings.powerLimit;
+    controls.margin = settings.margin;
+    return controls;
+}
+
 LinearizationControls controlsOf(const Recipe& recipe, const Model& model)
 {
-    return {recipe.amount, recipe.displacementLimit * measuredDisplacement(model), recipe.voltageLimit};
+    return controlsOf(static_cast<const Settings&>(recipe), measuredDisplacement(model));
 }
 
 nlohmann::ordered_json toJson(const Recipe& recipe)
 {
     return {{"format", formatName}, {"version", formatVersion}, {"title", recipe.title}, {"words", recipe.words},
             {"mode", name(recipe.mode)}, {"fullScale", recipe.fullScale}, {"amount", recipe.amount},
-            {"displacementLimit", recipe.displacementLimit}, {"voltageLimit", recipe.voltageLimit}, {"trimDb", recipe.trimDb},
-            {"off", recipe.off}};
+            {"displacementLimit", recipe.displacementLimit}, {"voltageLimit", recipe.voltageLimit}, {"powerLimit", recipe.powerLimit},
+            {"margin", recipe.margin}, {"trimDb", recipe.trimDb}, {"off", recipe.off}};
 }
 
 Recipe recipeFromJson(const JsonField& field)
 {
-    field.requireFormat(formatName, formatVersion);
-    const auto within = [&field](const char* key, const Range& range) { return field.at(key).numberWithin(range.least, range.most); };
+    const int version = versionOf(field);
+    const auto within = [&field](const char* key, const Settings::Range& range) { return field.at(key).numberWithin(range.least, range.most); };
     Recipe recipe;
     recipe.title = field.at("title").text();
     recipe.words = field.at("words").text();
@@ -77,11 +96,15 @@ Recipe recipeFromJson(const JsonField& field)
         known.emplace_back(name(mode));
     const auto mode = field.at("mode").oneOf(known);
     recipe.mode = modes[static_cast<std::size_t>(std::find(known.begin(), known.end(), mode) - known.begin())];
-    recipe.fullScale = within("fullScale", fullScales);
-    recipe.amount = within("amount", amounts);
-    recipe.displacementLimit = within("displacementLimit", displacements);
-    recipe.voltageLimit = within("voltageLimit", voltages);
-    recipe.trimDb = within("trimDb", trims);
+    recipe.fullScale = within("fullScale", Settings::fullScales);
+    recipe.amount = within("amount", Settings::amounts);
+    recipe.displacementLimit = within("displacementLimit", Settings::displacements);
+    recipe.voltageLimit = within("voltageLimit", Settings::voltages);
+    if (version > 1) {
+        recipe.powerLimit = within("powerLimit", Settings::powers);
+        recipe.margin = within("margin", Settings::margins);
+    }
+    recipe.trimDb = within("trimDb", Settings::trims);
     known.clear();
     for (const auto* effect : catalogue())
         known.push_back(effect->id());

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/Dials.h"
+#include "Plugin/Processor.h"
+
+#include <catch2/catch.hpp>
+
+using namespace excursion;
+using plugin::Processor;
+
+namespace {
+
+/// What a host hears, a letter each: begin, change, end.
+struct Host : juce::AudioProcessorListener {
+    explicit Host(Processor& of) : processor(of) { processor.addListener(this); }
+    ~Host() override { processor.removeListener(this); }
+    void audioProcessorParameterChanged(juce::AudioProcessor*, int, float) override { heard += "c"; }
+    void audioProcessorChanged(juce::AudioProcessor*, const ChangeDetails&) override {}
+    void audioProcessorParameterChangeGestureBegin(juce::AudioProcessor*, int) override { heard += "b"; }
+    void audioProcessorParameterChangeGestureEnd(juce::AudioProcessor*, int) override { heard += "e"; }
+    Processor& processor;
+    std::string heard;
+};
+
+} // namespace
+
+TEST_CASE("A dial puts a number on the nearest step and tells the host of one gesture; what a host sends, it follows silently", "[plugin]")
+{
+    Processor processor;
+    Host host(processor);
+    auto& number = *processor.parameters().numbers().front();
+    plugin::NumberDial dial(number);
+    auto& slider = dial.slider();
+    CHECK(slider.getValue() == number.get());
+    slider.setValue(2.8284271, juce::sendNotificationSync);
+    CHECK(number.get() == 2.83);
+    CHECK(slider.getValue() == 2.83);
+    CHECK(host.heard == "bce");
+    host.heard.clear();
+    slider.onDragStart();
+    slider.setValue(3.0, juce::sendNotificationSync);
+    slider.setValue(4.0, juce::sendNotificationSync);
+    slider.onDragEnd();
+    CHECK(host.heard == "bcce");
+    CHECK(number.get() == 4.0);
+    host.heard.clear();
+    number.setValue(0.7f);
+    CHECK(slider.getValue() == 4.0);
+    dial.follow();
+    CHECK(slider.getValue() == number.get());
+    CHECK(number.getValue() == 0.7f);
+    CHECK(host.heard.empty());
+    CHECK(slider.getValueFromText("500 V") == 500.0);
+    slider.setValue(slider.getValueFromText("500 V"), juce::sendNotificationSync);
+    CHECK(number.get() == 500.0);
+    auto& share = *processor.parameters().numbers()[1];
+    plugin::NumberDial percent(share);
+    percent.slider().setValue(percent.slider().getValueFromText("33.3 %"), juce::sendNotificationSync);
+    CHECK(share.get() == 0.333);
+    CHECK(percent.slider().getTextFromValue(share.get()) == "33.3 %");
+}
+
+TEST_CASE("A switch and a choice tell the host of one gesture, and follow it silently", "[plugin]")
+{
+    Processor processor;
+    Host host(processor);
+    auto& effect = *processor.parameters().effects().front();
+    plugin::OnOffButton button(effect);
+    CHECK(button.button().getToggleState());
+    button.button().setToggleState(false, juce::dontSendNotification);
+    button.button().onClick();
+    CHECK_FALSE(effect.get());
+    CHECK(host.heard == "bce");
+    host.heard.clear();
+    effect.setValue(0.84f);
+    button.follow();
+    CHECK(button.button().getToggleState());
+    auto& mode = processor.parameters().mode();
+    plugin::ChoiceBox choice(mode);
+    mode.setValue(0.84f);
+    choice.follow();
+    CHECK(choice.box().getSelectedItemIndex() == 3);
+    CHECK(mode.getValue() == 0.84f);
+    CHECK(effect.getValue() == 0.84f);
+    CHECK(host.heard.empty());
+    choice.box().setSelectedItemIndex(1, juce::sendNotificationSync);
+    CHECK(mode.getIndex() == 1);
+    CHECK(host.heard == "bce");
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a recipe says is what is played.
+#include "Engine/Error.h"
+#include "Plugin/Processor.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+using namespace excursion;
+using plugin::Processor;
+
+namespace {
+
+nlohmann::json documentOf(const Recipe& recipe) { return nlohmann::json::parse(toJson(recipe).dump()); }
+
+Recipe read(const nlohmann::json& document) { return recipeFromJson(JsonField(document, "", "r.json")); }
+
+Recipe drawn(std::mt19937& random)
+{
+    const auto within = [&random](const Settings::Range& range) { return std::uniform_real_distribution<>(range.least, range.most)(random); };
+    Recipe recipe;
+    recipe.mode = modes[random() % modes.size()];
+    recipe.fullScale = within(Settings::fullScales);
+    recipe.amount = within(Settings::amounts);
+    recipe.displacementLimit = within(Settings::displacements);
+    recipe.voltageLimit = within(Settings::voltages);
+    recipe.powerLimit = within(Settings::powers);
+    recipe.margin = within(Settings::margins);
+    recipe.trimDb = within(Settings::trims);
+    recipe.title = "of chance";
+    return recipe;
+}
+
+} // namespace
+
+TEST_CASE("A recipe of version 1 is read with no limit of the power and no margin; a later version than ours is refused", "[plugin]")
+{
+    std::mt19937 random(2);
+    const auto recipe = drawn(random);
+    auto document = documentOf(recipe);
+    CHECK(document["version"] == 2);
+    CHECK(toJson(read(document)) == toJson(recipe));
+    document["version"] = 1;
+    document.erase("powerLimit");
+    document.erase("margin");
+    auto expected = recipe;
+    expected.powerLimit = 10000.0;
+    expected.margin = 0.0;
+    CHECK(toJson(read(document)) == toJson(expected));
+    document["version"] = 2;
+    CHECK_THROWS_WITH(read(document), Catch::Contains("powerLimit"));
+    for (const nlohmann::json& version : {nlohmann::json(3), nlohmann::json("2"), nlohmann::json(0)}) {
+        document["version"] = version;
+        CHECK_THROWS_WITH(read(document), Catch::Contains("1 or 2"));
+    }
+    for (const auto& [key, value] : {std::pair {"powerLimit", 0.0}, {"powerLimit", 10001.0}, {"margin", -0.1}, {"margin", 0.31}}) {
+        auto broken = documentOf(recipe);
+        broken[key] = value;
+        CHECK_THROWS_WITH(read(broken), Catch::Contains(key));
+        auto invalid = recipe;
+        (std::string(key) == "margin" ? invalid.margin : invalid.powerLimit) = value;
+        std::string reason;
+        CHECK_FALSE(invalid.isValid(&reason));
+    }
+}
+
+TEST_CASE("The plugin's controls are those of its recipe, and no limit of the voltage is above full scale", "[plugin]")
+{
+    std::mt19937 random(3);
+    Processor processor;
+    const auto model = processor.model();
+    for (int k = 0; k < 200; ++k) {
+        const auto recipe = drawn(random);
+        processor.parameters().set(recipe);
+        const auto controls = processor.parameters().controls(measuredDisplacement(model));
+        const auto expected = controlsOf(recipe, model);
+        CHECK(controls.mode == recipe.mode);
+        CHECK(controls.fullScale == recipe.fullScale);
+        CHECK(controls.trim == Approx(std::pow(10.0, recipe.trimDb / 20.0)).epsilon(1e-14));
+        CHECK(controls.linearization.amount == expected.amount);
+        CHECK(controls.linearization.displacementLimit == expected.displacementLimit);
+        CHECK(controls.linearization.voltageLimit == expected.voltageLimit);
+        CHECK(controls.linearization.powerLimit == expected.powerLimit);
+        CHECK(controls.linearization.margin == expected.margin);
+        CHECK(expected.voltageLimit == std::min(recipe.voltageLimit, recipe.fullScale));
+        CHECK(expected.powerLimit == recipe.powerLimit);
+        CHECK(expected.margin == recipe.margin);
+        CHECK(controls.linearization.isValid(nullptr));
+    }
+    CHECK(controlsOf(Recipe {}, model).powerLimit == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("As the plugin is when it is just turned on, no sample leaves it that a converter could not give", "[plugin]")
+{
+    Processor processor;
+    processor.parameters().mode() = static_cast<int>(Mode::linearize);
+    processor.prepareToPlay(48000.0, 480);
+    juce::MidiBuffer midi;
+    float largest = 0.0f;
+    for (const double frequency : {20.0, 45.0, 90.0, 400.0})
+        for (int block = 0; block < 60; ++block) {
+            juce::AudioBuffer<float> buffer(2, 480);
+            for (int n = 0; n < 480; ++n)
+                buffer.setSample(0, n, static_cast<float>(std::sin(2.0 * std::numbers::pi * frequency * (480 * block + n) / 48000.0)));
+            buffer.copyFrom(1, 0, buffer, 0, 0, 480);
+            processor.processBlock(buffer, midi);
+            largest = std::max(largest, buffer.getMagnitude(0, 480));
+        }
+    CHECK(largest <= 1.0f);
+    CHECK(largest > 0.5f);
+}
+
+TEST_CASE("Parameters keep their places when later versions have more of them", "[plugin]")
+{
+    Processor processor;
+    juce::StringArray ids;
+    for (auto* parameter : processor.getParameters())
+        ids.add(dynamic_cast<juce::AudioProcessorParameterWithID&>(*parameter).paramID);
+    CHECK(ids.joinIntoString(" ") == "mode fullScale amount displacementLimit voltageLimit trim effect-force-factor effect-stiffness effect-inductance-position "
+                                     "effect-eddy-currents effect-creep effect-damping-velocity powerLimit margin");
+}
