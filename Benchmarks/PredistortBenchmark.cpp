@@ -57,6 +57,10 @@ int main()
         const auto input = multisine(stimulus, chooseLines(stimulus), 0);
         Predistorter predistorter(model, {sampleRate, oversampling});
         measure("predistorter", predistorter, input, sampleRate, oversampling);
+        Predistorter guarded(model, {sampleRate, oversampling}, {1.0, 20e-3, 100.0, 1000.0});
+        measure("  with limits", guarded, input, sampleRate, oversampling);
+        Predistorter limiting(model, {sampleRate, oversampling}, {1.0, 1e-3, 3.0, 0.5});
+        measure("  limiting", limiting, input, sampleRate, oversampling);
         Speaker speaker(model, {sampleRate, oversampling});
         measure("speaker", speaker, input, sampleRate, oversampling);
     }

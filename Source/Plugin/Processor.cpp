@@ -134,7 +134,7 @@ void Processor::prepareToPlay(double sampleRate, int)
         auto first = chains(running, options(), parameters_.controls(measured), count);
         measuredDisplacement_.store(measured, std::memory_order_relaxed);
         for (auto& chain : first) {
-            channels_.push_back(std::make_unique<Crossfade<Chain>>(static_cast<int>(fadeTime * sampleRate)));
+            channels_.push_back(std::make_unique<Crossfade<Chain>>(static_cast<int>(fadeTime * sampleRate), getLatencySamples() + static_cast<int>(warmTime * sampleRate)));
             channels_.back()->start(std::move(chain));
         }
     } catch (const std::exception& error) {

@@ -26,6 +26,7 @@ class Processor : public juce::AudioProcessor {
 public:
     static constexpr int oversampling = 2;
     static constexpr double fadeTime = 0.05;   ///< s, from model to model
+    static constexpr double warmTime = 0.05;   ///< s, in which a new model runs unheard after its delay lines are full: a driver forgets in that
 
     Processor();
     ~Processor() override;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Linearization/Fade.h"
 #include "Engine/Linearization/Handover.h"
 
 #include <algorithm>
@@ -9,14 +10,15 @@
 
 namespace excursion {
 
-/// Plays the engine that was handed over last: when a new one comes, both run for a while, and the old one fades into the new. A third that is
-/// offered meanwhile waits. Until the first one comes the signal goes through as it is.
+/// Plays the engine that was handed over last: when a new one comes, both run, the new one unheard at first, until what it has to remember of the
+/// signal is there, and then the old one fades into the new. A third that is offered meanwhile waits. Until the first one comes the signal goes through as it is.
 /// Engines have process(const double* in, double* out, std::size_t n), and all of them the same latency.
 template <class Engine>
 class Crossfade {
 public:
     /// @param fade  samples
-    explicit Crossfade(int fade) : fade_(std::max(fade, 1)) {}
+    /// @param warm  samples before it, in which a new engine runs unheard
+    explicit Crossfade(int fade, int warm = 0) : fade_(fade, warm), length_(std::max(fade, 1) + std::max(warm, 0)) {}
     Crossfade(const Crossfade&) = delete;
     Crossfade& operator=(const Crossfade&) = delete;
     ~Crossfade()
@@ -57,7 +59,10 @@ public:
                 if (auto* parcel = handover_.take()) {
                     old_ = now_;
                     now_ = parcel;
-                    left_ = fade_;
+                    left_ = length_;
+                    fade_.turn(false);
+                    fade_.jump();
+                    fade_.turn(true);
                 }
             const std::size_t count = left_ > 0 ? std::min({n, before_.size(), static_cast<std::size_t>(left_)}) : n;
             if (left_ > 0) {
@@ -67,9 +72,8 @@ public:
                     std::copy(in, in + count, before_.data());
                 now_->engine->process(in, out, count);
                 for (std::size_t k = 0; k < count; ++k) {
-                    const double left = static_cast<double>(--left_) / fade_;
-                    const double weight = left * left * (3.0 - 2.0 * left);
-                    out[k] += weight * (before_[k] - out[k]);
+                    --left_;
+                    out[k] = before_[k] + fade_.step() * (out[k] - before_[k]);
                 }
                 if (left_ == 0 && old_)
                     handover_.retire(std::exchange(old_, nullptr));
@@ -87,7 +91,8 @@ public:
 private:
     Handover<Engine> handover_;
     typename Handover<Engine>::Parcel *old_ = nullptr, *now_ = nullptr;
-    int fade_, left_ = 0;
+    Fade fade_;
+    int length_, left_ = 0;
     std::array<double, 256> before_ {};
 };
 

@@ -10,7 +10,7 @@ namespace excursion {
 class Fade {
 public:
     /// @param length, wait  samples
-    explicit Fade(int length, int wait = 0) : length_(std::max(length, 1)), wait_(wait) {}
+    explicit Fade(int length, int wait = 0) : length_(std::max(length, 1)), wait_(std::max(wait, 0)) {}
 
     void turn(bool on)
     {

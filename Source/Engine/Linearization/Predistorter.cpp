@@ -65,6 +65,7 @@ void Predistorter::turn(bool on)
 void Predistorter::bend(double& sample, double amount)
 {
     const double asked = sample;
+    outcome_.astray = outcome_.astray || amount < 1.0;
     double out = linearizer_.step(asked, amount, on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity());
     const double x = std::abs(linearizer_.cone().motion().x), i = linearizer_.current();
     if (!(std::abs(out) < InputGuard::loudest && x < InputGuard::loudest && std::abs(linearizer_.wanted()) < InputGuard::loudest)) {
@@ -73,6 +74,7 @@ void Predistorter::bend(double& sample, double amount)
     } else {
         peak_.displacement = std::max(peak_.displacement, x);
         outcome_.asked = std::max(outcome_.asked, std::abs(asked));
+        outcome_.astray = outcome_.astray || out != linearizer_.wanted();
         outcome_.wanted = std::max(outcome_.wanted, std::abs(linearizer_.wanted()));
         heats_ += ohms_ * i * i;
     }

@@ -20,9 +20,10 @@ constexpr double limitTime = 0.008, powerLimitTime = 0.05, easeTime = 0.0025;   
 constexpr double patience = 0.08;                          // s, in which a signal follows a limit that falls before it is made to
 constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3, voltageHoldTime = 0.03, voltageReleaseTime = 0.1;   // s
 constexpr double powerHoldTime = 0.05, powerReleaseTime = 0.2;                                                // s
+constexpr double settlingTime = 0.5;                       // s, in which a driver forgets
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;  // s
 constexpr double largestExcess = 4.0, largestHeatExcess = 30.0, excessTime = 1.0;    // of what linearizing adds to peaks; s
-constexpr double powerShare = 0.985, powerSlope = 20.0, powerDescent = 0.96;    // see forPower()
+constexpr double powerShare = 0.985, powerSlope = 20.0, powerDescent = 0.96, closeLook = 0.25;    // see forPower()
 
 double resonance(const Model& model)
 {
@@ -30,6 +31,15 @@ double resonance(const Model& model)
 }
 
 Glide ease(double rate) { return {easeTime, rate / Protection::tick, 1.0}; }
+
+/// A factor that falls at once and comes back by a share of what is missing.
+double released(double factor, double need, double share)
+{
+    if (need < factor)
+        return need;
+    const double next = factor + share * (need - factor);
+    return next > 1.0 - 1e-6 ? 1.0 : next;   // also arrives
+}
 
 /// A factor that follows slowly while its limit is on the way, else at once.
 double eased(Glide& glide, double factor, bool slowly)
@@ -84,7 +94,7 @@ int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samp
 } // namespace
 
 Protection::Protection(const Model& model, const RealTimeOptions& options, double delay)
-    : rate_(options.sampleRate), ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), committed_(roundedUp(delay - 0.5, planStep)),
+    : rate_(options.sampleRate), ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), committed_(roundedUp(delay - 0.5, planStep)), settled_(ticks(settlingTime, rate_)),
       split_(firstCorner * resonance(model), secondCorner * resonance(model), rate_),
       wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep)}, load_(model, rate_),
       coast_(model, wish_.front(), coastingTimes(resonance(model)), 0, 1.0, 0.0),
@@ -95,7 +105,7 @@ Protection::Protection(const Model& model, const RealTimeOptions& options, doubl
       voltage_(limitTime, rate_ / tick), power_(powerLimitTime, rate_ / tick), ease_ {ease(rate_), ease(rate_), ease(rate_)},
       loudEase_(ease(rate_)), coolEase_(ease(rate_)), past_(static_cast<std::size_t>(ticks(patience, rate_))), voltageNow_(std::numeric_limits<double>::infinity()),
       wishHold_ {PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_))},
-      voltageHold_(ticks(voltageHoldTime, rate_)), powerHold_(ticks(powerHoldTime, rate_)), askedHold_(ticks(wishHoldTime, rate_)),
+      reachHold_(ticks(wishHoldTime, rate_)), voltageHold_(ticks(voltageHoldTime, rate_)), powerHold_(ticks(powerHoldTime, rate_)), askedHold_(ticks(wishHoldTime, rate_)),
       wantedHold_(ticks(wishHoldTime, rate_)), expectedHold_(ticks(powerHoldTime, rate_)), heatHold_(ticks(powerHoldTime, rate_))
 {
     static_assert(tick % wishStep == 0);
@@ -112,6 +122,7 @@ Protection::Protection(const Model& model, const RealTimeOptions& options, doubl
     drive_.resize(steps);
     partDrives_.resize(steps, static_cast<Eigen::Index>(bands));
     parts_.resize(ahead_.coasting.rows(), static_cast<Eigen::Index>(bands));
+    state_.resize(coast_.coasting.cols());
     coasted_.resize(coast_.coasting.rows());
     wishes_.resize(coast_.coasting.rows(), static_cast<Eigen::Index>(bands));
     reset();
@@ -129,7 +140,9 @@ void Protection::reset()
     sum_.fill(0.0);
     oldest_ = sentAt_ = 0;
     summed_ = place_ = muteFor_ = 0;
-    peak_ = heatPeak_ = heat_ = share_ = 0.0;
+    peak_ = heatPeak_ = heat_ = share_ = reach_ = 0.0;
+    undiminished_ = settled_;
+    loads_ = false;
     for (auto& gain : gain_) {   // as after factors of 1
         gain.fill(0.0);
         for (std::size_t k = 0; k < gain.size(); ++k)
@@ -139,7 +152,7 @@ void Protection::reset()
     for (auto* limit : {&displacement_, &voltage_, &power_})
         limit->jump();
     std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
-    for (auto* hold : {&wishHold_[0], &wishHold_[1], &wishHold_[2], &voltageHold_, &powerHold_, &askedHold_, &wantedHold_, &expectedHold_, &heatHold_})
+    for (auto* hold : {&wishHold_[0], &wishHold_[1], &wishHold_[2], &reachHold_, &voltageHold_, &powerHold_, &askedHold_, &wantedHold_, &expectedHold_, &heatHold_})
         hold->reset();
     for (auto* ease : {&ease_[0], &ease_[1], &ease_[2], &loudEase_, &coolEase_})
         ease->jump(1.0);
@@ -170,12 +183,13 @@ Protection::Values Protection::forWish()
 {
     Values need {1.0, 1.0, 1.0};
     if (const double limit = displacement_.value(); limit > 0.0) {
-        for (std::size_t b = 0; b < bands; ++b)
-            wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
-        double farthest = 0.0;
-        for (Eigen::Index i = 0; i < wishes_.rows(); ++i)
-            farthest = std::max(farthest, std::abs(wishes_(i, 0) + wishes_(i, 1) + wishes_(i, 2)));
+        state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
+        coasted_.noalias() = coast_.coasting * state_;
+        const double farthest = coasted_.cwiseAbs().maxCoeff();
+        reach_ = reachHold_.step(farthest * limit);
         if (farthest * limit > wishShare) {
+            for (std::size_t b = 0; b < bands; ++b)
+                wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
             coasted_.setZero();
             need = largestWithin(coasted_, wishes_, need, wishShare / limit);
         }
@@ -184,7 +198,7 @@ Protection::Values Protection::forWish()
     const double release = on_ ? perTick(wishReleaseTime, rate_) : 0.2;
     for (std::size_t b = 0; b < bands; ++b) {
         const double floor = 1.0 - wishHold_[b].step(1.0 - need[b]);
-        held_[b] = eased(ease_[b], floor < held_[b] ? floor : held_[b] + release * (floor - held_[b]), displacement_.value() != displacementNow_);
+        held_[b] = eased(ease_[b], released(held_[b], floor, release), displacement_.value() != displacementNow_);
     }
     return held_;
 }
@@ -193,7 +207,7 @@ double Protection::forVoltage()
 {
     const double peak = voltageHold_.step(std::exchange(peak_, 0.0)), limit = voltage_.value();
     const double need = peak * excess_ * limit > 1.0 ? 1.0 / (peak * excess_ * limit) : 1.0;
-    loud_ = eased(loudEase_, need < loud_ ? need : loud_ + perTick(voltageReleaseTime, rate_) * (need - loud_), limit > 0.0 && limit * voltageNow_ != 1.0);
+    loud_ = eased(loudEase_, released(loud_, need, perTick(voltageReleaseTime, rate_)), limit > 0.0 && limit * voltageNow_ != 1.0);
     return loud_;
 }
 
@@ -202,22 +216,35 @@ double Protection::forVoltage()
 double Protection::forPower()
 {
     double peak = powerHold_.step(std::exchange(heatPeak_, 0.0));
+    // The impedance is nowhere below that of the coil, so a quiet signal needs no closer look.
+    const double loudest = voltageHold_.value() * loud_;
+    const bool close = power_.value() > 0.0 && loudest * loudest * power_.value() > closeLook * ohms_;
+    if (close && !loads_)
+        load_.reset();
+    loads_ = close;
     const double least = heat_ > 0.0 ? 1.0 / (powerDescent * heat_) : std::numeric_limits<double>::infinity();
     const double limit = std::min(power_.value() / powerShare, least);
     const double allowed = limit > 0.0 ? std::max(0.0, (1.0 + powerSlope * (1.0 - heat_ * limit)) / limit) : peak;
     peak *= heatExcess_;
     const double need = peak > allowed ? std::sqrt(allowed / peak) : 1.0;
-    cool_ = eased(coolEase_, need < cool_ ? need : cool_ + perTick(powerReleaseTime, rate_) * (need - cool_), !power_.still());
+    cool_ = eased(coolEase_, released(cool_, need, perTick(powerReleaseTime, rate_)), !power_.still());
     return cool_;
 }
 
 /// Turns the factors down until a cone that gets them for a tick, and silence then, stays within its limit.
-void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, Values& factors)
+void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray, Values& factors)
 {
     const double limit = displacementNow_;
     share_ = 0.0;
     if (!(limit > 0.0))
         return;
+    // As long as nothing is turned down the cone is where the wish was, and what it will do has been looked at there.
+    const bool undiminished = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
+    undiminished_ = undiminished && !astray ? std::min(undiminished_ + 1, settled_) : 0;
+    if (undiminished_ == settled_) {
+        share_ = reach_;
+        return;
+    }
     drive_.setZero();
     partDrives_.setZero();
     for (std::size_t k = 0; k < sent_.size(); ++k)
@@ -278,7 +305,7 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
     factors_.power = forPower();
     for (auto& factor : factors)
         factor *= factors_.voltage * factors_.power * mute_;
-    plan(cone, factors);
+    plan(cone, last.astray, factors);
     if (share_ > planShare)
         factors_.displacement = std::min(factors_.displacement, planShare / share_);
     for (std::size_t b = 0; b < bands; ++b)
@@ -299,7 +326,7 @@ double Protection::step(double u, bool sound)
     }
     oldest_ = oldest_ + 1 == latency ? 0 : oldest_ + 1;
     peak_ = std::max(peak_, std::abs(left));
-    if (!power_.still() || power_.value() > 0.0) {
+    if (loads_) {
         const double i = load_.step(loud_ * left).i;
         heatPeak_ = std::max(heatPeak_, ohms_ * i * i);
     }

@@ -49,6 +49,7 @@ public:
     struct Outcome {
         double asked = 0.0, wanted = 0.0;   ///< peaks of what went into the linearizer and of what it asked for, V
         double heat = 0.0;                  ///< mean of Re i^2, W
+        bool astray = false;                ///< the cone was not given all that was asked for
     };
     void decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Outcome&);
 
@@ -72,13 +73,14 @@ private:
     using Values = Bands::Values;
     using Path = std::array<double, pulse>;
 
-    void plan(const Eigen::Map<const Eigen::VectorXd>& cone, Values& factors);
+    void plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray, Values& factors);
     Values forWish();
     double forVoltage();
     double forPower();
 
     double rate_, ohms_;
     int committed_;                 ///< samples on their way to the cone
+    int settled_;                   ///< ticks after which a cone that is given all of the wish is where that was
     Bands split_;
     std::array<Reference, bands> wish_;   ///< the motion of each band as it comes, undiminished
     Reference load_;                ///< the current of what the limits of excursion and voltage leave
@@ -112,15 +114,19 @@ private:
     double displacementNow_ = 0.0;           ///< reciprocal
     double voltageNow_, heat_ = 0.0, share_ = 0.0;
     std::array<PeakHold, bands> wishHold_;   ///< of 1 - factor
+    PeakHold reachHold_;                     ///< of how far the wish would coast, in limits
+    double reach_ = 0.0;
     Values held_;
     PeakHold voltageHold_, powerHold_, askedHold_, wantedHold_, expectedHold_, heatHold_;
     double loud_ = 1.0, cool_ = 1.0, excess_ = 1.0, heatExcess_ = 1.0;   ///< the last two: what linearizing adds to the peaks, and to the heat
+    bool loads_ = false;                     ///< load_ runs
+    int undiminished_ = 0;                   ///< ticks with factors of 1
     double mute_ = 1.0;
     int muteFor_ = 0;
     Factors factors_;
 
     // Room for decide().
-    Eigen::VectorXd future_, rest_, drive_, coasted_;
+    Eigen::VectorXd future_, rest_, drive_, coasted_, state_;
     Eigen::MatrixXd parts_, partDrives_, wishes_;
 };
 
