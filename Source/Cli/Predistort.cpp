@@ -27,8 +27,8 @@ namespace {
 struct PredistortArguments {
     std::string model, input, out;
     double fullScale = 0.0;   ///< V or N
-    std::optional<double> displacementLimit, voltageLimit;   ///< m, V or N
-    double amount = 1.0;
+    std::optional<double> displacementLimit, voltageLimit, powerLimit;   ///< m, V or N, W
+    double amount = 1.0, margin = 0.0;
     int oversampling = 2;
 };
 
@@ -48,6 +48,8 @@ LinearizationControls controlsFrom(const PredistortArguments& options, const Mod
     controls.amount = options.amount;
     controls.displacementLimit = options.displacementLimit.value_or(measuredDisplacement(model));
     controls.voltageLimit = options.voltageLimit.value_or(std::numeric_limits<double>::infinity());
+    controls.powerLimit = options.powerLimit.value_or(std::numeric_limits<double>::infinity());
+    controls.margin = options.margin;
     return controls;
 }
 
@@ -70,13 +72,15 @@ void bend(std::vector<double>& samples, Predistorter& predistorter, double fullS
         sample /= fullScale;
 }
 
-/// Beyond how much of a limit it counts as limiting: less is rounding.
-constexpr double noticed = 1e-6;
+/// dB from which on a limit is told to have acted.
+constexpr double noticed = 1e-3;
+
+std::string turnedDown(double decibels, bool limited) { return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit"; }
 
 void run(const PredistortArguments& options, Terminal& terminal)
 {
     for (const auto& [name, value] : {std::pair {"--full-scale", options.fullScale}, {"--limit-x", options.displacementLimit.value_or(1.0)},
-                                      {"--limit-u", options.voltageLimit.value_or(1.0)}})
+                                      {"--limit-u", options.voltageLimit.value_or(1.0)}, {"--limit-p", options.powerLimit.value_or(1.0)}})
         if (!(value > 0.0 && std::isfinite(value)))
             throw Error(Error::Kind::usage, std::string(name) + " must be a positive number.");
     requireFilePlace(options.out);
@@ -85,6 +89,8 @@ void run(const PredistortArguments& options, Terminal& terminal)
     std::error_code none;
     if (std::filesystem::equivalent(options.input, options.out, none))
         throw Error(Error::Kind::usage, "The WAV that is played would be overwritten: give another name for what comes out.");
+    if (options.powerLimit && !model.electrical())
+        throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model has none; leave it out.");
     const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling};
     const auto controls = controlsFrom(options, model);
     std::string reason;
@@ -108,10 +114,15 @@ void run(const PredistortArguments& options, Terminal& terminal)
         loudest = std::max(loudest, after);
         faults += meters.faults;
         limited = limited || meters.displacementReduction > noticed || meters.voltageReduction > noticed || meters.powerReduction > noticed;
-        channels.push_back({{"peakIn", before}, {"peakOut", after}, {"displacement", meters.displacement},
+        channels.push_back({{"peakIn", before}, {"peakOut", after}, {"displacement", meters.displacement}, {"power", meters.power},
                             {"displacementReduction", meters.displacementReduction}, {"voltageReduction", meters.voltageReduction}, {"powerReduction", meters.powerReduction}, {"faults", meters.faults}});
         rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
-                        significant(1e3 * meters.displacement) + " mm", fixed(meters.displacementReduction, 1) + " dB", fixed(meters.voltageReduction, 1) + " dB"});
+                        significant(1e3 * meters.displacement) + " mm", turnedDown(meters.displacementReduction, options.displacementLimit || std::isfinite(controls.displacementLimit)),
+                        turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
+        if (options.powerLimit) {
+            rows.back().push_back(significant(meters.power) + " W");
+            rows.back().push_back(turnedDown(meters.powerReduction, true));
+        }
     }
     DraftFile draft(options.out);
     writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
@@ -120,19 +131,23 @@ void run(const PredistortArguments& options, Terminal& terminal)
     terminal.document({{"format", "excursion-predistort"}, {"version", 1}, {"model", options.model}, {"input", options.input}, {"output", options.out},
                        {"sampleRate", wav.sampleRate}, {"samples", wav.channels.front().size()}, {"fullScale", options.fullScale},
                        {"amount", options.amount}, {"oversampling", options.oversampling}, {"displacementLimit", numberOrNull(controls.displacementLimit)},
-                       {"voltageLimit", numberOrNull(controls.voltageLimit)}, {"channels", channels}, {"limited", limited}});
-    terminal.table({"channel", "peak in", "out", "the cone moves", "limited by", "voltage limited by"}, rows);
+                       {"voltageLimit", numberOrNull(controls.voltageLimit)}, {"powerLimit", numberOrNull(controls.powerLimit)}, {"margin", controls.margin}, {"channels", channels}, {"limited", limited}});
+    std::vector<std::string> heads {"channel", "peak in", "out", "the cone moves", "motion turned down", "voltage turned down"};
+    if (options.powerLimit)
+        heads.insert(heads.end(), {"heat at most", "current turned down"});
+    terminal.table(heads, rows);
     if (limited)
         terminal.say("A limit was reached ("
                      + (std::isfinite(controls.displacementLimit) ? significant(1e3 * controls.displacementLimit, 3) + " mm" : "no limit of the excursion")
                      + ", " + (std::isfinite(controls.voltageLimit) ? significant(controls.voltageLimit, 3) + " " + unit : "no limit of the voltage")
-                     + "): what is beyond it is not linear; play more quietly.");
+                     + (options.powerLimit ? ", " + significant(*options.powerLimit, 3) + " W" : "")
+                     + "): there the signal was turned down, the lowest notes first.");
     if (loudest > options.fullScale)
         terminal.say("Samples go to " + significant(loudest / options.fullScale, 3)
                      + " times full scale, which only a WAV of floating point, as this one is, can hold.");
     if (faults > 0)
         terminal.say("The predistorter had to start anew " + std::to_string(faults) + (faults == 1 ? " time" : " times")
-                     + " and let the signal through as it was: the model is driven far beyond what it knows.");
+                     + " from silence: the model is driven far beyond what it knows.");
     terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit + ", as in " + options.input + ".");
     if (limited || faults > 0)
         terminal.answer = 1;
@@ -151,6 +166,10 @@ void addPredistort(CLI::App& app, Terminal& terminal)
         ->required();
     verb->add_option("--limit-x", o->displacementLimit, "m that the cone may move at most (default: as far as the model was measured)");
     verb->add_option("--limit-u", o->voltageLimit, "V that may come out at most (default: no limit)");
+    verb->add_option("--limit-p", o->powerLimit, "W of heat in the voice coil, Re i^2 averaged over 1 s (default: no limit)");
+    verb->add_option("--margin", o->margin, "the limits hold for every loudspeaker whose parameters differ by at most this share from the model's, 0 to 0.3")
+        ->check(CLI::Range(0.0, 0.3))
+        ->capture_default_str();
     verb->add_option("--amount", o->amount, "0: the signal as it is, 1: fully linearized")->check(CLI::Range(0.0, 1.0))->capture_default_str();
     verb->add_option("--oversampling", o->oversampling, "1, 2 or 4")->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
     verb->footer("Exit code 1: the WAV was written, but a limit was reached or the predistorter had to start anew.");

@@ -124,6 +124,15 @@ TEST_CASE("predistort says when a limit was reached", "[cli]")
     CHECK_THAT(told.out, Catch::Contains("A limit was reached (2 mm, 12 V)"));
     const auto bent = readWav(out);
     CHECK(*std::max_element(bent.channels[0].begin(), bent.channels[0].end()) <= 12.0 / 20.0 + 1e-6);
+    CHECK_THAT(told.out, Catch::Contains("motion turned down"));
+
+    const auto warm = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--limit-x", "0.05", "--limit-p", "0.5", "--margin", "0.1", "--json"});
+    CHECK(warm.code == 1);
+    const auto document = documentOf(warm, "excursion-predistort");
+    CHECK(document.at("powerLimit") == 0.5);
+    CHECK(document.at("margin") == 0.1);
+    CHECK(document.at("channels")[0].at("power").get<double>() < 0.5);
+    CHECK(document.at("channels")[0].at("powerReduction").get<double>() > 3.0);
 }
 
 TEST_CASE("predistort refuses what it cannot play", "[cli][bad-input]")
@@ -136,6 +145,8 @@ TEST_CASE("predistort refuses what it cannot play", "[cli][bad-input]")
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--oversampling", "3"}, scratch, "--oversampling");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-x", "-1"}, scratch, "--limit-x");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-u", "nan"}, scratch, "--limit-u");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-p", "0"}, scratch, "--limit-p");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--margin", "0.5"}, scratch, "--margin");
     refusedWith(2, {"predistort", model, in, in, "--full-scale", "20"}, scratch, "overwritten");
     refusedWith(3, {"predistort", model, (scratch / "absent.wav").string(), out, "--full-scale", "20"}, scratch, "absent.wav");
     refusedWith(3, {"predistort", (scratch / "absent.json").string(), in, out, "--full-scale", "20"}, scratch, "absent.json");

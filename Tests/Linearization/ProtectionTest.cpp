@@ -190,7 +190,7 @@ TEST_CASE("With its margin the limits hold for a driver whose parameters are all
     report(study(20, 1.5, 0.1, 1000), 0.65);
 }
 
-TEST_CASE("The limits hold for hours of programme", "[.nightly]")
+TEST_CASE("The limits hold for hours of programme", "[.nightly][protection][slow]")
 {
     report(study(57, 600.0, 0.0, 1), 0.95);
     report(study(57, 600.0, 0.1, 1000), 0.65);
