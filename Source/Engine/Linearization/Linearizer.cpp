@@ -7,13 +7,13 @@
 namespace excursion {
 namespace {
 
-constexpr double settlingTime = 0.2;   // s, until a cone that is told where to go is there
+constexpr double followTime = 0.2;   // s, until a cone that is told where to go is there
 constexpr int mostCorrections = 3;
 
 } // namespace
 
 Linearizer::Linearizer(const Model& model, double sampleRate)
-    : wish_ {Reference(model, sampleRate), Inverse(model, sampleRate)}, cone_(wish_), settling_(static_cast<int>(settlingTime * sampleRate))
+    : wish_ {Reference(model, sampleRate), Inverse(model, sampleRate)}, cone_(wish_), settling_(static_cast<int>(followTime * sampleRate))
 {
 }
 

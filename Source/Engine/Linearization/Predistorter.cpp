@@ -27,6 +27,7 @@ Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, c
       linearizer_(model, options.sampleRate * options.oversampling),
       recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
       ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), amount_(amountTime, options.sampleRate), near_(nearTime, options.sampleRate),
+      effort_(nearTime, options.sampleRate, 1.0),
       decay_(std::exp(-1.0 / (declickTime * options.sampleRate * options.oversampling)))
 {
     set(controls);
@@ -41,6 +42,7 @@ void Predistorter::reset()
     recovery_.reset();
     amount_.jump();
     near_.jump(0.0);
+    effort_.jump(1.0);
     outcome_ = {};
     heats_ = last_ = left_ = 0.0;
 }
@@ -103,6 +105,7 @@ void Predistorter::begin(const double* in, std::size_t n)
         least_ = {std::min(least_.displacement, factors.displacement), std::min(least_.voltage, factors.voltage), std::min(least_.power, factors.power)};
         const double share = std::clamp((protection_.share() - nearFrom) / (nearTo - nearFrom), 0.0, 1.0);
         near_.aim(smooth(share));
+        effort_.aim(protection_.effort());
     }
     for (std::size_t k = 0; k < n; ++k) {
         const bool sound = std::abs(in[k]) < InputGuard::loudest;   // not for NaN
@@ -112,10 +115,10 @@ void Predistorter::begin(const double* in, std::size_t n)
     }
     oversampling_.up(block_.data(), n, between_.data());
     for (std::size_t k = 0; k < n; ++k) {
-        const double amount = amount_.step(), near = near_.step();
+        const double amount = amount_.step(), near = near_.step(), effort = effort_.step();
         if (bends())
             for (std::size_t s = 0; s < factor; ++s)
-                bend(between_[k * factor + s], on_ ? amount + (1.0 - amount) * near : amount);
+                bend(between_[k * factor + s], on_ ? effort * (amount + (1.0 - amount) * near) : amount);
     }
 }
 

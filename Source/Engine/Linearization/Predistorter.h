@@ -76,7 +76,7 @@ private:
     double ohms_;
     bool on_ = true;
     LinearizationControls controls_;
-    Glide amount_, near_;   ///< near_: the excursion is near its limit
+    Glide amount_, near_, effort_;   ///< near_: the excursion is near its limit; effort_: what the limit of power leaves of the amount
     Protection::Outcome outcome_;
     double heats_ = 0.0;    ///< of the tick, samples of the higher rate times W
     double last_ = 0.0, left_ = 0.0, decay_;   ///< V: the latest sample of the higher rate; what is left of the step that a fault makes

@@ -16,47 +16,18 @@ constexpr double firstCorner = 2.5, secondCorner = 12.0;   // of the resonance: 
 constexpr double swing = 0.75;                             // periods of the resonance: a cone left alone has gone farthest long before
 constexpr Eigen::Index coastingPoints = 32;
 constexpr double wishShare = 0.96, planShare = 0.992;      // of the limit; the rest is for points between those that are looked at
-constexpr double limitTime = 0.008, powerLimitTime = 0.05, easeTime = 0.0025;   // s, see Glide
+constexpr double limitTime = 0.008, powerLimitTime = 0.05; // s, see Glide
 constexpr double patience = 0.08;                          // s, in which a signal follows a limit that falls before it is made to
-constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3, voltageHoldTime = 0.03, voltageReleaseTime = 0.1;   // s
-constexpr double powerHoldTime = 0.05, powerReleaseTime = 0.2;                                                // s
+constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;   // s
 constexpr double settlingTime = 0.5;                       // s, in which a driver forgets
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;  // s
-constexpr double largestExcess = 4.0, largestHeatExcess = 30.0, excessTime = 1.0;    // of what linearizing adds to peaks; s
-constexpr double powerShare = 0.985, powerSlope = 20.0, powerDescent = 0.96, closeLook = 0.25;    // see forPower()
 
 double resonance(const Model& model)
 {
     return std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / (2.0 * std::numbers::pi);
 }
 
-Glide ease(double rate) { return {easeTime, rate / Protection::tick, 1.0}; }
-
-/// A factor that falls at once and comes back by a share of what is missing.
-double released(double factor, double need, double share)
-{
-    if (need < factor)
-        return need;
-    const double next = factor + share * (need - factor);
-    return next > 1.0 - 1e-6 ? 1.0 : next;   // also arrives
-}
-
-/// A factor that follows slowly while its limit is on the way, else at once.
-double eased(Glide& glide, double factor, bool slowly)
-{
-    if (!slowly) {
-        glide.jump(factor);
-        return factor;
-    }
-    glide.aim(factor);
-    return glide.step();
-}
-
 double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
-
-int ticks(double seconds, double rate) { return static_cast<int>(std::ceil(seconds * rate / Protection::tick)); }
-
-double perTick(double seconds, double rate) { return 1.0 - std::exp(-Protection::tick / (seconds * rate)); }
 
 Eigen::VectorXd coastingTimes(double f0) { return Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing / f0); }
 
@@ -94,19 +65,17 @@ int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samp
 } // namespace
 
 Protection::Protection(const Model& model, const RealTimeOptions& options, double delay)
-    : rate_(options.sampleRate), ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), committed_(roundedUp(delay - 0.5, planStep)), settled_(ticks(settlingTime, rate_)),
+    : rate_(options.sampleRate), committed_(roundedUp(delay - 0.5, planStep)), settled_(ticks::in(settlingTime, rate_)),
       split_(firstCorner * resonance(model), secondCorner * resonance(model), rate_),
-      wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep)}, load_(model, rate_),
+      wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep)},
       coast_(model, wish_.front(), coastingTimes(resonance(model)), 0, 1.0, 0.0),
       ahead_(model, wish_.front(), planTimes(resonance(model), rate_, roundedUp(committed_ + latency, planStep), planStep),
-             roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_,
-             (committed_ - delay + 0.5) / rate_),
+             roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_, (committed_ - delay + 0.5) / rate_),
       uncertainty_(worstSensitivity(model)), sent_(static_cast<std::size_t>(committed_), 0.0), displacement_(limitTime, rate_ / tick),
-      voltage_(limitTime, rate_ / tick), power_(powerLimitTime, rate_ / tick), ease_ {ease(rate_), ease(rate_), ease(rate_)},
-      loudEase_(ease(rate_)), coolEase_(ease(rate_)), past_(static_cast<std::size_t>(ticks(patience, rate_))), voltageNow_(std::numeric_limits<double>::infinity()),
-      wishHold_ {PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_)), PeakHold(ticks(wishHoldTime, rate_))},
-      reachHold_(ticks(wishHoldTime, rate_)), voltageHold_(ticks(voltageHoldTime, rate_)), powerHold_(ticks(powerHoldTime, rate_)), askedHold_(ticks(wishHoldTime, rate_)),
-      wantedHold_(ticks(wishHoldTime, rate_)), expectedHold_(ticks(powerHoldTime, rate_)), heatHold_(ticks(powerHoldTime, rate_))
+      voltage_(limitTime, rate_ / tick), power_(powerLimitTime, rate_ / tick), past_(static_cast<std::size_t>(ticks::in(patience, rate_))),
+      wishHold_ {PeakHold(ticks::in(wishHoldTime, rate_)), PeakHold(ticks::in(wishHoldTime, rate_)), PeakHold(ticks::in(wishHoldTime, rate_))},
+      reachHold_(ticks::in(wishHoldTime, rate_)), held_ {Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_)},
+      loud_(rate_), cool_(model, rate_), heated_(model.electrical())
 {
     static_assert(tick % wishStep == 0);
     std::array<double, window> weight {};
@@ -133,16 +102,14 @@ void Protection::reset()
     split_.reset();
     for (auto& wish : wish_)
         wish.reset();
-    load_.reset();
     for (auto& delayed : delayed_)
         delayed.fill(0.0);
     std::fill(sent_.begin(), sent_.end(), 0.0);
     sum_.fill(0.0);
     oldest_ = sentAt_ = 0;
     summed_ = place_ = muteFor_ = 0;
-    peak_ = heatPeak_ = heat_ = share_ = reach_ = 0.0;
+    share_ = reach_ = 0.0;
     undiminished_ = settled_;
-    loads_ = false;
     for (auto& gain : gain_) {   // as after factors of 1
         gain.fill(0.0);
         for (std::size_t k = 0; k < gain.size(); ++k)
@@ -152,12 +119,13 @@ void Protection::reset()
     for (auto* limit : {&displacement_, &voltage_, &power_})
         limit->jump();
     std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
-    for (auto* hold : {&wishHold_[0], &wishHold_[1], &wishHold_[2], &reachHold_, &voltageHold_, &powerHold_, &askedHold_, &wantedHold_, &expectedHold_, &heatHold_})
+    for (auto* hold : {&wishHold_[0], &wishHold_[1], &wishHold_[2], &reachHold_})
         hold->reset();
-    for (auto* ease : {&ease_[0], &ease_[1], &ease_[2], &loudEase_, &coolEase_})
-        ease->jump(1.0);
-    held_.fill(1.0);
-    loud_ = excess_ = heatExcess_ = cool_ = mute_ = 1.0;
+    for (auto& held : held_)
+        held.reset();
+    loud_.reset();
+    cool_.reset();
+    mute_ = 1.0;
     factors_ = {};
 }
 
@@ -168,7 +136,7 @@ void Protection::set(const LinearizationControls& controls, bool on)
     on_ = on;
     displacement_.aim(on ? std::exp(uncertainty_ * controls.margin) * reciprocal(controls.displacementLimit) : 0.0);
     voltage_.aim(on ? reciprocal(controls.voltageLimit) : 0.0);
-    power_.aim(on && ohms_ > 0.0 ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin)) : 0.0);
+    power_.aim(on && heated_ ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin)) : 0.0);
     if (fresh) {
         for (auto* limit : {&displacement_, &voltage_, &power_})
             limit->jump();
@@ -195,40 +163,10 @@ Protection::Values Protection::forWish()
         }
         factors_.displacement = wishShare / std::max(wishShare, farthest * limit);
     }
-    const double release = on_ ? perTick(wishReleaseTime, rate_) : 0.2;
-    for (std::size_t b = 0; b < bands; ++b) {
-        const double floor = 1.0 - wishHold_[b].step(1.0 - need[b]);
-        held_[b] = eased(ease_[b], released(held_[b], floor, release), displacement_.value() != displacementNow_);
-    }
-    return held_;
-}
-
-double Protection::forVoltage()
-{
-    const double peak = voltageHold_.step(std::exchange(peak_, 0.0)), limit = voltage_.value();
-    const double need = peak * excess_ * limit > 1.0 ? 1.0 / (peak * excess_ * limit) : 1.0;
-    loud_ = eased(loudEase_, released(loud_, need, perTick(voltageReleaseTime, rate_)), limit > 0.0 && limit * voltageNow_ != 1.0);
-    return loud_;
-}
-
-/// The heat p may be P (1 + s (1 - y/P)) with the running mean y and the limit P: y' = (p - y)/T then falls to zero as y comes near P, and y never
-/// passes it. Where a lower limit finds y above it already, y is led down to it: the signal becomes quiet, not silent.
-double Protection::forPower()
-{
-    double peak = powerHold_.step(std::exchange(heatPeak_, 0.0));
-    // The impedance is nowhere below that of the coil, so a quiet signal needs no closer look.
-    const double loudest = voltageHold_.value() * loud_;
-    const bool close = power_.value() > 0.0 && loudest * loudest * power_.value() > closeLook * ohms_;
-    if (close && !loads_)
-        load_.reset();
-    loads_ = close;
-    const double least = heat_ > 0.0 ? 1.0 / (powerDescent * heat_) : std::numeric_limits<double>::infinity();
-    const double limit = std::min(power_.value() / powerShare, least);
-    const double allowed = limit > 0.0 ? std::max(0.0, (1.0 + powerSlope * (1.0 - heat_ * limit)) / limit) : peak;
-    peak *= heatExcess_;
-    const double need = peak > allowed ? std::sqrt(allowed / peak) : 1.0;
-    cool_ = eased(coolEase_, released(cool_, need, perTick(powerReleaseTime, rate_)), !power_.still());
-    return cool_;
+    Values factors {};
+    for (std::size_t b = 0; b < bands; ++b)
+        factors[b] = held_[b].step(1.0 - wishHold_[b].step(1.0 - need[b]), displacement_.value() != displacementNow_);
+    return factors;
 }
 
 /// Turns the factors down until a cone that gets them for a tick, and silence then, stays within its limit.
@@ -281,17 +219,6 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
     displacementNow_ = std::min(displacement_.value(), past_[pastAt_].displacement);
     const double voltage = std::min(voltage_.value(), past_[pastAt_].voltage);
     voltageNow_ = voltage > 0.0 ? 1.0 / voltage : std::numeric_limits<double>::infinity();
-    heat_ += perTick(LinearizationControls::averagingTime, rate_) * (last.heat - heat_);
-    const double asked = askedHold_.step(last.asked), wanted = wantedHold_.step(last.wanted);
-    if (wanted * voltage_.value() > 0.9 && wanted > excess_ * asked)
-        excess_ = std::min(wanted / asked, largestExcess);
-    else
-        excess_ += perTick(excessTime, rate_) * (1.0 - excess_);
-    const double expected = expectedHold_.step(powerHold_.value() * cool_ * cool_), heat = heatHold_.step(last.heat);
-    if (heat * power_.value() > 0.3 && heat > heatExcess_ * expected)
-        heatExcess_ = std::min(heat / expected, largestHeatExcess);
-    else
-        heatExcess_ += perTick(excessTime, rate_) * (1.0 - heatExcess_);
     if (muteFor_ > 0) {
         --muteFor_;
         mute_ = 0.0;
@@ -301,8 +228,8 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
 
     factors_ = {};
     auto factors = forWish();
-    factors_.voltage = forVoltage();
-    factors_.power = forPower();
+    factors_.voltage = loud_.decide(voltage_.value(), voltage_.value() != voltage, last.asked, last.wanted);
+    factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, loud_.peak());
     for (auto& factor : factors)
         factor *= factors_.voltage * factors_.power * mute_;
     plan(cone, last.astray, factors);
@@ -317,19 +244,16 @@ double Protection::step(double u, bool sound)
 {
     const auto values = split_.split(sound ? u : 0.0);
     if (!sound)
-        muteFor_ = latency / tick + ticks(muteTime, rate_);
+        muteFor_ = latency / tick + ticks::in(muteTime, rate_);
     double left = 0.0, out = 0.0;
     for (std::size_t b = 0; b < bands; ++b) {
         sum_[b] += values[b];
-        left += held_[b] * values[b];
+        left += held_[b].value() * values[b];
         out += gain_[b][static_cast<std::size_t>(place_)] * std::exchange(delayed_[b][oldest_], values[b]);
     }
     oldest_ = oldest_ + 1 == latency ? 0 : oldest_ + 1;
-    peak_ = std::max(peak_, std::abs(left));
-    if (loads_) {
-        const double i = load_.step(loud_ * left).i;
-        heatPeak_ = std::max(heatPeak_, ohms_ * i * i);
-    }
+    loud_.add(left);
+    cool_.add(loud_.factor() * left);
     if (on_ && ++summed_ == wishStep) {
         for (std::size_t b = 0; b < bands; ++b)
             wish_[b].step(sum_[b] / wishStep);

@@ -4,12 +4,16 @@
 #include "Engine/Linearization/Bands.h"
 #include "Engine/Linearization/Foresight.h"
 #include "Engine/Linearization/Glide.h"
+#include "Engine/Linearization/HeatFactor.h"
 #include "Engine/Linearization/PeakHold.h"
 #include "Engine/Linearization/RealTime.h"
 #include "Engine/Linearization/Reference.h"
+#include "Engine/Linearization/Ticks.h"
+#include "Engine/Linearization/VoltageFactor.h"
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace excursion {
@@ -30,7 +34,7 @@ namespace excursion {
 class Protection {
 public:
     static constexpr int latency = 73;         ///< samples
-    static constexpr int tick = 16;            ///< samples
+    static constexpr int tick = ticks::samples;
     static constexpr std::size_t bands = Bands::count;
 
     /// @param delay  samples from the cone, as decide() is told of it, to the next input
@@ -57,7 +61,8 @@ public:
     double step(double u, bool sound);
 
     double voltageLimit() const { return voltageNow_; }         ///< V, of what comes out at the moment
-    double heat() const { return heat_; }                       ///< W, the running mean
+    double heat() const { return cool_.mean(); }                ///< W, the running mean
+    double effort() const { return cool_.effort(); }            ///< what the limit of power leaves of the amount of linearization
     /// How near to its limit the cone will come, by the latest plan; 0: there is no limit.
     double share() const { return share_; }
     /// By how much each limit turns down at the moment: the motion that is asked for, the voltage, the current.
@@ -75,15 +80,12 @@ private:
 
     void plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray, Values& factors);
     Values forWish();
-    double forVoltage();
-    double forPower();
 
-    double rate_, ohms_;
+    double rate_;
     int committed_;                 ///< samples on their way to the cone
     int settled_;                   ///< ticks after which a cone that is given all of the wish is where that was
     Bands split_;
     std::array<Reference, bands> wish_;   ///< the motion of each band as it comes, undiminished
-    Reference load_;                ///< the current of what the limits of excursion and voltage leave
     Foresight coast_, ahead_;
     double uncertainty_;            ///< by how much the excursion can differ, relatively, per relative error of the parameters
 
@@ -94,7 +96,6 @@ private:
     std::size_t sentAt_ = 0;
     Values sum_ {};                 ///< of the step of the wish
     int summed_ = 0;
-    double peak_ = 0.0, heatPeak_ = 0.0;   ///< of the tick, with the factors that were
 
     // Gains: factors through the window.
     Path shape_ {};
@@ -107,19 +108,17 @@ private:
     struct Limits {
         double displacement = 0.0, voltage = 0.0;   ///< reciprocals
     };
-    std::array<Glide, bands> ease_;          ///< of the factors below
-    Glide loudEase_, coolEase_;
     std::vector<Limits> past_;               ///< of the latest ticks, a ring
     std::size_t pastAt_ = 0;
     double displacementNow_ = 0.0;           ///< reciprocal
-    double voltageNow_, heat_ = 0.0, share_ = 0.0;
+    double voltageNow_ = std::numeric_limits<double>::infinity(), share_ = 0.0;
     std::array<PeakHold, bands> wishHold_;   ///< of 1 - factor
     PeakHold reachHold_;                     ///< of how far the wish would coast, in limits
     double reach_ = 0.0;
-    Values held_;
-    PeakHold voltageHold_, powerHold_, askedHold_, wantedHold_, expectedHold_, heatHold_;
-    double loud_ = 1.0, cool_ = 1.0, excess_ = 1.0, heatExcess_ = 1.0;   ///< the last two: what linearizing adds to the peaks, and to the heat
-    bool loads_ = false;                     ///< load_ runs
+    std::array<Factor, bands> held_;         ///< for the excursion
+    VoltageFactor loud_;
+    HeatFactor cool_;
+    bool heated_;                            ///< there is a coil
     int undiminished_ = 0;                   ///< ticks with factors of 1
     double mute_ = 1.0;
     int muteFor_ = 0;
