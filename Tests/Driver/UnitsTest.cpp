@@ -135,6 +135,7 @@ TEST_CASE("A motion and a pressure of any size have a start", "[units]")
                 CHECK(responseErrorDb(model, target) < -60.0);
             CHECK(model.baseParameter("m").free == (motion || area));
             CHECK(model.path[0].free == (motion || !area));
+            CHECK((caveatsOf(model).find("area of the cone") != std::string::npos) == (!motion && !area));
             if (motion)
                 CHECK(model.baseParameter("m").value == Approx(0.01 / (size * size)).epsilon(1e-3));
         }

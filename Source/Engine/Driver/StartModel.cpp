@@ -221,6 +221,8 @@ std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& tar
     if (model.electrical() && !model.baseParameter("m").free)
         text += " The moving mass is held at " + print("%.3g", 1e3 * model.baseParameter("m").value)
                 + " g, a guess: without a measured motion only Bl^2/m, Rms/m and K/m are known, so Bl, Rms and K scale with it.";
+    if (model.electrical() && !model.baseParameter("m").free && model.path[0].free)
+        text += " The area of the cone follows from that guess and the size of the pressure.";
     double highest = 0.0;
     for (const auto& target : targets)
         highest = std::max(highest, target.frequency.back());
