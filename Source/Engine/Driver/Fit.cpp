@@ -166,10 +166,14 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
         if (i == 0.0)
             i = simulatedI;
     }
-    extent.displacement = std::max(1.02 * x, 1e-9);
-    extent.velocity = std::max(1.02 * v, 1e-9);
-    if (i > 0.0)   // else the driver has no coil, and the default stands
-        extent.current = std::max(1.02 * i, 1e-9);
+    // Where nothing moves (the current of a driver without a coil) the default stands.
+    const auto keep = [](double peak, double& to) {
+        if (peak > 0.0)
+            to = 1.02 * peak;
+    };
+    keep(x, extent.displacement);
+    keep(v, extent.velocity);
+    keep(i, extent.current);
     return extent;
 }
 

@@ -55,7 +55,7 @@ Solution solve(const Matrix& N, const Vector& g, double power, std::array<bool, 
             if (!use[static_cast<std::size_t>(k)]) {
                 A.row(k).setZero();
                 A.col(k).setZero();
-                A(k, k) = 1.0;
+                A(k, k) = N(k, k);
                 b[k] = 0.0;
             }
         solution.coefficients = A.ldlt().solve(b);

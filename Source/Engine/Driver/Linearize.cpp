@@ -2,31 +2,49 @@
 #include "Engine/Driver/Linearize.h"
 
 #include "Engine/Driver/Dynamics.h"
+#include "Engine/Driver/Resolvent.h"
 #include "Engine/Error.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
+#include <algorithm>
 #include <numbers>
 
 namespace excursion {
 namespace {
 
-/// Rates at a state so close to rest that only the linear part speaks: curved laws enter in second order.
+/// A state so close to rest that only the linear part speaks, as curved laws enter in second order: for each of i, x and v a small share
+/// of where a law holds. What is linear does not mind the size.
+std::vector<double> nearRest(const Model& model, std::size_t order)
+{
+    constexpr double share = 1e-9;
+    std::vector<double> state(order, share);
+    bool curved = false;
+    for (const auto& component : model.components) {
+        if (component.effect->linear())
+            continue;
+        const double reach[] {component.extent.current, component.extent.displacement, component.extent.velocity};
+        for (std::size_t j = 0; j < 3; ++j)
+            state[j] = share * (curved ? std::min(reach[j], state[j] / share) : reach[j]);
+        curved = true;
+    }
+    return state;
+}
+
 template <class T>
 void columns(const Model& model, const std::vector<T>& parameters, std::vector<std::vector<T>>& result)
 {
-    constexpr double nearRest = 1e-9;
     const Dynamics<T> dynamics(model, parameters);
     const auto n = static_cast<std::size_t>(dynamics.order());
+    const auto small = nearRest(model, n);
     result.assign(n + 1, std::vector<T>(n, T(0.0)));
     for (std::size_t j = 0; j <= n; ++j) {
         std::vector<T> z(n, T(0.0));
         if (j < n)
-            z[j] = T(nearRest);
-        dynamics.rates(z.data(), T(j < n ? 0.0 : nearRest), result[j].data());
+            z[j] = T(small[j]);
+        dynamics.rates(z.data(), T(j < n ? 0.0 : 1.0), result[j].data());
         for (auto& entry : result[j])
-            entry = entry * (1.0 / nearRest);
+            entry = entry * (j < n ? 1.0 / small[j] : 1.0);
     }
 }
 
@@ -88,10 +106,18 @@ Linearization linearize(const Model& model, bool withGradient)
     return result;
 }
 
+Eigen::VectorXcd poles(const Linearization& linear)
+{
+    return inUnits(linear.A, stateUnits(linear.A)).eigenvalues();
+}
+
 bool isStable(const Model& model)
 {
     const auto A = linearize(model).A;
-    return A.allFinite() && A.eigenvalues().real().maxCoeff() <= 1e-9 * A.cwiseAbs().maxCoeff();
+    if (!A.allFinite())
+        return false;
+    const auto balanced = inUnits(A, stateUnits(A));
+    return balanced.eigenvalues().real().maxCoeff() <= 1e-9 * balanced.cwiseAbs().maxCoeff();
 }
 
 std::vector<Response> respond(const Model& model, const std::vector<Quantity>& quantities,
@@ -101,6 +127,7 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
     const auto linear = linearize(model, withGradient);
     const auto n = linear.A.rows();
     const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
+    const Eigen::VectorXcd B = linear.B.cast<Complex>();
     const double radiation = radiationPerArea() / model.microphoneDistance;
     const double area = model.path[0].value, tau = model.path[1].value;
 
@@ -111,14 +138,11 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
             response.gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
     }
     const auto entries = nonzero(linear);
-    Eigen::MatrixXcd system(n, n);
-    Eigen::PartialPivLU<Eigen::MatrixXcd> factors(n);
+    Resolvent resolvent(linear.A);
     for (std::size_t f = 0; f < frequency.size(); ++f) {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
-        system.noalias() = -linear.A.cast<Complex>();
-        system.diagonal().array() += s;
-        factors.compute(system);
-        const Eigen::VectorXcd z = factors.solve(linear.B.cast<Complex>());
+        resolvent.moveTo(s);
+        const Eigen::VectorXcd z = resolvent.times(B);
         for (std::size_t q = 0; q < quantities.size(); ++q) {
             // Each quantity is a state times a factor: displacement x, velocity s x, acceleration s^2 x.
             Complex factor = 1.0;
@@ -137,9 +161,7 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
             if (!withGradient)
                 continue;
             // d(C R B) = C R (dA R B + dB) with R = (sI - A)^-1.
-            Eigen::VectorXcd unit = Eigen::VectorXcd::Zero(n);
-            unit[state] = 1.0;
-            const Eigen::VectorXcd left = factors.transpose().solve(unit);
+            const Eigen::VectorXcd left = resolvent.row(state);
             auto row = responses[q].gradient.row(static_cast<Eigen::Index>(f));
             for (const auto& entry : entries)
                 row[entry.parameter] += factor * left[entry.row] * entry.value * (entry.column < n ? z[entry.column] : Complex(1.0));

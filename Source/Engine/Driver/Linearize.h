@@ -21,6 +21,9 @@ struct Linearization {
 
 Linearization linearize(const Model&, bool withGradient = false);
 
+/// Eigenvalues of A, 1/s.
+Eigen::VectorXcd poles(const Linearization&);
+
 /// Whether A is finite and has no eigenvalue on the right. Those at zero are no fault: the decoupled first state of a driver without a coil
 /// stands there, and a memory that only integrates.
 bool isStable(const Model&);

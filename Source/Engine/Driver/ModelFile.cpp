@@ -66,18 +66,19 @@ Json lawsJson(const Model& model)
 
 Extent extentFrom(const JsonField& field)
 {
-    // Bounds of anything that moves air; they keep a file from asking for a ladder of a million cells.
-    constexpr double least = 1e-9, most = 1e6;
+    // Sizes may be in any unit, as a circuit may stand for a driver; their squares and products are still numbers. The bounds of the
+    // frequencies keep a file from asking for a ladder of a million cells.
+    constexpr double least = 1e-60, most = 1e60;
     Extent e;
     e.displacement = field.at("displacement").numberWithin(least, most);
     e.velocity = field.at("velocity").numberWithin(least, most);
     e.current = field.at("current").numberWithin(least, most);
-    e.lowFrequency = field.at("lowFrequency").numberWithin(1e-4, most);
+    e.lowFrequency = field.at("lowFrequency").numberWithin(1e-4, 1e6);
     e.highFrequency = field.at("highFrequency").numberWithin(1e-4, 1e7);
     if (e.highFrequency <= e.lowFrequency)
         field.at("highFrequency").refuse("more than lowFrequency");
     e.degree = field.at("degree").count(1, curve::maximumDegree);
-    e.scale = field.at("scale").numberWithin(1e-12, 1e12);
+    e.scale = field.at("scale").numberWithin(least, most);
     return e;
 }
 

@@ -6,8 +6,6 @@
 #include "Engine/Driver/StartState.h"
 #include "Engine/Signal/Fft.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -205,12 +203,12 @@ std::size_t settlingTime(const Model& model, const Record& record)
     Model base = model;
     base.components.resize(1);
     double needed = 0.0;   // s
-    for (const auto& pole : linearize(base).A.eigenvalues())
+    for (const auto& pole : poles(linearize(base)))
         if (pole.real() < 0.0)
             needed = std::max(needed, by110dB / -pole.real());
     const double slowest = 0.3 * 2.0 * std::numbers::pi * record.bandLow;
     if (model.components.size() > 1)
-        for (const auto& pole : linearize(model).A.eigenvalues())
+        for (const auto& pole : poles(linearize(model)))
             if (-pole.real() > slowest)
                 needed = std::max(needed, by60dB / -pole.real());
     const auto period = static_cast<double>(record.sections.front().window);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace excursion {
@@ -47,19 +48,32 @@ std::array<double, 7> Drive::polynomial(std::size_t halfStep) const
 
 namespace {
 
-// Far beyond any loudspeaker: a runaway is recognized early instead of filling the record with infinities.
-constexpr double implausible = 1e3;   // A, m, m/s
+/// A runaway is recognized early instead of filling the record with infinities: so far beyond where its laws hold no model means anything.
+/// Without laws it is linear, and holds at any level.
+class Plausible {
+public:
+    explicit Plausible(const Model& model)
+    {
+        constexpr double far = 1e6;
+        Eigen::Array3d reach = Eigen::Array3d::Zero();
+        for (const auto& component : model.components)
+            if (!component.effect->linear())
+                reach = reach.max(Eigen::Array3d(component.extent.current, component.extent.displacement, component.extent.velocity));
+        most_ = (reach > 0.0).select(far * reach, std::numeric_limits<double>::infinity());
+    }
 
-bool isPlausible(const Eigen::VectorXd& z)
-{
-    return std::abs(z[0]) < implausible && std::abs(z[1]) < implausible && std::abs(z[2]) < implausible;
-}
+    bool holds(const Eigen::VectorXd& z) const { return (z.head(3).array().abs() < most_).all(); }   // never of what is not finite
+
+private:
+    Eigen::Array3d most_;
+};
 
 } // namespace
 
 bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start)
 {
     ExponentialStep motion(model, drive.step());
+    const Plausible plausible(model);
     Eigen::VectorXd z = start.size() > 0 ? start : Eigen::VectorXd::Zero(motion.order());
     for (auto* channel : {&out.current, &out.displacement, &out.velocity, &out.acceleration}) {
         channel->clear();
@@ -78,7 +92,7 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
             if (s == 0 && kept)
                 out.acceleration.push_back(acceleration);
         }
-        if (!isPlausible(z))
+        if (!plausible.holds(z))
             return false;
     }
     return true;
@@ -88,6 +102,7 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
                    const std::vector<Quantity>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
 {
     SensitivityStep motion(model, drive.step(), active);
+    const Plausible plausible(model);
     if (start.value.size() > 0) {
         Eigen::MatrixXd slopes(static_cast<Eigen::Index>(active.size()), start.value.size());
         for (std::size_t k = 0; k < active.size(); ++k)
@@ -116,7 +131,7 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
                 if (place(observed[q]) < 0)
                     out[q].col(column) = motion.accelerationSlopes();
         }
-        if (!isPlausible(motion.state()))
+        if (!plausible.holds(motion.state()))
             return false;
     }
     return true;

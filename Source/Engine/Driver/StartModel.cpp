@@ -2,6 +2,7 @@
 #include "Engine/Driver/FitResponse.h"
 
 #include "Engine/Driver/ImpedanceScan.h"
+#include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/PistonBand.h"
 #include "Engine/Measurement/PhysicalDelay.h"
 
@@ -23,13 +24,28 @@ double typicalMass(double f0, const std::optional<double>& area)
     return std::round(mass / digit) * digit;
 }
 
-/// Another mass for the same electrical behaviour: only Bl^2/m, Rms/m and K/m are seen.
+/// Another mass for the same electrical behaviour: only Bl^2/m, Rms/m and K/m are seen. The motion changes with the root of it, or, without
+/// a coil, with it.
 void rescale(Model& model, double mass)
 {
     const double ratio = mass / model.baseParameter("m").value;
     for (const char* name : {"m", "Rms", "K"})
         model.baseParameter(name).value *= ratio;
-    model.baseParameter("Bl").value *= std::sqrt(ratio);
+    if (model.electrical())
+        model.baseParameter("Bl").value *= std::sqrt(ratio);
+}
+
+/// How many times larger the measured response is than the model's.
+double sizeOver(const Model& model, const ResponseTarget& target)
+{
+    const auto response = respond(model, {target.quantity}, target.frequency).front();
+    double cross = 0.0, power = 0.0;
+    for (std::size_t f = 0; f < target.frequency.size(); ++f) {
+        const double weight = 1.0 / (target.deviation[f] * target.deviation[f]);
+        cross += weight * std::abs(response.value[f]) * std::abs(target.value[f]);
+        power += weight * std::norm(response.value[f]);
+    }
+    return cross / power;
 }
 
 /// The responses on a grid that is just fine enough to tell a good start from a bad one.
@@ -38,8 +54,8 @@ constexpr int startPointsPerOctave = 24;
 
 /// What the targets show and what they do not.
 struct Sight {
-    bool motion = false, pressure = false, mass = false;
-    const ResponseTarget* current = nullptr;
+    bool mass = false;
+    const ResponseTarget *current = nullptr, *motion = nullptr, *pressure = nullptr;
     double low = std::numeric_limits<double>::infinity(), high = 0.0;   ///< Hz
 };
 
@@ -52,9 +68,9 @@ Sight sightOf(const std::vector<ResponseTarget>& targets, bool electrical, const
         if (target.quantity == Quantity::current)
             sight.current = &target;
         else if (target.quantity == Quantity::pressure)
-            sight.pressure = true;
-        else
-            sight.motion |= isMotion(target.quantity);
+            sight.pressure = &target;
+        else if (!sight.motion && isMotion(target.quantity))
+            sight.motion = &target;
     }
     sight.mass = !electrical || sight.motion || (sight.pressure && driver.coneArea && driver.microphoneDistance);
     return sight;
@@ -85,7 +101,16 @@ private:
     double lowest_ = std::numeric_limits<double>::infinity();
 };
 
-const std::vector<double> anyMass {1e-4, 1e-3, 1e-2, 1e-1};   // kg, micro speaker to subwoofer
+/// Gives the model the mass, and the area, with which its motion and pressure are of the size that was measured, whatever their units.
+void matchSizes(Model& model, const Sight& sight)
+{
+    if (const auto* target = sight.motion ? sight.motion : sight.pressure; target && sight.mass) {
+        const double size = sizeOver(model, *target);
+        rescale(model, model.baseParameter("m").value / (model.electrical() ? size * size : size));
+    }
+    if (model.path[0].free)
+        model.path[0].value *= sizeOver(model, *sight.pressure);
+}
 
 /// From the impedance's own peak; the mass is the one thing it does not show.
 void considerPeak(Contest& contest, Model model, const Sight& sight)
@@ -95,19 +120,26 @@ void considerPeak(Contest& contest, Model model, const Sight& sight)
     if (!shape || shape->misfit > recognized)
         return;
     const double omega = 2.0 * std::numbers::pi * shape->resonance;
-    for (const double mass : sight.mass ? anyMass : std::vector<double> {1e-2}) {
-        model.baseParameter("Re").value = shape->Re;
-        model.baseParameter("Le").value = std::max(shape->Le, shape->Re / (2.0 * std::numbers::pi * 1e5));
-        model.baseParameter("m").value = mass;
-        model.baseParameter("K").value = mass * omega * omega;
-        model.baseParameter("Rms").value = omega * mass / shape->quality;
-        model.baseParameter("Bl").value = std::sqrt(shape->height * model.baseParameter("Rms").value);
-        contest.consider(model);
+    const double mass = model.baseParameter("m").value;
+    model.baseParameter("Re").value = shape->Re;
+    model.baseParameter("Le").value = std::max(shape->Le, shape->Re / (2.0 * std::numbers::pi * 1e5));
+    model.baseParameter("K").value = mass * omega * omega;
+    model.baseParameter("Rms").value = omega * mass / shape->quality;
+    model.baseParameter("Bl").value = std::sqrt(shape->height * model.baseParameter("Rms").value);
+    matchSizes(model, sight);
+    contest.consider(model);
+    if (!sight.mass)
+        return;
+    // The size of a motion tells the mass but roughly where the cone does not move as one piece.
+    for (const double factor : {0.2, 5.0}) {
+        auto other = model;
+        rescale(other, factor * model.baseParameter("m").value);
+        contest.consider(std::move(other));
     }
 }
 
 /// From a grid of resonance, quality and coupling.
-void considerGrid(Contest& contest, Model model, const Sight& sight, const ResponseTarget& first)
+void considerGrid(Contest& contest, Model model, const Sight& sight)
 {
     // The magnitude of the response sets the scale, so that only dimensionless numbers are searched.
     double Re = 6.0;
@@ -121,25 +153,23 @@ void considerGrid(Contest& contest, Model model, const Sight& sight, const Respo
     for (double f0 = std::max(sight.low, 2.0) * 1.1; f0 < std::min(sight.high, 3000.0); f0 *= 1.45)
         for (const double Q : {1.0, 5.0}) {
             const double omega = 2.0 * std::numbers::pi * f0;
+            const double mass = model.baseParameter("m").value;
+            model.baseParameter("K").value = mass * omega * omega;
+            model.baseParameter("Rms").value = omega * mass / Q;
             if (!model.electrical()) {
-                // x/F is 1/K below resonance.
-                const double order = first.quantity == Quantity::displacement ? 0 : first.quantity == Quantity::velocity ? 1 : 2;
-                model.baseParameter("K").value = std::pow(2.0 * std::numbers::pi * first.frequency.front(), order) / std::abs(first.value.front());
-                model.baseParameter("m").value = model.baseParameter("K").value / (omega * omega);
-                model.baseParameter("Rms").value = omega * model.baseParameter("m").value / Q;
-                contest.consider(model);
+                auto candidate = model;
+                matchSizes(candidate, sight);
+                contest.consider(std::move(candidate));
                 continue;
             }
-            for (const double coupling : {0.5, 4.0})   // Bl^2/(Re Rms): the height of the impedance peak
-                for (const double mass : sight.mass ? std::vector<double> {1e-4, 1e-2} : std::vector<double> {1e-2}) {
-                    model.baseParameter("Re").value = Re;
-                    model.baseParameter("Le").value = Re / (2.0 * std::numbers::pi * 3000.0);
-                    model.baseParameter("m").value = mass;
-                    model.baseParameter("K").value = mass * omega * omega;
-                    model.baseParameter("Rms").value = omega * mass / Q;
-                    model.baseParameter("Bl").value = std::sqrt(coupling * Re * model.baseParameter("Rms").value);
-                    contest.consider(model);
-                }
+            for (const double coupling : {0.5, 4.0}) {   // Bl^2/(Re Rms): the height of the impedance peak
+                auto candidate = model;
+                candidate.baseParameter("Re").value = Re;
+                candidate.baseParameter("Le").value = Re / (2.0 * std::numbers::pi * 3000.0);
+                candidate.baseParameter("Bl").value = std::sqrt(coupling * Re * model.baseParameter("Rms").value);
+                matchSizes(candidate, sight);
+                contest.consider(std::move(candidate));
+            }
         }
 }
 
@@ -155,8 +185,9 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
     model.microphoneDistance = driver.microphoneDistance.value_or(1.0);
     model.path[0].value = driver.coneArea.value_or(0.01);
     model.path[1].value = model.microphoneDistance / speedOfSound;
-    model.path[1].free = sight.pressure;
-    model.path[0].free = sight.pressure && sight.motion;
+    model.path[1].free = sight.pressure != nullptr;
+    // Where neither the mass nor the area is known, the mass is held, and the area takes the size of the pressure.
+    model.path[0].free = sight.pressure && (sight.motion || !sight.mass);
     if (electrical) {
         model.baseParameter("m").free = sight.mass;
         model.baseParameter("Re").free = sight.current != nullptr;
@@ -165,13 +196,14 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
     if (electrical && sight.current)
         considerPeak(contest, model, sight);
     if (!contest.found())
-        considerGrid(contest, model, sight, targets.front());
+        considerGrid(contest, model, sight);
     if (!contest.found())
         throw Error(Error::Kind::numerical, "No linear driver could be fitted to the frequency response of the take; run the check of the take first.");
     Model best = contest.best();
     if (!sight.mass) {
         const double f0 = std::sqrt(best.baseParameter("K").value / best.baseParameter("m").value) / (2.0 * std::numbers::pi);
         rescale(best, typicalMass(f0, driver.coneArea));
+        matchSizes(best, sight);
     }
     fitResponse(best, dense, {60, 1e-8});
     best.name = driver.name;
@@ -189,6 +221,8 @@ std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& tar
     if (model.electrical() && !model.baseParameter("m").free)
         text += " The moving mass is held at " + print("%.3g", 1e3 * model.baseParameter("m").value)
                 + " g, a guess: without a measured motion only Bl^2/m, Rms/m and K/m are known, so Bl, Rms and K scale with it.";
+    if (model.electrical() && !model.baseParameter("m").free && model.path[0].free)
+        text += " The area of the cone follows from that guess and the size of the pressure.";
     double highest = 0.0;
     for (const auto& target : targets)
         highest = std::max(highest, target.frequency.back());

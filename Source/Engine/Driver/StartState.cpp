@@ -2,9 +2,8 @@
 #include "Engine/Driver/StartState.h"
 
 #include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/Resolvent.h"
 #include "Engine/Signal/Fft.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -67,17 +66,16 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
             if (withGradient)
                 states[s].gradient = Eigen::MatrixXd::Zero(n, P);
         }
-    Eigen::MatrixXcd system(n, n), drives(n, P), gradient;
-    Eigen::PartialPivLU<Eigen::MatrixXcd> factors(n);
+    const Eigen::VectorXcd B = linear.B.cast<Complex>();
+    Eigen::MatrixXcd drives(n, P), gradient;
+    Resolvent resolvent(linear.A);
     for (const auto& [frequency, shares] : lines) {
-        system.noalias() = -linear.A.cast<Complex>();
-        system.diagonal().array() += Complex(0.0, 2.0 * std::numbers::pi * frequency);
-        factors.compute(system);
-        const Eigen::VectorXcd z = factors.solve(linear.B.cast<Complex>());
+        resolvent.moveTo(Complex(0.0, 2.0 * std::numbers::pi * frequency));
+        const Eigen::VectorXcd z = resolvent.times(B);
         for (Eigen::Index p = 0; p < P; ++p)
             drives.col(p).noalias() = linear.dA[static_cast<std::size_t>(p)] * z + linear.dB[static_cast<std::size_t>(p)];
         if (withGradient)
-            gradient = factors.solve(drives);
+            gradient = resolvent.times(drives);
         for (const auto& share : shares) {
             states[share.section].value += (share.weight * z).real();
             if (withGradient)

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/StateUnits.h"
+
+#include <Eigen/LU>
+
+#include <complex>
+
+namespace excursion {
+
+/// (s I - A)^-1 at one s after another, factored in units in which no digits are lost.
+class Resolvent {
+public:
+    explicit Resolvent(const Eigen::MatrixXd& A)
+        : units_(stateUnits(A)), minusA_(-inUnits(A, units_).cast<std::complex<double>>()), factors_(A.rows())
+    {
+    }
+
+    void moveTo(std::complex<double> s)
+    {
+        system_ = minusA_;
+        system_.diagonal().array() += s;
+        factors_.compute(system_);
+    }
+
+    /// (s I - A)^-1 times a vector or a matrix.
+    template <class Right>
+    auto times(const Right& right) const
+    {
+        return (units_.asDiagonal() * factors_.solve(units_.cwiseInverse().asDiagonal() * right)).eval();
+    }
+
+    /// Row `state` of (s I - A)^-1, as a column.
+    Eigen::VectorXcd row(Eigen::Index state) const
+    {
+        Eigen::VectorXcd unit = Eigen::VectorXcd::Zero(units_.size());
+        unit[state] = units_[state];
+        const Eigen::VectorXcd solved = factors_.transpose().solve(unit);
+        return solved.cwiseQuotient(units_);
+    }
+
+private:
+    Eigen::VectorXd units_;
+    Eigen::MatrixXcd minusA_, system_;
+    Eigen::PartialPivLU<Eigen::MatrixXcd> factors_;
+};
+
+} // namespace excursion
