@@ -7,7 +7,7 @@ namespace excursion {
 
 /// Samples that a converter could not follow: stretches of exactly equal samples at the channel's highest or lowest value,
 /// entered or left at full speed. A smooth peak is entered in steps as fine as the sample's resolution, so
-/// that a coarsely quantized slow signal is not taken for clipping.
+/// that a coarsely quantized slow signal is not taken for clipping. What was clipped ahead of noise: PileUp.h.
 /// @return  the number of such samples; 0 for a constant channel
 long clippedSamples(const Channel&);
 

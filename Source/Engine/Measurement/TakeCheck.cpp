@@ -87,7 +87,7 @@ CheckReport check(const Measurement& take)
 
     std::vector<bool> alive;
     for (std::size_t c = 0; c < take.channels.size(); ++c)
-        alive.push_back(checkWaveform(take.channels[c], report.channels[c], problems));
+        alive.push_back(checkWaveform(take, take.channels[c], report.channels[c], problems));
 
     const bool described = take.excitation && !take.excitation->lines.empty() && take.excitation->period > 1;
     const long missing = described ? take.excitation->totalSamples() - static_cast<long>(take.length()) : 0;

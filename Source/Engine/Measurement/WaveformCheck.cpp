@@ -2,6 +2,7 @@
 #include "Engine/Measurement/WaveformCheck.h"
 
 #include "Engine/Measurement/Clipping.h"
+#include "Engine/Measurement/PileUp.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,31 @@ double legalOffset(Quantity quantity)
 
 constexpr long longestLegalStandstill = 16;
 
+/// Behind the noise clipping leaves equal samples, ahead of it a bump. What shows both ways is told once.
+void checkClipping(const Measurement& take, const Channel& channel, ChannelFigures& figures, std::vector<Problem>& problems)
+{
+    const long equal = clippedSamples(channel);
+    const auto piles = pileUps(take, channel);
+    long piled = 0;
+    bool high = false, low = false;
+    for (const auto& pile : piles) {
+        piled += pile.samples;
+        (pile.high ? high : low) = true;
+    }
+    figures.clipped = std::max(equal, piled);
+    if (figures.clipped == 0)
+        return;
+    const bool fatal = static_cast<double>(figures.clipped) > std::max(8.0, 1e-5 * static_cast<double>(channel.samples.size()));
+    const std::string side = high && low ? "extremes" : high ? "highest values" : "lowest values";
+    const std::string how = equal >= piled ? std::to_string(equal) + " samples stand flat at its extremes"
+                                           : "about " + std::to_string(piled) + " samples pile up at its " + side + ", within the noise";
+    problems.push_back({"clipping", channel.quantity, static_cast<double>(figures.clipped), "samples", fatal,
+                        "The " + std::string(name(channel.quantity)) + " channel clips: " + how + "; lower its gain or the level."});
+}
+
 } // namespace
 
-bool checkWaveform(const Channel& channel, ChannelFigures& figures, std::vector<Problem>& problems)
+bool checkWaveform(const Measurement& take, const Channel& channel, ChannelFigures& figures, std::vector<Problem>& problems)
 {
     const auto& x = channel.samples;
     const std::string who(name(channel.quantity));
@@ -40,13 +63,7 @@ bool checkWaveform(const Channel& channel, ChannelFigures& figures, std::vector<
                             "The " + who + " channel never moves: connect its sensor, or remove the channel."});
         return false;
     }
-    figures.clipped = clippedSamples(channel);
-    if (figures.clipped > 0) {
-        const bool fatal = static_cast<double>(figures.clipped) > std::max(8.0, 1e-5 * count);
-        problems.push_back({"clipping", channel.quantity, static_cast<double>(figures.clipped), "samples", fatal,
-                            "The " + who + " channel clips: " + std::to_string(figures.clipped)
-                                + " samples stand flat at its extremes; lower its gain or the level."});
-    }
+    checkClipping(take, channel, figures, problems);
     if (const double offset = std::abs(figures.offset) / figures.rms; offset > legalOffset(channel.quantity))
         problems.push_back({"dc-offset", channel.quantity, figures.offset, channel.unit, false,
                             "The " + who + " channel has an offset of " + std::to_string(std::lround(100.0 * offset))
