@@ -150,11 +150,14 @@ void Protection::set(const LinearizationControls& controls, bool on)
 Protection::Values Protection::forWish()
 {
     Values need {1.0, 1.0, 1.0};
-    if (const double limit = displacement_.value(); limit > 0.0) {
+    const double limit = displacement_.value();
+    farthest_ = 0.0;
+    if (limit > 0.0 || power_.value() > 0.0) {
         state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
         coasted_.noalias() = coast_.coasting * state_;
         const double farthest = coasted_.cwiseAbs().maxCoeff();
         reach_ = reachHold_.step(farthest * limit);
+        farthest_ = limit > 0.0 ? std::min(farthest, wishShare / limit) : farthest;
         if (farthest * limit > wishShare) {
             for (std::size_t b = 0; b < bands; ++b)
                 wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
@@ -229,7 +232,7 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
     factors_ = {};
     auto factors = forWish();
     factors_.voltage = loud_.decide(voltage_.value(), voltage_.value() != voltage, last.asked, last.wanted);
-    factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, loud_.peak());
+    factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, loud_.peak(), farthest_);
     for (auto& factor : factors)
         factor *= factors_.voltage * factors_.power * mute_;
     plan(cone, last.astray, factors);

@@ -114,7 +114,7 @@ private:
     double voltageNow_ = std::numeric_limits<double>::infinity(), share_ = 0.0;
     std::array<PeakHold, bands> wishHold_;   ///< of 1 - factor
     PeakHold reachHold_;                     ///< of how far the wish would coast, in limits
-    double reach_ = 0.0;
+    double reach_ = 0.0, farthest_ = 0.0;    ///< farthest_: m, how far it would coast with the limit kept
     std::array<Factor, bands> held_;         ///< for the excursion
     VoltageFactor loud_;
     HeatFactor cool_;
