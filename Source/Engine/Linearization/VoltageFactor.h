@@ -9,8 +9,8 @@
 
 namespace excursion {
 
-/// By how much a signal is turned down so that, linearized, its peaks stay within a limit: peak x excess <= limit, with the peak of the last 30 to
-/// 60 ms and what linearizing has lately added to peaks.
+/// By how much a signal is turned down so that, linearized, its peaks stay within a limit: peak x excess <= limit, with the peak of the last 100 to
+/// 200 ms and what linearizing has lately added to peaks.
 class VoltageFactor {
 public:
     explicit VoltageFactor(double sampleRate)
@@ -51,7 +51,7 @@ public:
     double peak() const { return peaks_.value() * factor(); }   ///< V, what is left of the latest peaks
 
 private:
-    static constexpr double peakHold = 0.03, excessHold = 0.1, release = 0.1, forgetting = 1.0;   // s
+    static constexpr double peakHold = 0.1, excessHold = 0.1, release = 0.5, forgetting = 1.0;   // s
     static constexpr double near = 0.9, largestExcess = 4.0;
     double share_;
     PeakHold peaks_, asked_, wanted_;
