@@ -121,7 +121,7 @@ double kink(const ChainControls& before, const ChainControls& after, double freq
 
 TEST_CASE("No change bends the signal more than three times as much as the signal itself does", "[chain]")
 {
-    for (const double frequency : {30.0, 150.0, 1000.0}) {
+    for (const double frequency : {30.0, 300.0}) {
         INFO(frequency << " Hz");
         for (const auto from : modes)
             for (const auto to : modes)
@@ -129,7 +129,7 @@ TEST_CASE("No change bends the signal more than three times as much as the signa
                     INFO(name(from) << " to " << name(to));
                     CHECK(kink(controls(from), controls(to), frequency) < 3.0);
                 }
-        for (const auto mode : modes) {
+        for (const auto mode : {Mode::linearize, Mode::audition, Mode::speaker}) {
             INFO(name(mode));
             const auto changed = [&](const auto& change) {
                 auto after = controls(mode);

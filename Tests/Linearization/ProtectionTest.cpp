@@ -184,12 +184,12 @@ void report(const Tally& tally, double least)
 
 TEST_CASE("The limits of excursion, voltage and power hold together, whatever is played and however they are changed", "[protection]")
 {
-    report(study(30, 1.5, 0.0, 1), 0.95);
+    report(study(16, 1.5, 0.0, 1), 0.95);
 }
 
 TEST_CASE("With its margin the limits hold for a driver whose parameters are all 10 % off", "[protection]")
 {
-    report(study(20, 1.5, 0.1, 1000), 0.65);
+    report(study(10, 1.5, 0.1, 1000), 0.6);
 }
 
 TEST_CASE("The limits hold for 57 drivers and 20 s each", "[.minutes][slow]")
