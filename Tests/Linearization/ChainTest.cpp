@@ -119,7 +119,7 @@ double kink(const ChainControls& before, const ChainControls& after, double freq
 
 } // namespace
 
-TEST_CASE("No change bends the signal more than three times as much as the signal itself does", "[chain]")
+TEST_CASE("No change bends the signal more than three times as much as the signal itself does", "[chain][slow]")
 {
     for (const double frequency : {30.0, 300.0}) {
         INFO(frequency << " Hz");

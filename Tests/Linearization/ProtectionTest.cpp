@@ -182,12 +182,12 @@ void report(const Tally& tally, double least)
 
 } // namespace
 
-TEST_CASE("The limits of excursion, voltage and power hold together, whatever is played and however they are changed", "[protection]")
+TEST_CASE("The limits of excursion, voltage and power hold together, whatever is played and however they are changed", "[protection][slow]")
 {
     report(study(16, 1.5, 0.0, 1), 0.95);
 }
 
-TEST_CASE("With its margin the limits hold for a driver whose parameters are all 10 % off", "[protection]")
+TEST_CASE("With its margin the limits hold for a driver whose parameters are all 10 % off", "[protection][slow]")
 {
     report(study(10, 1.5, 0.1, 1000), 0.6);
 }
@@ -243,7 +243,7 @@ TEST_CASE("A linearizer that is told to do nothing simulates the driver", "[prot
     }
 }
 
-TEST_CASE("Limiting adds no treble: what it leaves above 2 kHz is what turning down leaves", "[protection]")
+TEST_CASE("Limiting adds no treble: what it leaves above 2 kHz is what turning down leaves", "[protection][slow]")
 {
     // Of signals without treble: less than -60 dB of what comes out. With treble: no more than came in.
     for (const auto& model : factoryModels()) {
