@@ -32,9 +32,9 @@ Model bent()
             if (p.strength)
                 p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.extent.scale : someScale(*effect) / 5.0;
     }
-    for (auto& p : model.path)
+    for (auto& p : model.path.parameters)
         p.free = true;
-    model.path[1].value = 3e-4;
+    model.path.parameters[1].value = 3e-4;
     return model;
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("Normal equations are those from finite differences, by every paramete
 TEST_CASE("A linear model's prediction is its response times the input", "[output-error]")
 {
     auto model = makeModel("electrodynamic");
-    model.path[1].value = 3e-4;
+    model.path.parameters[1].value = 3e-4;
     auto record = someRecord();
     record.leadIn = 10 * N;
     auto options = plain();

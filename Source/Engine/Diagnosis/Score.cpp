@@ -213,7 +213,7 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
             const bool isNew = std::none_of(before.begin(), before.end(), [&](const Parameter& b) { return b.name == p.name; });
             visit(p, isNew, k);
         }
-    for (const auto& p : higher.path)
+    for (const auto& p : higher.path.parameters)
         visit(p, false, 0);
     // Twice what noise alone gives, about the 95 % point of chi-square: a higher price would leave a bias of several standard errors out
     // of the confidence bands, a lower one would let the law wander where the record seldom is.

@@ -12,5 +12,7 @@ const Effect& inductancePosition();
 const Effect& eddyCurrents();
 const Effect& creep();
 const Effect& dampingVelocity();
+const Effect& doppler();
+const Effect& coneBreakup();
 
 } // namespace excursion
