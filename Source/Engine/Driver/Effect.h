@@ -91,6 +91,7 @@ public:
     virtual std::string remedy() const = 0;     ///< what a designer can do about it
     virtual bool electrical() const = 0;        ///< needs a coil; a mechanical-only driver has none
     virtual bool linear() const = 0;            ///< changes the frequency response, adds no distortion
+    virtual bool felt() const { return true; }  ///< acts on coil and cone; else it is heard or seen only
 
     virtual std::vector<Parameter> parameters(const Extent&) const = 0;
 

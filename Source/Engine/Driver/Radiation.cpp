@@ -17,6 +17,7 @@ public:
     std::string remedy() const override { return "None is needed."; }
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
+    bool felt() const override { return false; }
 
     /// Both are held until a channel of pressure is there to see them.
     std::vector<Parameter> parameters(const Extent&) const override

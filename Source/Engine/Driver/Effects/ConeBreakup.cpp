@@ -28,6 +28,7 @@ public:
     }
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
+    bool felt() const override { return false; }
 
     std::vector<Parameter> parameters(const Extent&) const override
     {

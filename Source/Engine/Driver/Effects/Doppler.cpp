@@ -26,6 +26,7 @@ public:
     }
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
+    bool felt() const override { return false; }
 
     std::vector<Parameter> parameters(const Extent&) const override
     {
