@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Diagnosis/DuffingTake.h"
 #include "Diagnosis/SyntheticLadder.h"
 
 #include "Engine/Diagnosis/DiagnosisFile.h"
@@ -16,6 +17,22 @@ TEST_CASE("A ladder saved, read and saved again is the same, byte for byte", "[f
     CHECK(jsonText(toJson(read)) == first);
     CHECK(read.ladder.rungs.size() == 4);
     CHECK(read.ladder.rungs[2].model.effectIds().size() == 2);
+}
+
+TEST_CASE("A ladder's responses are those of the periods, also where the take does not tell its excitation", "[files]")
+{
+    const auto told = test::duffingTake(0.1, -60.0, 3);
+    auto untold = told;
+    untold.excitation.reset();
+    const auto with = makeLadderFile(test::syntheticLadder().ladder, told, "take"), without = makeLadderFile(test::syntheticLadder().ladder, untold, "take");
+    CHECK(without.take.levels.size() == with.take.levels.size());
+    CHECK(without.take.periods > 0);
+    REQUIRE(without.responses.size() == with.responses.size());
+    for (std::size_t c = 0; c < with.responses.size(); ++c) {
+        REQUIRE(without.responses[c].frequency.size() == with.responses[c].frequency.size());
+        for (std::size_t k = 0; k < with.responses[c].value.size(); ++k)
+            CHECK(std::abs(without.responses[c].value[k] - with.responses[c].value[k]) < 1e-2 * std::abs(with.responses[c].value[k]));
+    }
 }
 
 TEST_CASE("A diagnosis has the fields that scripts read", "[files]")

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Driver/EffectBench.h"
 #include "Engine/Driver/Curve.h"
+#include "Engine/Driver/Model.h"
 
 #include <catch2/catch.hpp>
 
@@ -70,6 +72,42 @@ TEST_CASE("A law stays at its end value beyond the range that was visited", "[cu
             const auto beyond = evaluate(4, c, side * factor * range, range);
             CHECK(beyond.value == Approx(end.value).epsilon(1e-14));
             CHECK(beyond.slope == 0.0);
+        }
+    }
+}
+
+TEST_CASE("The band of a law is that of all its coefficients, also where it is not linear in them", "[curve]")
+{
+    for (const auto* effect : catalogue()) {
+        if (!effect->law())
+            continue;
+        auto model = withEffect(makeModel("electrodynamic"), *effect, someExtent(1.0));
+        auto& component = model.components.back();
+        double share = 0.1;
+        for (auto& p : component.parameters)
+            p.value = (share *= -0.9) * (p.strength ? component.extent.scale : 1.0);
+        const auto first = static_cast<Eigen::Index>(model.base().parameters.size());
+        const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
+        const auto at = [&](std::size_t moved, double by, double q) {
+            std::vector<double> values;
+            for (const auto& p : component.parameters)
+                values.push_back(p.value);
+            values[moved] += by;
+            return effect->lawAt(component.extent, values.data(), q);
+        };
+        for (std::size_t k = 0; k < component.parameters.size(); ++k) {
+            INFO(effect->id() << ", " << component.parameters[k].name);
+            const double deviation = 1e-3 * std::max(std::abs(component.parameters[k].value), 1e-2 * component.extent.scale);
+            model.covariance = Eigen::MatrixXd::Zero(count, count);
+            model.covariance(first + static_cast<Eigen::Index>(k), first + static_cast<Eigen::Index>(k)) = deviation * deviation;
+            for (const auto& curve : laws(model, 11)) {
+                const double largest = *std::max_element(curve.halfWidth.begin(), curve.halfWidth.end());
+                for (std::size_t n = 0; n < curve.argument.size(); ++n) {
+                    const double step = 1e-3 * deviation, q = curve.argument[n];
+                    const double slope = (at(k, step, q) - at(k, -step, q)) / (2.0 * step);
+                    CHECK(std::abs(curve.halfWidth[n] - 1.96 * std::abs(slope) * deviation) <= 1e-4 * largest);
+                }
+            }
         }
     }
 }

@@ -19,9 +19,8 @@ using namespace excursion::study;
 namespace {
 
 /// The hidden effects take turns; the controls follow with seeds of their own.
-std::vector<Case> cases(int takes, int controls, std::uint64_t firstSeed, double seconds, unsigned threads)
+std::vector<Case> cases(const std::vector<std::string>& effects, int takes, int controls, std::uint64_t firstSeed, double seconds, unsigned threads)
 {
-    const auto& effects = bench::drawnEffects();
     std::vector<Case> result;
     for (int n = 0; n < takes + controls; ++n)
         result.push_back({firstSeed + static_cast<std::uint64_t>(n),
@@ -37,10 +36,12 @@ int main(int argc, char** argv)
     std::uint64_t firstSeed = 1;
     double seconds = 12.0;
     std::string json, demand;
+    std::vector<std::string> hide = bench::drawnEffects();
     CLI::App app {"Draws random takes of virtual loudspeakers with one hidden effect (and controls with none), improves each, and says "
                   "how often the diagnosis was right."};
     app.add_option("--takes", takes, "with a hidden effect")->check(CLI::NonNegativeNumber)->capture_default_str();
     app.add_option("--controls", controls, "without one")->check(CLI::NonNegativeNumber)->capture_default_str();
+    app.add_option("--hide", hide, "the effects that take turns")->delimiter(',')->check(CLI::IsMember(bench::effectIds()))->capture_default_str();
     app.add_option("--first-seed", firstSeed, "of the first take; the others follow")->capture_default_str();
     app.add_option("--seconds", seconds, "about, of each take")->check(CLI::Range(0.5, 120.0))->capture_default_str();
     app.add_option("--jobs", jobs, "takes at once; with more than one, each fit has one thread")->check(CLI::Range(1, 64))->capture_default_str();
@@ -49,7 +50,7 @@ int main(int argc, char** argv)
         ->check(CLI::IsMember({"diagnosis", "all"}));
     CLI11_PARSE(app, argc, argv);
 
-    const auto plan = cases(takes, controls, firstSeed, seconds, jobs > 1 ? 1 : 2);
+    const auto plan = cases(hide, takes, controls, firstSeed, seconds, jobs > 1 ? 1 : 2);
     std::vector<Outcome> outcomes;
     std::mutex mutex;
     std::size_t next = 0;

@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/ModelFile.h"
+#include "Engine/Measurement/FindExcitation.h"
 
 namespace excursion {
 namespace {
@@ -194,8 +195,11 @@ TakeSummary summarize(const Take& take, const std::string& path)
     return summary;
 }
 
-LadderFile makeLadderFile(Ladder ladder, const Take& take, const std::string& path)
+LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& path)
 {
+    Take take = given;
+    if (auto* measurement = std::get_if<Measurement>(&take))
+        completeExcitation(*measurement);   // as the ladder was made of it
     LadderFile file;
     file.take = summarize(take, path);
     if (!ladder.rungs.empty()) {

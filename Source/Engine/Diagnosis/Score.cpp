@@ -4,6 +4,7 @@
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Curve.h"
 #include "Engine/Driver/Fit.h"
+#include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Simulate.h"
 
 #include <algorithm>
@@ -85,6 +86,19 @@ bool feasible(const Model& model, std::size_t k, const Eigen::VectorXd& d, const
     return true;
 }
 
+/// Its newest effect, which is linear, in the shape that fits the responses best, at zero strength.
+Model shapedByResponse(Model model, const std::vector<ResponseTarget>& responses)
+{
+    auto shaped = model;
+    if (!fitNewestByResponse(shaped, responses).usable)
+        return model;
+    auto& parameters = model.components.back().parameters;
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+        if (!parameters[k].strength)
+            parameters[k].value = shaped.components.back().parameters[k].value;
+    return model;
+}
+
 } // namespace
 
 ScoreResult score(const Model& model, const Record& record, const ScoreOptions& options, const Progress& progress)
@@ -92,16 +106,28 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     Model augmented = model;
     const Extent extent = visitedExtent(model, record, options.degree);
     struct Entry {
-        const Effect* effect;
-        std::size_t start, component;
+        Model model;   ///< with the effect at zero strength
+        std::size_t component;
     };
     std::vector<Entry> entries;
+    std::vector<ResponseTarget> responses;
     for (const auto* effect : catalogue()) {
         if (model.has(effect->id()) || (effect->electrical() && !model.electrical()))
             continue;
-        for (std::size_t start = 0; start < effect->starts(extent).size(); ++start) {
-            augmented = withEffect(std::move(augmented), *effect, extent, start);
-            entries.push_back({effect, start, augmented.components.size() - 1});
+        const auto starts = effect->starts(extent).size();
+        std::vector<Model> candidates;
+        if (effect->linear() && starts > 1) {
+            // The responses tell its shape at once; every start would carry a memory of its own through the simulation.
+            if (responses.empty())
+                responses = linearResponsesOf(record);
+            candidates.push_back(shapedByResponse(withEffect(model, *effect, extent), responses));
+        } else {
+            for (std::size_t start = 0; start < starts; ++start)
+                candidates.push_back(withEffect(model, *effect, extent, start));
+        }
+        for (auto& candidate : candidates) {
+            augmented.components.push_back(candidate.components.back());
+            entries.push_back({std::move(candidate), augmented.components.size() - 1});
         }
     }
     // Shapes do not matter at zero strength: only the model's own parameters and the strengths have a sensitivity.
@@ -142,7 +168,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         if (!feasible(augmented, entry.component, d, positions))
             d.setZero();
         Score score;
-        score.effect = entry.effect;
+        score.effect = entry.model.components.back().effect;
         score.chi = predictedCost(sums.validation, d) / rows;
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
             const auto& channel = sums.byChannel[c];
@@ -151,11 +177,11 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
                 = 10.0 * std::log10(std::max(ratio * sums.power[c].error / std::max(sums.power[c].measured, 1e-300), 1e-30));
         }
         const auto known = std::find_if(result.scores.begin(), result.scores.end(),
-                                        [&](const Score& s) { return s.effect == entry.effect; });
+                                        [&](const Score& s) { return s.effect == score.effect; });
         if (known != result.scores.end() && known->chi <= score.chi)
             continue;
         // The model at the end of the step; the trial shortens the step should it be too long.
-        score.model = withEffect(model, *entry.effect, extent, entry.start);
+        score.model = entry.model;
         auto& parameters = score.model.components.back().parameters;
         std::size_t n = 0;
         for (auto& p : parameters)

@@ -32,7 +32,7 @@ std::vector<Pointer> collect(ModelType& model)
     return all;
 }
 
-/// Value of a component's law at q, the base parameter not included, and its gradient in its own parameters.
+/// Value of a component's law at q, the base parameter not included.
 double lawValue(const Component& component, const std::vector<double>& values, double q)
 {
     return component.effect->lawAt(component.extent, values.data(), q);
@@ -166,13 +166,17 @@ std::vector<LawCurve> laws(const Model& model, int points)
                 curve.value.push_back(base->value + difference);
                 double halfWidth = std::numeric_limits<double>::quiet_NaN();
                 if (model.covariance.size() > 0) {
-                    // The laws are linear in their coefficients, so unit steps give the exact gradient.
+                    // Differences over a small share of each standard error: exact where a law is linear in its coefficients, as most are.
+                    constexpr double share = 1e-3;
                     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.covariance.rows());
                     gradient[base - baseParameters.begin()] = 1.0;
                     for (Eigen::Index j = 0; j < count; ++j) {
-                        auto unit = std::vector<double>(values.size(), 0.0);
-                        unit[static_cast<std::size_t>(j)] = 1.0;
-                        gradient[offset + j] = lawValue(component, unit, q);
+                        const double deviation = std::sqrt(model.covariance(offset + j, offset + j));
+                        const double step = deviation > 0.0 ? share * deviation : 1.0;
+                        auto above = values, below = values;
+                        above[static_cast<std::size_t>(j)] += step;
+                        below[static_cast<std::size_t>(j)] -= step;
+                        gradient[offset + j] = (lawValue(component, above, q) - lawValue(component, below, q)) / (2.0 * step);
                     }
                     halfWidth = 1.96 * std::sqrt(std::max(0.0, gradient.dot(model.covariance * gradient)));
                 }
