@@ -50,11 +50,13 @@ inline Model withStrong(const Model& plain, const Effect& effect)
     return model;
 }
 
+/// All that is felt: what is heard or seen only would part the sensors from the coil.
 inline Model everything()
 {
     auto model = midbass();
     for (const auto* effect : catalogue())
-        model = withStrong(model, *effect);
+        if (effect->felt())
+            model = withStrong(model, *effect);
     return model;
 }
 

@@ -106,6 +106,13 @@ Model linearPart(Model model)
     return model;
 }
 
+Model feltPart(Model model)
+{
+    if (std::erase_if(model.components, [](const Component& c) { return !c.effect->felt(); }) > 0)
+        model.covariance.resize(0, 0);
+    return model;
+}
+
 Model withDegree(Model model, std::size_t component, int degree)
 {
     auto& c = model.components.at(component);

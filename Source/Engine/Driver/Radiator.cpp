@@ -82,7 +82,19 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
     slopes_.setZero(static_cast<Eigen::Index>(active.size()), 4);
 }
 
+double Radiator::area()
+{
+    const std::vector<double> rest(static_cast<std::size_t>(order_), 0.0);
+    return sum(rest.data(), 0.0).area;
+}
+
 Radiator::Sound Radiator::at(const double* z, double acceleration)
+{
+    const auto emission = sum(z, acceleration);
+    return {emission.area * emission.acceleration, emission.lateness, emission.spot};
+}
+
+Emission<double> Radiator::sum(const double* z, double acceleration)
 {
     const Motion<double> motion {z[0], z[1], z[2]};
     Emission<double> sum;
@@ -93,7 +105,7 @@ Radiator::Sound Radiator::at(const double* z, double acceleration)
             effect->contribute(extent, part.coefficients.data(), motion, z + part.memory, part.rates.data(), unused);
         effect->emit(extent, part.coefficients.data(), motion, acceleration, z + part.memory, part.rates.data(), sum);
     }
-    return {sum.area * sum.acceleration, sum.lateness, sum.spot};
+    return sum;
 }
 
 void Radiator::differentiate(const double* z, double acceleration, const Eigen::Ref<const Eigen::MatrixXd>& S,

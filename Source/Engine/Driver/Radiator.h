@@ -27,6 +27,9 @@ public:
     explicit Radiator(const Model&, std::span<const Eigen::Index> active = {});
     Radiator(const Radiator&) = delete;   // it points into its own model
 
+    /// m^2 that the acceleration is referred to.
+    double area();
+
     /// @param z             the state, as in Dynamics
     /// @param acceleration  of the coil, m/s^2
     Sound at(const double* z, double acceleration);
@@ -38,6 +41,8 @@ public:
                        const Eigen::Ref<const Eigen::VectorXd>& accelerationSlopes, Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> out);
 
 private:
+    Emission<double> sum(const double* z, double acceleration);
+
     static constexpr int none = -1;
 
     struct Part {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Cone.h"
 
+#include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Linearization/Cubic.h"
 
@@ -16,8 +17,11 @@ constexpr double shareTime = 0.003;        // s, see Glide
 
 Cone::Cone(const Model& model, double sampleRate)
     : substeps_(stableSubsteps(model, sampleRate, ExponentialAdams::stable)), motion_(model, 1.0 / (sampleRate * substeps_)),
-      reference_(model, sampleRate), share_(shareTime, sampleRate)
+      reference_(model, sampleRate), radiator_(model), area_(radiator_.area()), share_(shareTime, sampleRate)
 {
+    const auto linear = linearize(model);
+    linear_ = (linear.C.row(Linearization::sound) * reference_.basis()).transpose() / area_;
+    linearInput_ = linear.D[Linearization::sound] / area_;
 }
 
 void Cone::rest()
@@ -47,9 +51,10 @@ bool Cone::step(double& sample)
     for (int s = 0; s < substeps_; ++s)
         acceleration = motion_.step(drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
     past_ = {u, past_[0], past_[1]};
-    const double linear = reference_.step(u).a, share = share_.step();
-    sample = acceleration - share * linear;
     const double* const z = motion_.state();
+    reference_.step(u);
+    const double linear = linear_.dot(reference_.state()) + linearInput_ * u, share = share_.step();
+    sample = radiator_.at(z, acceleration).flow / area_ - share * linear;
     if (std::abs(z[0]) < implausibleState && std::abs(z[1]) < implausibleState && std::abs(z[2]) < implausibleState && std::isfinite(acceleration)
         && std::isfinite(linear))
         return true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Driver/ExponentialAdams.h"
+#include "Engine/Driver/Radiator.h"
 #include "Engine/Linearization/Glide.h"
 #include "Engine/Linearization/RealTime.h"
 #include "Engine/Linearization/Reference.h"
@@ -10,8 +11,9 @@
 
 namespace excursion {
 
-/// The driver with its effects, sample by sample: from the voltage to the acceleration of the cone, less a share of what a linear driver's would be
-/// (Reference). With a share of 1 only the distortion is left. The steps are as many as the laws ask for and do not adapt; between samples
+/// The driver with its effects, sample by sample: from the voltage to the acceleration that is heard, which is that of the cone and of whatever else
+/// an effect makes sound (Emission), less a share of what a linear driver's would be (Reference). With a share of 1 only the distortion is left.
+/// All is heard at once: a lateness that changes is not played. The steps are as many as the laws ask for and do not adapt; between samples
 /// the input is a cubic through the latest four (ExponentialAdams).
 ///
 /// Thread: after construction nothing allocates, locks or throws.
@@ -38,6 +40,10 @@ private:
     int substeps_;
     ExponentialAdams motion_;
     Reference reference_;
+    Radiator radiator_;
+    double area_;                 ///< m^2 that the sound is referred to
+    Eigen::VectorXd linear_;      ///< what of the reference's state is heard, m/s^2
+    double linearInput_;          ///< and of the input
     Glide share_;
     std::array<double, 3> past_ {};   ///< u(n-1), u(n-2), u(n-3)
 };
