@@ -12,5 +12,6 @@ const Effect& inductancePosition();
 const Effect& eddyCurrents();
 const Effect& creep();
 const Effect& dampingVelocity();
+const Effect& ventedBox();
 
 } // namespace excursion
