@@ -57,7 +57,7 @@ void printParameters(const Model& model, Terminal& terminal)
     for (const auto& component : model.components)
         if (!component.effect->law())   // a law is better read as the curve than as the coefficients of its expansion
             addRows(rows, component.parameters);
-    addRows(rows, model.path);
+    addRows(rows, model.path.parameters);
     const bool held = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.back().empty(); });
     terminal.table({"parameter", "value", "std error", "unit", held ? "remark" : ""}, rows);
     printLaws(model, terminal);
@@ -107,7 +107,7 @@ nlohmann::ordered_json modelJson(const Model& model, const Comparison& compariso
     };
     for (const auto& component : model.components)
         add(component.effect->id(), component.parameters);
-    add("path", model.path);
+    add(model.path.effect->id(), model.path.parameters);
     document["fit"] = {{"converged", fit.converged}, {"iterations", fit.iterations}, {"reason", fit.reason}, {"substeps", fit.substeps}};
     return document;
 }

@@ -34,7 +34,7 @@ void addParameters(Page& page, const LadderFile& file)
         const auto* start = k == 0 ? &first.base() : first.find(component.effect->id());
         addRows(rows, component.effect->title(), component.parameters, start ? &start->parameters : nullptr);
     }
-    addRows(rows, "Path to the microphone", model.path, &first.path);
+    addRows(rows, model.path.effect->title(), model.path.parameters, &first.path.parameters);
     page.table({"", "Parameter", "Final model", "First model", ""}, rows);
     page.note("Values with their standard errors; those of a law are the coefficients of its expansion over the visited range.");
 }

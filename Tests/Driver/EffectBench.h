@@ -29,7 +29,7 @@ inline double someScale(const Effect& effect)
 {
     const auto law = effect.law();
     if (!law)
-        return effect.electrical() ? 0.02 : 1800.0;
+        return effect.electrical() || !effect.felt() ? 0.02 : 1800.0;
     return law->base == "Bl" ? 5.0 : law->base == "K" ? 1800.0 : law->base == "Le" ? 3e-4 : 0.8;
 }
 

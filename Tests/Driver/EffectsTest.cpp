@@ -263,7 +263,10 @@ TEST_CASE("Whatever is no law of position takes energy in over a cycle and never
             for (const double shift : {0.0, -1.6}) {
                 INFO(effect->id() << ", " << frequency << " Hz, shift " << shift);
                 const auto energy = cycle(alone, frequency, shift);
-                CHECK(energy.absorbed > 1e-3 * energy.exchanged);
+                if (effect->felt())
+                    CHECK(energy.absorbed > 1e-3 * energy.exchanged);
+                else
+                    CHECK(energy.exchanged == 0.0);
             }
     }
 }

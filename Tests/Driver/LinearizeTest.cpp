@@ -24,8 +24,8 @@ Model midbass()
     const double values[] = {Re, Le, Bl, mass, Rms, K};
     for (std::size_t k = 0; k < 6; ++k)
         model.components.front().parameters[k].value = values[k];
-    model.path[0].value = area;
-    model.path[1].value = tau;
+    model.path.parameters[0].value = area;
+    model.path.parameters[1].value = tau;
     model.microphoneDistance = distance;
     return model;
 }

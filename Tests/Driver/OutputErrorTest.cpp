@@ -32,9 +32,9 @@ Model bent()
             if (p.strength)
                 p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.extent.scale : someScale(*effect) / 5.0;
     }
-    for (auto& p : model.path)
+    for (auto& p : model.path.parameters)
         p.free = true;
-    model.path[1].value = 3e-4;
+    model.path.parameters[1].value = 3e-4;
     return model;
 }
 
@@ -140,11 +140,13 @@ TEST_CASE("Normal equations are those from finite differences, by every paramete
         const auto& normal = fit[0].channels[c];
         CHECK(normal.cost == Approx(cost).epsilon(1e-12));
         CHECK(normal.rows == 2.0 * static_cast<double>(last - first + 1));
+        // What a parameter does not reach at all is left to rounding.
+        const auto size = [&](Eigen::Index a) { return std::sqrt(N2(a, a)) + 1e-10 * std::sqrt(cost); };
         for (Eigen::Index a = 0; a < P; ++a) {
             INFO(parametersOf(model)[static_cast<std::size_t>(a)]->name << ", parameter " << a);
-            CHECK(std::abs(normal.g[a] - g[a]) <= 2e-4 * std::sqrt(N2(a, a) * cost));
+            CHECK(std::abs(normal.g[a] - g[a]) <= 2e-4 * size(a) * std::sqrt(cost));
             for (Eigen::Index b = 0; b < P; ++b)
-                CHECK(std::abs(normal.N(a, b) - N2(a, b)) <= 2e-4 * std::sqrt(N2(a, a) * N2(b, b)));
+                CHECK(std::abs(normal.N(a, b) - N2(a, b)) <= 2e-4 * size(a) * size(b));
         }
     }
 }
@@ -152,7 +154,7 @@ TEST_CASE("Normal equations are those from finite differences, by every paramete
 TEST_CASE("A linear model's prediction is its response times the input", "[output-error]")
 {
     auto model = makeModel("electrodynamic");
-    model.path[1].value = 3e-4;
+    model.path.parameters[1].value = 3e-4;
     auto record = someRecord();
     record.leadIn = 10 * N;
     auto options = plain();

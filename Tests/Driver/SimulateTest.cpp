@@ -2,6 +2,8 @@
 #include "Driver/EffectBench.h"
 
 #include "Engine/Driver/Dynamics.h"
+#include "Engine/Driver/Radiator.h"
+#include "Engine/Driver/Sensors.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
 #include "Engine/Signal/Fft.h"
@@ -69,8 +71,8 @@ TEST_CASE("A linear driver's steady state is its closed-form response", "[simula
     constexpr double sampleRate = 48000.0, area = 0.02, distance = 0.5, tau = 1.2e-3;
     constexpr std::size_t N = 2048, periods = 8;
     auto model = makeModel("electrodynamic");
-    model.path[0].value = area;
-    model.path[1].value = tau;
+    model.path.parameters[0].value = area;
+    model.path.parameters[1].value = tau;
     model.microphoneDistance = distance;
     const double Re = 6.0, Le = 3e-4, Bl = 5.0, m = 1e-2, r = 1.0, k = 2e3;
 
@@ -233,11 +235,20 @@ TEST_CASE("A model that runs away is told, not simulated", "[simulate]")
 TEST_CASE("Pressure is the acceleration times rho Sd / (2 pi d), later by tau", "[simulate]")
 {
     auto model = makeModel("electrodynamic");
-    model.path[0].value = 0.03;
-    model.path[1].value = 7.0 / 48000.0;
+    model.path.parameters[0].value = 0.03;
+    model.path.parameters[1].value = 7.0 / 48000.0;
     model.microphoneDistance = 2.0;
     const auto a = burst(48000.0, 0.1, 300.0);
-    const auto p = radiate(model, a, 48000.0);
+    const std::vector<double> zero(a.size(), 0.0);
+    Trajectory run {zero, zero, zero, a, {}, {}, zero};
+    Radiator radiator(model);
+    const double rest[] {0.0, 0.0, 0.0};
+    for (const double acceleration : a) {
+        const auto sound = radiator.at(rest, acceleration);
+        run.flow.push_back(sound.flow);
+        run.lateness.push_back(sound.lateness);
+    }
+    const auto p = Sensors(model, run, 48000.0).record(Quantity::pressure);
     REQUIRE(p.size() == a.size());
     double worst = 0.0;
     for (std::size_t n = 7; n < a.size(); ++n)

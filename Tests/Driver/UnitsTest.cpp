@@ -102,7 +102,7 @@ TEST_CASE("A driver moves alike in any unit, and one that runs away is told", "[
 TEST_CASE("A motion and a pressure of any size have a start", "[units]")
 {
     auto truth = makeModel("electrodynamic");
-    truth.path[1].value = 2.9e-3;   // the flight over a metre
+    truth.path.parameters[1].value = 2.9e-3;   // the flight over a metre
     std::vector<double> frequency;
     for (double f = 15.0; f < 5000.0; f *= 1.1)
         frequency.push_back(f);
@@ -134,7 +134,7 @@ TEST_CASE("A motion and a pressure of any size have a start", "[units]")
             for (const auto& target : targets)
                 CHECK(responseErrorDb(model, target) < -60.0);
             CHECK(model.baseParameter("m").free == (motion || area));
-            CHECK(model.path[0].free == (motion || !area));
+            CHECK(model.path.parameters[0].free == (motion || !area));
             CHECK((caveatsOf(model).find("area of the cone") != std::string::npos) == (!motion && !area));
             if (motion)
                 CHECK(model.baseParameter("m").value == Approx(0.01 / (size * size)).epsilon(1e-3));

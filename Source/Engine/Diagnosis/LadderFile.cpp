@@ -27,7 +27,7 @@ Json parametersJson(const Model& model)
     };
     for (const auto& component : model.components)
         add(component.effect->id(), component.parameters);
-    add("path", model.path);
+    add(model.path.effect->id(), model.path.parameters);
     return list;
 }
 

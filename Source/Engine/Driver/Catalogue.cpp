@@ -8,8 +8,8 @@ namespace excursion {
 
 const std::vector<const Effect*>& catalogue()
 {
-    static const std::vector<const Effect*> effects {&forceFactor(),  &stiffness(), &inductancePosition(), &eddyCurrents(),
-                                                     &creep(), &dampingVelocity(), &ventedBox()};
+    static const std::vector<const Effect*> effects {&forceFactor(), &stiffness(), &inductancePosition(), &eddyCurrents(),
+                                                     &creep(), &dampingVelocity(), &ventedBox(), &doppler(), &coneBreakup()};
     return effects;
 }
 

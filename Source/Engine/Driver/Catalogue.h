@@ -22,4 +22,7 @@ const Effect& electrodynamicBase();
 const Effect& mechanicalBase();
 const Effect& baseNamed(std::string_view id);
 
+/// The path from the cone to the microphone, which every driver has, too: area += Sd, acceleration += dv/dt, lateness += tau.
+const Effect& radiation();
+
 } // namespace excursion

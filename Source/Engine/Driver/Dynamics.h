@@ -31,6 +31,9 @@ public:
             part.effect->prepare(*part.extent, parameters.data() + offset, coefficients_.data() + part.coefficients);
             offset += model.components[k].parameters.size();
         }
+        path_.assign(static_cast<std::size_t>(model.path.effect->coefficientCount(model.path.extent)), T(0.0));
+        model.path.effect->prepare(model.path.extent, parameters.data() + offset, path_.data());
+        radiation_ = &model.path;
     }
 
     int order() const { return order_; }
@@ -53,6 +56,17 @@ public:
         }
     }
 
+    /// What leaves the driver at state z with the rates dz.
+    Emission<T> emission(const T* z, const T* dz) const
+    {
+        const Motion<T> at {z[0], z[1], z[2]};
+        Emission<T> sum;
+        radiation_->effect->emit(radiation_->extent, path_.data(), at, dz[2], nullptr, nullptr, sum);
+        for (const auto& part : parts_)
+            part.effect->emit(*part.extent, coefficients_.data() + part.coefficients, at, dz[2], z + part.memory, dz + part.memory, sum);
+        return sum;
+    }
+
 private:
     struct Part {
         const Effect* effect;
@@ -64,7 +78,8 @@ private:
     bool electrical_;
     int order_ = 3;
     std::vector<Part> parts_;
-    std::vector<T> coefficients_;
+    std::vector<T> coefficients_, path_;
+    const Component* radiation_;
 };
 
 } // namespace excursion

@@ -33,6 +33,17 @@ struct Balance {
     T mass {0.0};         ///< kg
 };
 
+/// What leaves the driver at an instant, as the base's motion and the effects make it. The microphone at distance d hears
+///     p(t + lateness) = rho/(2 pi d) area acceleration     (a half space; rho = 1.2 kg/m^3),
+/// the laser sees x + spot.
+template <class T>
+struct Emission {
+    T area {0.0};           ///< m^2 that the acceleration is referred to
+    T acceleration {0.0};   ///< m/s^2, outward: the volume that is moved, over the area
+    T lateness {0.0};       ///< s from this instant to its sound at the microphone
+    T spot {0.0};           ///< m, by which the point that the laser sees is ahead of the coil
+};
+
 /// Where and how finely an effect is to hold: what the take really visited. It is part of a model, so a
 /// model means the same wherever it is loaded.
 struct Extent {
@@ -68,8 +79,8 @@ struct LawInfo {
     std::string base;       ///< name of the base parameter it adds to
 };
 
-/// One physical effect. A subclass is the whole of it: its words, its parameters, its memory, and what it
-/// adds to the driver's two equations, written once through EffectOf for any number type.
+/// One physical effect. A subclass is the whole of it: its words, its parameters, its memory, what it adds to the driver's two
+/// equations and what to the sound that leaves it, written once through EffectOf for any number type.
 class Effect {
 public:
     virtual ~Effect() = default;
@@ -81,6 +92,7 @@ public:
     virtual std::string remedy() const = 0;     ///< what a designer can do about it
     virtual bool electrical() const = 0;        ///< needs a coil; a mechanical-only driver has none
     virtual bool linear() const = 0;            ///< changes the frequency response, adds no distortion
+    virtual bool felt() const { return true; }  ///< acts on coil and cone; else it is heard or seen only
 
     virtual std::vector<Parameter> parameters(const Extent&) const = 0;
 
@@ -114,12 +126,25 @@ public:
                             Jet* memoryRate, Balance<Jet>&) const = 0;
     virtual void contribute(const Extent&, const Tangent* coefficients, const Motion<Tangent>&, const Tangent* memory,
                             Tangent* memoryRate, Balance<Tangent>&) const = 0;
+
+    /// Whether it adds to the emission.
+    virtual bool emits() const = 0;
+
+    /// Adds to the emission; asked after contribute(), without whose memoryRate what a memory radiates is not known.
+    /// @param acceleration  of the coil, m/s^2
+    virtual void emit(const Extent&, const double* coefficients, const Motion<double>&, const double& acceleration, const double* memory,
+                      const double* memoryRate, Emission<double>&) const = 0;
+    virtual void emit(const Extent&, const Jet* coefficients, const Motion<Jet>&, const Jet& acceleration, const Jet* memory,
+                      const Jet* memoryRate, Emission<Jet>&) const = 0;
 };
 
 /// Lets a subclass write its physics once:
 ///     template <class T> void prepareFor(const Extent&, const T* parameters, T* coefficients) const;
 ///     template <class T> void addTo(const Extent&, const T* coefficients, const Motion<T>&, const T* memory,
 ///                                   T* memoryRate, Balance<T>&) const;
+/// and, if it is heard or seen otherwise than through the cone's motion,
+///     template <class T> void radiate(const Extent&, const T* coefficients, const Motion<T>&, const T& acceleration, const T* memory,
+///                                     const T* memoryRate, Emission<T>&) const;
 template <class Self>
 class EffectOf : public Effect {
 public:
@@ -140,8 +165,30 @@ public:
     {
         self().addTo(e, c, motion, memory, rate, balance);
     }
+    bool emits() const final { return radiates<double>; }
+    void emit(const Extent& e, const double* c, const Motion<double>& motion, const double& acceleration, const double* memory,
+              const double* rate, Emission<double>& emission) const final
+    {
+        emitFor(e, c, motion, acceleration, memory, rate, emission);
+    }
+    void emit(const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet& acceleration, const Jet* memory, const Jet* rate,
+              Emission<Jet>& emission) const final
+    {
+        emitFor(e, c, motion, acceleration, memory, rate, emission);
+    }
 
 private:
+    template <class T, class Whose = Self>
+    static constexpr bool radiates = requires(const Whose& effect, const Extent& e, const T* of, const Motion<T>& motion, Emission<T>& emission) {
+        effect.radiate(e, of, motion, motion.i, of, of, emission);
+    };
+    template <class T>
+    void emitFor(const Extent& e, const T* c, const Motion<T>& motion, const T& acceleration, const T* memory, const T* rate,
+                 Emission<T>& emission) const
+    {
+        if constexpr (radiates<T>)
+            self().radiate(e, c, motion, acceleration, memory, rate, emission);
+    }
     const Self& self() const { return static_cast<const Self&>(*this); }
 };
 

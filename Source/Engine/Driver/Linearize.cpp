@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace excursion {
@@ -31,39 +32,93 @@ std::vector<double> nearRest(const Model& model, std::size_t order)
     return state;
 }
 
+/// Column by column dz/dt and what leaves the driver, for a unit of each state and of the input.
 template <class T>
-void columns(const Model& model, const std::vector<T>& parameters, std::vector<std::vector<T>>& result)
+struct Columns {
+    std::vector<std::vector<T>> rates;   ///< by state, and of the input
+    std::vector<std::array<T, 2>> outputs;
+    T lateness;
+};
+
+template <class T>
+Columns<T> columns(const Model& model, const std::vector<T>& parameters)
 {
     const Dynamics<T> dynamics(model, parameters);
     const auto n = static_cast<std::size_t>(dynamics.order());
     const auto small = nearRest(model, n);
-    result.assign(n + 1, std::vector<T>(n, T(0.0)));
+    Columns<T> result;
+    result.rates.assign(n + 1, std::vector<T>(n, T(0.0)));
     for (std::size_t j = 0; j <= n; ++j) {
         std::vector<T> z(n, T(0.0));
         if (j < n)
             z[j] = T(small[j]);
-        dynamics.rates(z.data(), T(j < n ? 0.0 : 1.0), result[j].data());
-        for (auto& entry : result[j])
-            entry = entry * (j < n ? 1.0 / small[j] : 1.0);
+        const double perUnit = j < n ? 1.0 / small[j] : 1.0;
+        auto& rates = result.rates[j];
+        dynamics.rates(z.data(), T(j < n ? 0.0 : 1.0), rates.data());
+        const auto emission = dynamics.emission(z.data(), rates.data());
+        result.outputs.push_back({emission.area * emission.acceleration * perUnit, emission.spot * perUnit});
+        for (auto& entry : rates)
+            entry = entry * perUnit;
     }
+    const std::vector<T> rest(n, T(0.0));
+    std::vector<T> still(n, T(0.0));
+    dynamics.rates(rest.data(), T(0.0), still.data());
+    result.lateness = dynamics.emission(rest.data(), still.data()).lateness;
+    return result;
 }
 
-/// One entry of dA (or of dB: column n) that is not zero. A parameter acts in a few places only.
+/// One entry of [dA dB; dC dD] that is not zero. A parameter acts in a few places only.
 struct Entry {
     Eigen::Index parameter, row, column;
     double value;
 };
 
-std::vector<Entry> nonzero(const Linearization& linear)
+std::vector<Entry> nonzero(const std::vector<Eigen::MatrixXd>& dM, const std::vector<Eigen::VectorXd>& dv)
 {
     std::vector<Entry> entries;
-    const auto n = linear.A.rows();
-    for (std::size_t k = 0; k < linear.dA.size(); ++k)
-        for (Eigen::Index row = 0; row < n; ++row)
-            for (Eigen::Index column = 0; column <= n; ++column)
-                if (const double value = column < n ? linear.dA[k](row, column) : linear.dB[k][row]; value != 0.0)
+    for (std::size_t k = 0; k < dM.size(); ++k)
+        for (Eigen::Index row = 0; row < dM[k].rows(); ++row)
+            for (Eigen::Index column = 0; column <= dM[k].cols(); ++column)
+                if (const double value = column < dM[k].cols() ? dM[k](row, column) : dv[k][row]; value != 0.0)
                     entries.push_back({static_cast<Eigen::Index>(k), row, column, value});
     return entries;
+}
+
+/// A quantity as output of the linear part: s^order (row z + direct u), that of the pressure times a gain and delayed.
+struct Observed {
+    Eigen::RowVectorXd row;
+    double direct = 0.0, gain = 1.0;
+    int order = 0, source = -1;   ///< source: the row of C that it is made of, or -1
+    bool delayed = false;
+};
+
+Observed observe(const Model& model, const Linearization& linear, Quantity quantity)
+{
+    Observed observed;
+    observed.row = Eigen::RowVectorXd::Zero(linear.A.rows());
+    const auto motion = [&](int order) {   // of the spot that the laser sees
+        observed.row = linear.C.row(Linearization::spot);
+        observed.row[1] += 1.0;
+        observed.direct = linear.D[Linearization::spot];
+        observed.order = order;
+        observed.source = Linearization::spot;
+    };
+    switch (quantity) {
+    case Quantity::current: observed.row[0] = 1.0; break;
+    case Quantity::displacement: motion(0); break;
+    case Quantity::velocity: motion(1); break;
+    case Quantity::acceleration: motion(2); break;
+    case Quantity::pressure:
+        observed.row = linear.C.row(Linearization::sound);
+        observed.direct = linear.D[Linearization::sound];
+        observed.source = Linearization::sound;
+        observed.gain = radiationPerArea() / model.microphoneDistance;
+        observed.delayed = true;
+        break;
+    case Quantity::voltage:
+    case Quantity::force: throw Error(Error::Kind::usage, "The input of a driver has no response to itself.");
+    }
+    return observed;
 }
 
 } // namespace
@@ -71,36 +126,45 @@ std::vector<Entry> nonzero(const Linearization& linear)
 Linearization linearize(const Model& model, bool withGradient)
 {
     const auto theta = parameterVector(model);
-    std::vector<std::vector<double>> plain;
-    columns(model, std::vector<double>(theta.begin(), theta.end()), plain);
-    const auto n = static_cast<Eigen::Index>(plain.size()) - 1;
+    const auto plain = columns(model, std::vector<double>(theta.begin(), theta.end()));
+    const auto n = static_cast<Eigen::Index>(plain.rates.size()) - 1;
     Linearization result;
     result.A.resize(n, n);
-    for (Eigen::Index j = 0; j < n; ++j)
-        result.A.col(j) = Eigen::Map<const Eigen::VectorXd>(plain[static_cast<std::size_t>(j)].data(), n);
-    result.B = Eigen::Map<const Eigen::VectorXd>(plain.back().data(), n);
+    result.C.resize(2, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+        result.A.col(j) = Eigen::Map<const Eigen::VectorXd>(plain.rates[static_cast<std::size_t>(j)].data(), n);
+        result.C.col(j) = Eigen::Map<const Eigen::Vector2d>(plain.outputs[static_cast<std::size_t>(j)].data());
+    }
+    result.B = Eigen::Map<const Eigen::VectorXd>(plain.rates.back().data(), n);
+    result.D = Eigen::Map<const Eigen::Vector2d>(plain.outputs.back().data());
+    result.lateness = plain.lateness;
     if (!withGradient)
         return result;
 
     const auto count = theta.size();
     result.dA.assign(static_cast<std::size_t>(count), Eigen::MatrixXd(n, n));
     result.dB.assign(static_cast<std::size_t>(count), Eigen::VectorXd(n));
+    result.dC.assign(static_cast<std::size_t>(count), Eigen::MatrixXd(2, n));
+    result.dD.assign(static_cast<std::size_t>(count), Eigen::VectorXd(2));
+    result.dLateness.assign(static_cast<std::size_t>(count), 0.0);
     for (Eigen::Index first = 0; first < count; first += jetWidth) {
         std::vector<Jet> parameters(static_cast<std::size_t>(count));
         for (Eigen::Index k = 0; k < count; ++k)
             parameters[static_cast<std::size_t>(k)] = k >= first && k < first + jetWidth
                                                           ? Jet(theta[k], static_cast<int>(k - first))
                                                           : Jet(theta[k]);
-        std::vector<std::vector<Jet>> jets;
-        columns(model, parameters, jets);
+        const auto jets = columns(model, parameters);
         for (Eigen::Index k = first; k < std::min<Eigen::Index>(count, first + jetWidth); ++k) {
-            auto& dA = result.dA[static_cast<std::size_t>(k)];
-            for (Eigen::Index row = 0; row < n; ++row) {
-                const auto derivative = [&](std::size_t column) { return jets[column][static_cast<std::size_t>(row)].v[k - first]; };
-                for (Eigen::Index column = 0; column < n; ++column)
-                    dA(row, column) = derivative(static_cast<std::size_t>(column));
-                result.dB[static_cast<std::size_t>(k)][row] = derivative(static_cast<std::size_t>(n));
+            const auto own = static_cast<std::size_t>(k);
+            for (std::size_t column = 0; column < jets.rates.size(); ++column) {
+                const bool isState = column + 1 < jets.rates.size();
+                const auto at = static_cast<Eigen::Index>(column);
+                for (Eigen::Index row = 0; row < n; ++row)
+                    (isState ? result.dA[own](row, at) : result.dB[own][row]) = jets.rates[column][static_cast<std::size_t>(row)].v[k - first];
+                for (Eigen::Index row = 0; row < 2; ++row)
+                    (isState ? result.dC[own](row, at) : result.dD[own][row]) = jets.outputs[column][static_cast<std::size_t>(row)].v[k - first];
             }
+            result.dLateness[own] = jets.lateness.v[k - first];
         }
     }
     return result;
@@ -128,47 +192,43 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
     const auto n = linear.A.rows();
     const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
     const Eigen::VectorXcd B = linear.B.cast<Complex>();
-    const double radiation = radiationPerArea() / model.microphoneDistance;
-    const double area = model.path[0].value, tau = model.path[1].value;
-
+    std::vector<Observed> observed;
     std::vector<Response> responses(quantities.size());
-    for (auto& response : responses) {
-        response.value.resize(frequency.size());
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+        observed.push_back(observe(model, linear, quantities[q]));
+        responses[q].value.resize(frequency.size());
         if (withGradient)
-            response.gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
+            responses[q].gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
     }
-    const auto entries = nonzero(linear);
+    const auto inside = nonzero(linear.dA, linear.dB), outside = nonzero(linear.dC, linear.dD);
     Resolvent resolvent(linear.A);
     for (std::size_t f = 0; f < frequency.size(); ++f) {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
         resolvent.moveTo(s);
         const Eigen::VectorXcd z = resolvent.times(B);
+        const auto driven = [&](const Entry& entry) { return entry.value * (entry.column < n ? z[entry.column] : Complex(1.0)); };
         for (std::size_t q = 0; q < quantities.size(); ++q) {
-            // Each quantity is a state times a factor: displacement x, velocity s x, acceleration s^2 x.
-            Complex factor = 1.0;
-            Eigen::Index state = 1;
-            switch (quantities[q]) {
-            case Quantity::current: state = 0; break;
-            case Quantity::displacement: break;
-            case Quantity::velocity: factor = s; break;
-            case Quantity::acceleration: factor = s * s; break;
-            case Quantity::pressure: factor = s * s * radiation * area * std::exp(-s * tau); break;
-            case Quantity::voltage:
-            case Quantity::force: throw Error(Error::Kind::usage, "The input of a driver has no response to itself.");
-            }
-            const Complex value = factor * z[state];
+            const auto& of = observed[q];
+            Complex factor = of.gain;
+            for (int k = 0; k < of.order; ++k)
+                factor *= s;
+            if (of.delayed)
+                factor *= std::exp(-s * linear.lateness);
+            const Complex value = factor * ((of.row * z)(0) + of.direct);
             responses[q].value[f] = value;
             if (!withGradient)
                 continue;
-            // d(C R B) = C R (dA R B + dB) with R = (sI - A)^-1.
-            const Eigen::VectorXcd left = resolvent.row(state);
+            // d(C R B + D) = C R (dA R B + dB) + dC R B + dD with R = (sI - A)^-1.
+            const Eigen::VectorXcd left = resolvent.row(of.row);
             auto row = responses[q].gradient.row(static_cast<Eigen::Index>(f));
-            for (const auto& entry : entries)
-                row[entry.parameter] += factor * left[entry.row] * entry.value * (entry.column < n ? z[entry.column] : Complex(1.0));
-            if (quantities[q] == Quantity::pressure) {
-                row[count - 2] += value / area;
-                row[count - 1] += -s * value;
-            }
+            for (const auto& entry : inside)
+                row[entry.parameter] += factor * left[entry.row] * driven(entry);
+            for (const auto& entry : outside)
+                if (entry.row == of.source)
+                    row[entry.parameter] += factor * driven(entry);
+            if (of.delayed)
+                for (Eigen::Index k = 0; k < count; ++k)
+                    row[k] -= s * linear.dLateness[static_cast<std::size_t>(k)] * value;
         }
     }
     return responses;

@@ -10,13 +10,19 @@
 
 namespace excursion {
 
-/// The model linearized at rest, dz/dt = A z + B u, with z as in Dynamics (seed 2.3, extended by the memories).
+/// The model linearized at rest, dz/dt = A z + B u, with z as in Dynamics (seed 2.3, extended by the memories), and what leaves it,
+///     (area acceleration, spot) = C z + D u     (Emission).
 /// A mechanical-only driver has no current; its first state is decoupled.
 struct Linearization {
-    Eigen::MatrixXd A;
-    Eigen::VectorXd B;
-    std::vector<Eigen::MatrixXd> dA;   ///< by parameter, in the order of parametersOf(); filled when asked for
-    std::vector<Eigen::VectorXd> dB;
+    Eigen::MatrixXd A, C;
+    Eigen::VectorXd B, D;
+    double lateness = 0.0;   ///< s, of the sound
+    /// By parameter, in the order of parametersOf(); filled when asked for.
+    std::vector<Eigen::MatrixXd> dA, dC;
+    std::vector<Eigen::VectorXd> dB, dD;
+    std::vector<double> dLateness;
+
+    enum Output { sound, spot };   ///< rows of C
 };
 
 Linearization linearize(const Model&, bool withGradient = false);
@@ -34,7 +40,7 @@ struct Response {
     Eigen::MatrixXcd gradient;                 ///< frequencies x parameters; empty unless asked for
 };
 
-/// G(j w) = C (j w I - A)^-1 B of several quantities at once; one factorization a frequency serves them all.
+/// G(j w) = C (j w I - A)^-1 B + D of several quantities at once; one factorization a frequency serves them all.
 std::vector<Response> respond(const Model&, const std::vector<Quantity>& quantities,
                               const std::vector<double>& frequency, bool withGradient = false);
 

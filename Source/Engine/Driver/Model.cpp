@@ -27,7 +27,7 @@ std::vector<Pointer> collect(ModelType& model)
     for (auto& component : model.components)
         for (auto& parameter : component.parameters)
             all.push_back(&parameter);
-    for (auto& parameter : model.path)
+    for (auto& parameter : model.path.parameters)
         all.push_back(&parameter);
     return all;
 }
@@ -73,14 +73,8 @@ Model makeModel(std::string_view baseId)
     base.effect = &baseNamed(baseId);
     base.parameters = base.effect->parameters(base.extent);
     model.components.push_back(base);
-    Parameter area, delay;
-    area.name = "Sd";
-    area.unit = "m^2";
-    area.value = 0.01;
-    delay.name = "tau";
-    delay.unit = "s";
-    area.free = delay.free = false;   // until a pressure channel is there to see them
-    model.path = {area, delay};
+    model.path.effect = &radiation();
+    model.path.parameters = radiation().parameters(model.path.extent);
     return model;
 }
 
@@ -94,7 +88,7 @@ Model withEffect(Model model, const Effect& effect, const Extent& visited, std::
     const auto& values = starts.at(start);
     for (std::size_t k = 0; k < values.size(); ++k)
         component.parameters[k].value = values[k];
-    const bool listens = model.path[1].free;   // the delay is, where a pressure was measured
+    const bool listens = model.path.parameters[1].free;   // the delay is, where a pressure was measured
     for (auto& p : component.parameters)
         p.free = p.free && (listens || !p.heard);
     model.components.push_back(std::move(component));

@@ -18,13 +18,12 @@ struct Component {
     std::vector<Parameter> parameters;
 };
 
-/// The physical model of a driver: the base, then the effects in the order in which they were added, and the path
-/// to the microphone,
-///     p(t) = rho Sd / (2 pi d) a(t - tau)    (a half space; rho = 1.2 kg/m^3).
+/// The physical model of a driver: the base, then the effects in the order in which they were added, and the path to the microphone, as
+/// whose sum the sound comes (Emission); without an effect that is heard, p(t) = rho Sd / (2 pi d) a(t - tau).
 struct Model {
     std::string name;
     std::vector<Component> components;   ///< components.front() is the base
-    std::vector<Parameter> path;         ///< Sd in m^2 and tau in s
+    Component path;                      ///< radiation(): Sd in m^2 and tau in s
     double microphoneDistance = 1.0;     ///< d, m
     Eigen::MatrixXd covariance;          ///< of parameterVector(); empty when unknown
 

@@ -162,7 +162,7 @@ Json toJson(const Model& model)
                                        {"extent", extentJson(c.extent)},
                                        {"parameters", parametersJson(c.parameters)}});
     }
-    document["path"] = {{"parameters", parametersJson(model.path)}, {"microphoneDistance", model.microphoneDistance}};
+    document["path"] = {{"parameters", parametersJson(model.path.parameters)}, {"microphoneDistance", model.microphoneDistance}};
     document["covariance"] = covarianceJson(model.covariance);
     document["laws"] = lawsJson(model);
     return document;
@@ -183,7 +183,7 @@ Model modelFromJson(const JsonField& field)
         model.components.push_back(componentFrom(item, effect, extentFrom(item.at("extent"))));
     }
     const auto path = field.at("path");
-    model.path = parametersFrom(path.at("parameters"), model.path);
+    model.path.parameters = parametersFrom(path.at("parameters"), model.path.parameters);
     model.microphoneDistance = path.at("microphoneDistance").numberWithin(1e-6, 1e6);
     model.covariance = covarianceFrom(field.at("covariance"), parametersOf(model).size());
     return model;

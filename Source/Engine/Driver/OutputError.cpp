@@ -2,9 +2,9 @@
 #include "Engine/Driver/OutputError.h"
 
 #include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/Sensors.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Driver/StartState.h"
-#include "Engine/Signal/Fft.h"
 
 #include <algorithm>
 #include <atomic>
@@ -17,23 +17,6 @@ namespace excursion {
 namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
-
-/// The trajectory's record that a channel observes; pressure is made of acceleration.
-const std::vector<double>& observed(const Trajectory& run, Quantity quantity)
-{
-    switch (quantity) {
-    case Quantity::current: return run.current;
-    case Quantity::displacement: return run.displacement;
-    case Quantity::velocity: return run.velocity;
-    default: return run.acceleration;
-    }
-}
-
-std::complex<double> pathResponse(const Model& model, double frequency)
-{
-    const double gain = radiationPerArea() * model.path[0].value / model.microphoneDistance;
-    return std::polar(gain, -2.0 * std::numbers::pi * frequency * model.path[1].value);
-}
 
 class SectionRun {
 public:
@@ -64,15 +47,16 @@ public:
         fit.power.resize(channels);
         std::vector<Eigen::VectorXd> residual(channels, Eigen::VectorXd(2 * lines));
         std::vector<Spectrum> predicted(channels);
+        const Sensors sensors(model_, trajectory, record_.sampleRate);
         for (std::size_t c = 0; c < channels; ++c) {
-            predicted[c] = spectrumOf(observed(trajectory, record_.channels[c]), record_.channels[c]);
+            predicted[c] = sensors.seen(record_.channels[c]);
             residualOf(c, predicted[c], residual[c], fit.power[c]);
             fit.channels[c].cost = residual[c].squaredNorm();
             fit.channels[c].rows = static_cast<double>(2 * lines);
         }
         if (options_.gradient && columns > 0) {
             std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(2 * lines, columns));
-            if (!sensitivities(predicted, J)) {
+            if (!sensitivities(sensors, J)) {
                 fit.finite = false;
                 return fit;
             }
@@ -87,15 +71,6 @@ public:
     }
 
 private:
-    Spectrum spectrumOf(const std::vector<double>& samples, Quantity quantity) const
-    {
-        auto spectrum = fft(samples);
-        if (quantity == Quantity::pressure)
-            for (std::size_t k = 0; k < spectrum.size(); ++k)
-                spectrum[k] *= pathResponse(model_, record_.frequency(section_, k));
-        return spectrum;
-    }
-
     void residualOf(std::size_t c, const Spectrum& predicted, Eigen::VectorXd& r, ErrorPower& power) const
     {
         const auto& measured = section_.measured[c];
@@ -125,49 +100,35 @@ private:
         }
     }
 
-    bool sensitivities(const std::vector<Spectrum>& predicted, std::vector<Eigen::MatrixXd>& J) const
+    bool sensitivities(const Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
     {
-        const auto dynamicCount = static_cast<Eigen::Index>(parametersOf(model_).size() - model_.path.size());
-        std::vector<std::size_t> dynamic;   // columns whose parameter acts through the equations of motion
-        for (std::size_t j = 0; j < active_.size(); ++j)
-            if (active_[j] < dynamicCount)
-                dynamic.push_back(j);
-            else
-                pathSensitivity(active_[j] - dynamicCount, j, predicted, J);
-
+        std::vector<Trace> traces;   // of all channels, each once
+        for (const auto quantity : record_.channels)
+            for (const auto trace : sensors.tracesOf(quantity))
+                if (std::find(traces.begin(), traces.end(), trace) == traces.end())
+                    traces.push_back(trace);
         // As many parameters at once as their records leave room for.
         constexpr std::size_t room = 1 << 23;   // numbers
-        const auto together = std::clamp<std::size_t>(room / (section_.window * record_.channels.size()), 1, std::max<std::size_t>(dynamic.size(), 1));
-        std::vector<double> samples(section_.window);
-        for (std::size_t block = 0; block < dynamic.size(); block += together) {
-            std::vector<Eigen::Index> parameters;
-            for (std::size_t b = block; b < std::min(block + together, dynamic.size()); ++b)
-                parameters.push_back(active_[dynamic[b]]);
+        const auto together = std::clamp<std::size_t>(room / (section_.window * traces.size()), 1, active_.size());
+        for (std::size_t block = 0; block < active_.size(); block += together) {
+            const std::span parameters(active_.data() + block, std::min(together, active_.size() - block));
             std::vector<Eigen::MatrixXd> slopes;
-            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, record_.channels, from_, slopes))
+            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, traces, from_, slopes))
                 return false;
-            for (std::size_t c = 0; c < record_.channels.size(); ++c)
+            for (std::size_t c = 0; c < record_.channels.size(); ++c) {
+                const auto made = sensors.tracesOf(record_.channels[c]);
+                Eigen::MatrixXd rows(static_cast<Eigen::Index>(made.size()), static_cast<Eigen::Index>(section_.window));
                 for (std::size_t b = 0; b < parameters.size(); ++b) {
-                    for (std::size_t n = 0; n < samples.size(); ++n)
-                        samples[n] = slopes[c](static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(n));
-                    fill(c, spectrumOf(samples, record_.channels[c]), J[c].col(static_cast<Eigen::Index>(dynamic[block + b])));
+                    for (std::size_t r = 0; r < made.size(); ++r) {
+                        const auto place = std::find(traces.begin(), traces.end(), made[r]) - traces.begin();
+                        rows.row(static_cast<Eigen::Index>(r)) = slopes[static_cast<std::size_t>(place)].row(static_cast<Eigen::Index>(b));
+                    }
+                    if (!rows.isZero(0.0))
+                        fill(c, sensors.slope(record_.channels[c], rows), J[c].col(static_cast<Eigen::Index>(block + b)));
                 }
+            }
         }
         return true;
-    }
-
-    /// The path is linear and known in closed form: dP/dSd = P/Sd, dP/dtau = -j w P.
-    void pathSensitivity(Eigen::Index which, std::size_t column, const std::vector<Spectrum>& predicted,
-                         std::vector<Eigen::MatrixXd>& J) const
-    {
-        const auto c = record_.channelIndex(Quantity::pressure);
-        if (!c)
-            return;
-        auto derivative = predicted[*c];
-        for (std::size_t k = 0; k < derivative.size(); ++k)
-            derivative[k] *= which == 0 ? std::complex<double>(1.0 / model_.path[0].value)
-                                        : std::complex<double>(0.0, -2.0 * std::numbers::pi * record_.frequency(section_, k));
-        fill(*c, derivative, J[*c].col(static_cast<Eigen::Index>(column)));
     }
 
     const Model& model_;

@@ -31,12 +31,11 @@ public:
         return (units_.asDiagonal() * factors_.solve(units_.cwiseInverse().asDiagonal() * right)).eval();
     }
 
-    /// Row `state` of (s I - A)^-1, as a column.
-    Eigen::VectorXcd row(Eigen::Index state) const
+    /// c (s I - A)^-1 of a row c, as a column.
+    Eigen::VectorXcd row(const Eigen::RowVectorXd& c) const
     {
-        Eigen::VectorXcd unit = Eigen::VectorXcd::Zero(units_.size());
-        unit[state] = units_[state];
-        const Eigen::VectorXcd solved = factors_.transpose().solve(unit);
+        const Eigen::VectorXcd scaled = (c.transpose().cwiseProduct(units_)).cast<std::complex<double>>();
+        const Eigen::VectorXcd solved = factors_.transpose().solve(scaled);
         return solved.cwiseQuotient(units_);
     }
 

@@ -262,7 +262,7 @@ void SensitivityStep::step(std::span<const double> u)
     if (fresh_)
         look(z_, u[0], start_);
     fresh_ = false;
-    motion_.step(z_.data(), u);
+    acceleration_ = motion_.step(z_.data(), u);
     middle_.noalias() = motion_.halfway_ * motion_.from_;
     middle_.noalias() += motion_.Q_ * motion_.N_[2];
     look(middle_, middle, halfway_);

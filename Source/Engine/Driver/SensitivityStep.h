@@ -27,6 +27,7 @@ public:
 
     const Eigen::VectorXd& state() const { return z_; }   ///< at the latest step's end
     auto slopes() const { return S_.topRows(count_); }   ///< parameters x states, at the latest step's end
+    double acceleration() const { return acceleration_; }   ///< dv/dt at the latest step's start, m/s^2
     const Eigen::VectorXd& accelerationSlopes() const { return accelerationSlopes_; }   ///< at the latest step's start, by parameter
 
 private:
@@ -69,6 +70,7 @@ private:
     std::array<Eigen::MatrixXd, 3> memoryQuadrature_;
     Eigen::MatrixXd memoryStage_, memoryLater_;
     Eigen::Index memoryFrom_ = 0, memoryTo_ = 0;     ///< rows of S whose parameters act upon memories
+    double acceleration_ = 0.0;
     Eigen::VectorXd z_, middle_, y_, accelerationSlopes_;
     Eigen::MatrixXd S_, run_, Y_, K_, twice_;   ///< rows, one a parameter, are padded
     std::array<Eigen::MatrixXd, 4> stage_;

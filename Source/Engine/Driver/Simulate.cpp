@@ -2,8 +2,9 @@
 #include "Engine/Driver/Simulate.h"
 
 #include "Engine/Driver/ExponentialStep.h"
+#include "Engine/Driver/Radiator.h"
 #include "Engine/Driver/SensitivityStep.h"
-#include "Engine/Signal/Fft.h"
+#include "Engine/Driver/Sensors.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Signal/Resample.h"
 #include "Engine/Validity.h"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace excursion {
 
@@ -70,14 +70,21 @@ private:
 
 } // namespace
 
+const std::vector<double>& Trajectory::operator[](Trace trace) const
+{
+    const std::array<const std::vector<double>*, traceCount> all {&current, &displacement, &velocity, &acceleration, &flow, &lateness, &spot};
+    return *all[static_cast<std::size_t>(trace)];
+}
+
 bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start)
 {
     ExponentialStep motion(model, drive.step());
+    Radiator radiator(model);
     const Plausible plausible(model);
-    Eigen::VectorXd z = start.size() > 0 ? start : Eigen::VectorXd::Zero(motion.order());
-    for (auto* channel : {&out.current, &out.displacement, &out.velocity, &out.acceleration}) {
-        channel->clear();
-        channel->reserve(drive.length() - first);
+    Eigen::VectorXd z = start.size() > 0 ? start : Eigen::VectorXd::Zero(motion.order()), before = z;
+    for (auto* trace : {&out.current, &out.displacement, &out.velocity, &out.acceleration, &out.flow, &out.lateness, &out.spot}) {
+        trace->clear();
+        trace->reserve(drive.length() - first);
     }
     std::size_t half = 0;
     for (std::size_t n = 0; n < drive.length(); ++n) {
@@ -86,11 +93,17 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
             out.current.push_back(z[0]);
             out.displacement.push_back(z[1]);
             out.velocity.push_back(z[2]);
+            before = z;
         }
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
             const double acceleration = motion.step(z.data(), drive.polynomial(half));
-            if (s == 0 && kept)
-                out.acceleration.push_back(acceleration);
+            if (s > 0 || !kept)
+                continue;
+            const auto sound = radiator.at(before.data(), acceleration);
+            out.acceleration.push_back(acceleration);
+            out.flow.push_back(sound.flow);
+            out.lateness.push_back(sound.lateness);
+            out.spot.push_back(sound.spot);
         }
         if (!plausible.holds(z))
             return false;
@@ -99,37 +112,46 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
 }
 
 bool differentiate(const Model& model, std::span<const Eigen::Index> active, const Drive& drive, std::size_t first,
-                   const std::vector<Quantity>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
+                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
 {
+    const auto count = static_cast<Eigen::Index>(active.size());
     SensitivityStep motion(model, drive.step(), active);
+    const bool radiates = std::any_of(observed.begin(), observed.end(), [](Trace trace) { return trace >= Trace::flow; });
+    Radiator radiator(model, radiates ? active : std::span<const Eigen::Index> {});
     const Plausible plausible(model);
     if (start.value.size() > 0) {
-        Eigen::MatrixXd slopes(static_cast<Eigen::Index>(active.size()), start.value.size());
+        Eigen::MatrixXd slopes(count, start.value.size());
         for (std::size_t k = 0; k < active.size(); ++k)
             slopes.row(static_cast<Eigen::Index>(k)) = start.gradient.col(active[k]).transpose();
         motion.begin(start.value, slopes);
     }
-    const auto place = [](Quantity quantity) -> Eigen::Index {
-        switch (quantity) {
-        case Quantity::current: return 0;
-        case Quantity::displacement: return 1;
-        case Quantity::velocity: return 2;
-        default: return -1;   // no state: acceleration
-        }
-    };
-    out.assign(observed.size(), Eigen::MatrixXd(static_cast<Eigen::Index>(active.size()), static_cast<Eigen::Index>(drive.length() - first)));
+    out.assign(observed.size(), Eigen::MatrixXd(count, static_cast<Eigen::Index>(drive.length() - first)));
+    Eigen::MatrixXd before, emitted(count, 3);
+    Eigen::VectorXd from;
     std::size_t half = 0;
     for (std::size_t n = 0; n < drive.length(); ++n) {
         const auto column = static_cast<Eigen::Index>(n - first);
         const bool kept = n >= first;
-        for (std::size_t q = 0; kept && q < observed.size(); ++q)
-            if (const auto state = place(observed[q]); state >= 0)
-                out[q].col(column) = motion.slopes().col(state);
+        if (kept) {
+            for (std::size_t q = 0; q < observed.size(); ++q)
+                if (observed[q] < Trace::acceleration)
+                    out[q].col(column) = motion.slopes().col(static_cast<Eigen::Index>(observed[q]));
+            if (radiates) {
+                before = motion.slopes();
+                from = motion.state();
+            }
+        }
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
             motion.step(drive.polynomial(half));
-            for (std::size_t q = 0; kept && s == 0 && q < observed.size(); ++q)
-                if (place(observed[q]) < 0)
+            if (s > 0 || !kept)
+                continue;
+            if (radiates)
+                radiator.differentiate(from.data(), motion.acceleration(), before, motion.accelerationSlopes(), emitted);
+            for (std::size_t q = 0; q < observed.size(); ++q)
+                if (observed[q] == Trace::acceleration)
                     out[q].col(column) = motion.accelerationSlopes();
+                else if (observed[q] > Trace::acceleration)
+                    out[q].col(column) = emitted.col(static_cast<Eigen::Index>(observed[q]) - static_cast<Eigen::Index>(Trace::flow));
         }
         if (!plausible.holds(motion.state()))
             return false;
@@ -200,20 +222,6 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
     return summary;
 }
 
-std::vector<double> radiate(const Model& model, std::span<const double> acceleration, double sampleRate)
-{
-    auto spectrum = fft(acceleration);
-    const double gain = radiationPerArea() * model.path[0].value / model.microphoneDistance;
-    const double tau = model.path[1].value;
-    for (std::size_t k = 0; k < spectrum.size(); ++k) {
-        const double omega = 2.0 * std::numbers::pi * sampleRate * static_cast<double>(k) / static_cast<double>(acceleration.size());
-        spectrum[k] *= std::polar(gain, -omega * tau);
-    }
-    if (acceleration.size() % 2 == 0)
-        spectrum.back() = spectrum.back().real();   // the Nyquist line of a real record is real
-    return inverseFft(spectrum, acceleration.size());
-}
-
 Measurement simulate(const Model& model, std::span<const double> input, double sampleRate,
                      const SimulationOptions& options, SimulationSummary* summary, const Progress& progress)
 {
@@ -230,24 +238,29 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
         throw Error(Error::Kind::numerical, "The simulated driver ran away: at this level the model is driven far beyond the "
                                             "range in which it was measured; lower --full-scale.");
     progress.at(0.95, "radiating");
+    const Sensors sensors(model, run, sampleRate);
 
     Measurement result;
     result.sampleRate = sampleRate;
     result.driver.name = model.name;
-    result.driver.coneArea = model.path[0].value;
+    result.driver.coneArea = model.path.parameters[0].value;
     result.driver.microphoneDistance = model.microphoneDistance;
     const auto add = [&result](Quantity quantity, std::vector<double> samples) {
         const double peak = peakOf(samples);
         result.channels.push_back({quantity, std::string(siUnit(quantity)), peak > 0.0 ? 1.25 * peak : 1.0, std::move(samples)});
     };
+    const bool spot = shiftsSpot(model);
+    auto pressure = sensors.record(Quantity::pressure);
+    auto displacement = spot ? sensors.record(Quantity::displacement) : run.displacement;
+    auto velocity = spot ? sensors.record(Quantity::velocity) : run.velocity;
+    auto acceleration = spot ? sensors.record(Quantity::acceleration) : run.acceleration;
     std::vector<double> copy(input.begin(), input.end());
     add(model.electrical() ? Quantity::voltage : Quantity::force, std::move(copy));
     if (model.electrical())
         add(Quantity::current, std::move(run.current));
-    add(Quantity::displacement, std::move(run.displacement));
-    add(Quantity::velocity, std::move(run.velocity));
-    auto pressure = radiate(model, run.acceleration, sampleRate);
-    add(Quantity::acceleration, std::move(run.acceleration));
+    add(Quantity::displacement, std::move(displacement));
+    add(Quantity::velocity, std::move(velocity));
+    add(Quantity::acceleration, std::move(acceleration));
     add(Quantity::pressure, std::move(pressure));
     progress.at(1.0, "simulated");
     return result;

@@ -12,9 +12,16 @@
 
 namespace excursion {
 
-/// What the driver does, sample by sample. Every vector has one value a sample, or is empty.
+/// A record that a simulation leaves: of the coil's motion, and of what leaves the driver (Emission; flow is area times acceleration).
+enum class Trace { current, displacement, velocity, acceleration, flow, lateness, spot };
+inline constexpr std::size_t traceCount = 7;
+
+/// What the driver does, sample by sample. Every vector has one value a sample.
 struct Trajectory {
     std::vector<double> current, displacement, velocity, acceleration;   ///< A, m, m/s, m/s^2
+    std::vector<double> flow, lateness, spot;                            ///< m^3/s^2, s, m
+
+    const std::vector<double>& operator[](Trace) const;
 };
 
 /// A voltage (or force) record, upsampled so that steps find the band-limited input between the samples.
@@ -49,11 +56,11 @@ bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, c
 
 /// Derivatives of the trajectory by parameters of the model (SensitivityStep).
 /// @param active    the parameters, in the order of parametersOf()
-/// @param observed  current, displacement, velocity or acceleration; pressure counts as the latter
+/// @param observed  the traces to differentiate
 /// @param start     state at the drive's first sample and its derivatives by all parameters; empty: rest
-/// @param out       one matrix an observed quantity, parameters x samples
+/// @param out       one matrix an observed trace, parameters x samples
 bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, std::size_t first,
-                   const std::vector<Quantity>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
+                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
 
 /// The fewest steps a sample, at most 64, with which the laws' fastest eigenvalue times the step stays within the limit; by default that up
 /// to which both of the above are stable.
@@ -79,8 +86,5 @@ SimulationSummary chooseSubsteps(const Model&, std::span<const double> input, do
 /// with the step halved until the tolerance is reached. Throws Error (numerical) when the model runs away.
 Measurement simulate(const Model&, std::span<const double> input, double sampleRate, const SimulationOptions&,
                      SimulationSummary* = nullptr, const Progress& = {});
-
-/// p = rho Sd/(2 pi d) a(t - tau) of a whole record, by the DFT (Pa).
-std::vector<double> radiate(const Model&, std::span<const double> acceleration, double sampleRate);
 
 } // namespace excursion

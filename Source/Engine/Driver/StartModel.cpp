@@ -108,8 +108,8 @@ void matchSizes(Model& model, const Sight& sight)
         const double size = sizeOver(model, *target);
         rescale(model, model.baseParameter("m").value / (model.electrical() ? size * size : size));
     }
-    if (model.path[0].free)
-        model.path[0].value *= sizeOver(model, *sight.pressure);
+    if (model.path.parameters[0].free)
+        model.path.parameters[0].value *= sizeOver(model, *sight.pressure);
 }
 
 /// From the impedance's own peak; the mass is the one thing it does not show.
@@ -183,11 +183,11 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
     const auto sight = sightOf(targets, electrical, driver);
     Model model = makeModel(electrical ? "electrodynamic" : "mechanical");
     model.microphoneDistance = driver.microphoneDistance.value_or(1.0);
-    model.path[0].value = driver.coneArea.value_or(0.01);
-    model.path[1].value = model.microphoneDistance / speedOfSound;
-    model.path[1].free = sight.pressure != nullptr;
+    model.path.parameters[0].value = driver.coneArea.value_or(0.01);
+    model.path.parameters[1].value = model.microphoneDistance / speedOfSound;
+    model.path.parameters[1].free = sight.pressure != nullptr;
     // Where neither the mass nor the area is known, the mass is held, and the area takes the size of the pressure.
-    model.path[0].free = sight.pressure && (sight.motion || !sight.mass);
+    model.path.parameters[0].free = sight.pressure && (sight.motion || !sight.mass);
     if (electrical) {
         model.baseParameter("m").free = sight.mass;
         model.baseParameter("Re").free = sight.current != nullptr;
@@ -221,7 +221,7 @@ std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& tar
     if (model.electrical() && !model.baseParameter("m").free)
         text += " The moving mass is held at " + print("%.3g", 1e3 * model.baseParameter("m").value)
                 + " g, a guess: without a measured motion only Bl^2/m, Rms/m and K/m are known, so Bl, Rms and K scale with it.";
-    if (model.electrical() && !model.baseParameter("m").free && model.path[0].free)
+    if (model.electrical() && !model.baseParameter("m").free && model.path.parameters[0].free)
         text += " The area of the cone follows from that guess and the size of the pressure.";
     double highest = 0.0;
     for (const auto& target : targets)

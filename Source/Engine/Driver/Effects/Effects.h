@@ -13,5 +13,7 @@ const Effect& eddyCurrents();
 const Effect& creep();
 const Effect& dampingVelocity();
 const Effect& ventedBox();
+const Effect& doppler();
+const Effect& coneBreakup();
 
 } // namespace excursion

@@ -17,6 +17,7 @@ namespace {
 /// tuning Ka, of which Kb = Ka/(1 + r) is the difference. The base's K stays the stiffness at rest, with the box in it:
 ///     force:  -Ka (w + dA/wB dw/dt) + Kb r x
 /// For then the cone without leak and absorption does not depend on r, which the sound alone shows: the radiator's notch is at fB sqrt(r/(1 + r)).
+/// The microphone hears the cone, and the port as much as its place lets it: `port` is 1 far away, less close to the cone.
 /// The memory is w, dy/dt and y, and does not depend on Kb, which is a strength. The radiator's spring yields below a hundredth of the lowest
 /// frequency of interest, so that nothing integrates for ever. A closed box adds to K alone.
 class VentedBox final : public EffectOf<VentedBox> {
@@ -49,19 +50,19 @@ public:
             return p;
         };
         auto stiffness = positive("Kb", "N/m", 0.0), tuning = positive("fB", "Hz", 4.0 * e.lowFrequency), port = positive("1/QP", "1", someLoss),
-             leak = positive("1/QL", "1", someLoss), absorption = positive("1/QA", "1", 0.0), radiator = positive("Kp/Ka", "1", 0.0);
-        stiffness.strength = true;
+             leak = positive("1/QL", "1", someLoss), absorption = positive("1/QA", "1", 0.0), radiator = positive("Kp/Ka", "1", 0.0), share = positive("port", "1", 0.0);
+        stiffness.strength = share.strength = true;
         // Losses are small and an open port has no spring: without better knowledge they stay near zero.
         for (auto* p : {&port, &leak, &absorption, &radiator})
             p->prior = 0.3;
-        radiator.heard = true;
-        return {stiffness, tuning, port, leak, absorption, radiator};
+        radiator.heard = share.heard = true;
+        return {stiffness, tuning, port, leak, absorption, radiator, share};
     }
     std::vector<std::vector<double>> starts(const Extent& e) const override
     {
         std::vector<std::vector<double>> starts;
         for (double f = 1.5 * e.lowFrequency; f < 100.0 * e.lowFrequency && (starts.empty() || f < 0.1 * e.highFrequency); f *= 1.5)
-            starts.push_back({0.0, f, someLoss, someLoss, 0.0, 0.0});
+            starts.push_back({0.0, f, someLoss, someLoss, 0.0, 0.0, 0.0});
         return starts;
     }
     /// Without a port the cone would resonate at the tuning or above, where a fit of one hump to two does not look.
@@ -79,9 +80,9 @@ public:
     }
 
     int memorySize(const Extent&) const override { return 3; }
-    int coefficientCount(const Extent&) const override { return 7; }
+    int coefficientCount(const Extent&) const override { return 8; }
 
-    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB.
+    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard.
     template <class T>
     void prepareFor(const Extent&, const T* p, T* c) const
     {
@@ -93,6 +94,7 @@ public:
         c[4] = c[2] * r;
         c[5] = w * p[3];
         c[6] = p[4] / w;
+        c[7] = p[6];
     }
 
     template <class T>
@@ -104,6 +106,12 @@ public:
         rate[1] = -c[2] * pull - c[3] * vy - c[4] * y;
         rate[2] = vy - 2.0 * std::numbers::pi * 0.01 * e.lowFrequency * y;
         sum.force += c[1] * at.x - c[0] * pull;
+    }
+
+    template <class T>
+    void radiate(const Extent&, const T* c, const Motion<T>&, const T&, const T*, const T* rate, Emission<T>& sum) const
+    {
+        sum.acceleration += c[7] * rate[1];
     }
 
 private:

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Arrival.h"
+
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+constexpr int finer = 4;   // values a sample between which a polynomial goes: with eight points 1e-5 is left at 0.42 of the rate, less below
+
+/// A periodic record at `finer` times its rate, by zeros above its own lines.
+std::vector<double> refined(std::span<const double> samples)
+{
+    const std::size_t N = samples.size();
+    auto spectrum = fft(samples);
+    if (N % 2 == 0)
+        spectrum.back() *= 0.5;   // the Nyquist line stands for both its sides
+    spectrum.resize(finer * N / 2 + 1, 0.0);
+    auto fine = inverseFft(spectrum, finer * N);
+    for (auto& value : fine)
+        value *= finer;
+    return fine;
+}
+
+/// Lagrange's polynomial through eight of the finer values, periodic.
+double between(const std::vector<double>& fine, double sample)
+{
+    constexpr int points = 8;
+    static constexpr std::array<double, points> inverse = [] {   // 1/prod (k - j)
+        std::array<double, points> result {};
+        for (int k = 0; k < points; ++k) {
+            double product = 1.0;
+            for (int j = 0; j < points; ++j)
+                if (j != k)
+                    product *= k - j;
+            result[static_cast<std::size_t>(k)] = 1.0 / product;
+        }
+        return result;
+    }();
+    const auto length = static_cast<std::ptrdiff_t>(fine.size());
+    const double place = sample * finer, floor = std::floor(place), fraction = place - floor + (points / 2 - 1);
+    const auto first = static_cast<std::ptrdiff_t>(floor) - (points / 2 - 1);
+    double sum = 0.0;
+    for (int k = 0; k < points; ++k) {
+        double weight = inverse[static_cast<std::size_t>(k)];
+        for (int j = 0; j < points; ++j)
+            if (j != k)
+                weight *= fraction - j;
+        const auto n = ((first + k) % length + length) % length;
+        sum += weight * fine[static_cast<std::size_t>(n)];
+    }
+    return sum;
+}
+
+} // namespace
+
+std::vector<double> slopeOf(std::span<const double> samples, double sampleRate)
+{
+    auto spectrum = fft(samples);
+    const double step = 2.0 * std::numbers::pi * sampleRate / static_cast<double>(samples.size());
+    for (std::size_t k = 0; k < spectrum.size(); ++k)
+        spectrum[k] *= std::complex<double>(0.0, step * static_cast<double>(k));
+    if (samples.size() % 2 == 0)
+        spectrum.back() = 0.0;   // the slope of the Nyquist line has none
+    return inverseFft(spectrum, samples.size());
+}
+
+Arrival::Arrival(std::span<const double> lateness, double sampleRate)
+{
+    drift_.assign(lateness.size(), 0.0);
+    if (std::all_of(lateness.begin(), lateness.end(), [](double l) { return l == 0.0; }))
+        return;
+    drift_ = slopeOf(lateness, sampleRate);
+    std::vector<double> samples(lateness.begin(), lateness.end());
+    for (auto& l : samples)
+        l *= sampleRate;
+    const auto late = refined(samples), drift = refined(drift_);
+    left_.resize(lateness.size());
+    for (std::size_t n = 0; n < left_.size(); ++n) {
+        const double t = static_cast<double>(n);
+        double s = t - samples[n];
+        constexpr int enough = 4;   // quadratic from a start that is right to the square of the Mach number
+        for (int k = 0; k < enough; ++k) {
+            const double change = (s + between(late, s) - t) / (1.0 + between(drift, s));
+            s -= change;
+            if (!(std::abs(change) > 1e-9))
+                break;
+        }
+        left_[n] = s;
+    }
+}
+
+std::vector<double> Arrival::heard(std::span<const double> samples) const
+{
+    if (left_.empty())
+        return {samples.begin(), samples.end()};
+    const auto fine = refined(samples);
+    std::vector<double> result(samples.size());
+    for (std::size_t n = 0; n < result.size(); ++n)
+        result[n] = between(fine, left_[n]);
+    return result;
+}
+
+} // namespace excursion

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Effects/Effects.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// Above the band in which it moves as one piece the cone bends. Each mode is a small resonator on the coil,
+///     y'' = -(w/Q) (y' - v) - w^2 (y - x),
+/// whose own motion r = y - x is heard with a gain g and seen at the laser's spot with a gain h:
+///     area (a + sum g_k r_k''),   x + sum h_k r_k.
+/// The modes are taken for too light to be felt by the coil. Frequencies are told by their distance from places spread over the upper three
+/// octaves of the band, so that what is plausible beforehand holds for each.
+class ConeBreakup final : public EffectOf<ConeBreakup> {
+public:
+    std::string id() const override { return "cone-breakup"; }
+    std::string title() const override { return "Cone breakup"; }
+    std::string physics() const override { return "Above some frequency the cone bends: parts of it move by themselves and radiate."; }
+    std::string symptoms() const override
+    {
+        return "linear residual pressure in narrow peaks and dips at the top of the band, the same at every level, with no trace of it in the current";
+    }
+    std::string remedy() const override
+    {
+        return "More damping in the cone or its surround, another shape of the cone, or a crossover below the first mode.";
+    }
+    bool electrical() const override { return false; }
+    bool linear() const override { return true; }
+    bool felt() const override { return false; }
+
+    std::vector<Parameter> parameters(const Extent&) const override
+    {
+        std::vector<Parameter> result;
+        for (int k = 1; k <= modes; ++k) {
+            const auto add = [&](const char* letter, const char* unit, double prior, bool strength) {
+                Parameter p;
+                p.name = letter + std::to_string(k);
+                p.unit = unit;
+                p.prior = prior;
+                p.strength = strength;
+                result.push_back(p);
+            };
+            constexpr double octavesAround = 1.0, octavesOfQuality = 1.5, plausibleGain = 3.0;
+            add("shift", "octaves", octavesAround, false);
+            add("sharpness", "octaves", octavesOfQuality, false);
+            add("g", "1", plausibleGain, true);
+            add("h", "1", plausibleGain, true);
+        }
+        return result;
+    }
+    std::vector<std::vector<double>> starts(const Extent& e) const override
+    {
+        std::vector<double> here(parameters(e).size(), 0.0), between = here;
+        for (std::size_t k = 0; k < modes; ++k)
+            between[each * k] = 0.5 * spacing;
+        return {here, between};
+    }
+
+    int memorySize(const Extent&) const override { return 2 * modes; }
+    int coefficientCount(const Extent&) const override { return each * modes; }
+
+    /// Coefficients of a mode: w^2, w/Q, g and h.
+    template <class T>
+    void prepareFor(const Extent& e, const T* p, T* c) const
+    {
+        using std::exp;
+        constexpr double middlingQuality = 5.0;
+        for (int k = 0; k < modes; ++k, p += each, c += each) {
+            const double place = 2.0 * std::numbers::pi * e.highFrequency * std::exp2(spacing * (k + 0.5 - modes));
+            const T w = place * exp(std::numbers::ln2 * p[0]);
+            c[0] = w * w;
+            c[1] = w * exp(-std::numbers::ln2 * p[1]) / middlingQuality;
+            c[2] = p[2];
+            c[3] = p[3];
+        }
+    }
+
+    template <class T>
+    void addTo(const Extent&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>&) const
+    {
+        for (int k = 0; k < modes; ++k, c += each, memory += 2, rate += 2) {
+            rate[0] = memory[1];
+            rate[1] = c[1] * (at.v - memory[1]) + c[0] * (at.x - memory[0]);
+        }
+    }
+
+    template <class T>
+    void radiate(const Extent&, const T* c, const Motion<T>& at, const T& acceleration, const T* memory, const T* rate, Emission<T>& sum) const
+    {
+        for (int k = 0; k < modes; ++k, c += each, memory += 2, rate += 2) {
+            sum.acceleration += c[2] * (rate[1] - acceleration);
+            sum.spot += c[3] * (memory[0] - at.x);
+        }
+    }
+
+private:
+    static constexpr int modes = 4, each = 4;
+    static constexpr double spacing = 0.75;   // octaves from one place to the next
+};
+
+} // namespace
+
+const Effect& coneBreakup()
+{
+    static const ConeBreakup effect;
+    return effect;
+}
+
+} // namespace excursion
