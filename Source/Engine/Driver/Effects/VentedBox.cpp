@@ -18,7 +18,7 @@ namespace {
 ///     force:  -Ka (w + dA/wB dw/dt) + Kb r x
 /// For then the cone without leak and absorption does not depend on r, which the sound alone shows: the radiator's notch is at fB sqrt(r/(1 + r)).
 /// The microphone hears the cone, and the port as much as its place lets it: `port` is 1 far away, less close to the cone.
-/// The memory is w, dy/dt and y, and does not depend on Kb, which is a strength. The radiator's spring yields below a hundredth of the lowest
+/// The memory is w, dy/dt and y, and does not depend on Kb, which is a strength. The radiator's spring yields below a thousandth of the lowest
 /// frequency of interest, so that nothing integrates for ever. A closed box adds to K alone.
 class VentedBox final : public EffectOf<VentedBox> {
 public:
@@ -104,7 +104,7 @@ public:
         rate[0] = (at.v + vy - c[5] * w) / (1.0 + c[5] * c[6]);   // dw/dt = v + dy/dt + dl/dt, solved
         const T pull = w + c[6] * rate[0];
         rate[1] = -c[2] * pull - c[3] * vy - c[4] * y;
-        rate[2] = vy - 2.0 * std::numbers::pi * 0.01 * e.lowFrequency * y;
+        rate[2] = vy - yield * e.lowFrequency * y;
         sum.force += c[1] * at.x - c[0] * pull;
     }
 
@@ -115,7 +115,7 @@ public:
     }
 
 private:
-    static constexpr double someLoss = 0.1;
+    static constexpr double someLoss = 0.1, yield = 2.0 * std::numbers::pi * 0.001;
 };
 
 } // namespace
