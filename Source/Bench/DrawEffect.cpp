@@ -122,6 +122,11 @@ VentedBox drawBox(double strength, const Loudspeaker& speaker, double f0, Random
     const double tuning = turn * f0 * random.uniform(0.7, 1.3);
     box.mass = box.stiffness / (tuning * tuning);
     box.resistance = box.mass * tuning / random.uniform(5.0, 15.0);
+    const double impedance = box.mass * tuning;   // of air and port at the tuning
+    if (random.chance(0.7))
+        box.leak = impedance * random.logUniform(5.0, 30.0);
+    if (random.chance(0.5))
+        box.absorption = impedance / random.logUniform(20.0, 100.0);
     return box;
 }
 

@@ -55,9 +55,12 @@ Loudspeaker::Response Loudspeaker::small(double frequency) const
     if (friction)
         for (const auto& element : friction->elements)
             mechanical += element.stiffness / s;
-    if (ventedBox) {
-        port = -ventedBox->stiffness / (ventedBox->mass * s * s + ventedBox->resistance * s + ventedBox->stiffness);
-        mechanical += ventedBox->stiffness * (1.0 + port) / s;
+    if (const auto& box = ventedBox) {
+        // x = -q times what air, port and leak give way together; y/x is the port's share.
+        const auto portStiffness = box->mass * s * s + box->resistance * s + box->spring;
+        const auto give = 1.0 / (box->stiffness + box->absorption * s) + 1.0 / portStiffness + 1.0 / (box->leak * s);
+        port = -1.0 / (give * portStiffness);
+        mechanical += 1.0 / (give * s);
     }
     const auto impedance = Re + s * Le + eddyImpedance(s) + Bl * Bl / mechanical;
     Response response;

@@ -5,6 +5,7 @@
 #include "Bench/Relaxation.h"
 
 #include <complex>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,13 +52,18 @@ struct CoilHeating {
     double magnetResistance = 3.0;     ///< K/W, magnet to room
 };
 
-/// An air spring shared by cone and port, both as volume displacement over the cone's area (y of the
-/// port): F = stiffness (x + y) on the cone, mass y'' = -stiffness (x + y) - resistance y', and the
-/// port's y'' is heard with the cone's x''.
+/// An air spring shared by cone and port, all as volume displacement over the cone's area: y of the port, l of what leaks.
+///     q = -stiffness (x + y + l) - absorption (x' + y' + l')   is the force on the cone,
+///     mass y'' = q - resistance y' - spring y                  the port, or a passive radiator with a spring,
+///     l' = q / leak                                            no leak when infinite,
+/// and the port's y'' is heard with the cone's x''.
 struct VentedBox {
     double stiffness = 0.0;    ///< N/m
     double mass = 0.0;         ///< kg
     double resistance = 0.0;   ///< N s/m
+    double leak = std::numeric_limits<double>::infinity();   ///< N s/m
+    double absorption = 0.0;   ///< N s/m, less than the leak's
+    double spring = 0.0;       ///< N/m
 };
 
 /// r'' + (w/Q) r' + w^2 r = -x'', and gain r'' is heard with x'': a mode of the cone driven by its neck.

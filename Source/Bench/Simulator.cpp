@@ -96,8 +96,10 @@ void Simulator::predict()
     };
     extrapolate(i_, iBefore_);
     extrapolate(a_, aBefore_);
-    if (speaker_.ventedBox)
+    if (speaker_.ventedBox) {
         extrapolate(port_, portBefore_);
+        extrapolate(leak_, leakBefore_);
+    }
 }
 
 void Simulator::solveCurrents(const Triple& voltage)
@@ -172,8 +174,7 @@ Triple Simulator::accelerations()
         double force = bl_[j] * i_[j] - damping_(v_[j]).value * v_[j] - suspension_[j] - frictionSum_[j];
         if (inductance_.present())
             force += inductance_(x_[j]).slope * coEnergyIntegral(saturation_, i_[j]);
-        if (const auto& box = speaker_.ventedBox)
-            force -= box->stiffness * (x_[j] + y_[j]);
+        force += box_[j];
         a[j] = force / speaker_.m;
     }
     return a;
@@ -195,10 +196,13 @@ const Simulator::Sample& Simulator::step(const Triple& voltage)
             x_[j] = sample_.displacement + h_ * (Radau::points()[j] * sample_.velocity + h_ * way[j]);
         }
         if (const auto& box = speaker_.ventedBox) {
-            const auto portSpeed = times(A, port_), portWay = times(B, port_);
+            const auto portSpeed = times(A, port_), portWay = times(B, port_), leaked = times(A, leak_);
             for (int j = 0; j < 3; ++j) {
-                y_[j] = portPosition_ + h_ * (Radau::points()[j] * portVelocity_ + h_ * portWay[j]);
-                port_[j] = -(box->stiffness * (x_[j] + y_[j]) + box->resistance * (portVelocity_ + h_ * portSpeed[j])) / box->mass;
+                const double speed = portVelocity_ + h_ * portSpeed[j];
+                const double way = portPosition_ + h_ * (Radau::points()[j] * portVelocity_ + h_ * portWay[j]);
+                box_[j] = -box->stiffness * (x_[j] + way + leaked_ + h_ * leaked[j]) - box->absorption * (v_[j] + speed + leak_[j]);
+                port_[j] = (box_[j] - box->resistance * speed - box->spring * way) / box->mass;
+                leak_[j] = box_[j] / box->leak;
             }
         }
         const auto iOld = i_;
@@ -244,6 +248,7 @@ void Simulator::finish(const Triple& voltage)
     if (speaker_.ventedBox) {
         portPosition_ += h_ * (portVelocity_ + h_ * times(B, port_)[2]);
         portVelocity_ += h_ * times(A, port_)[2];
+        leaked_ += h_ * times(A, leak_)[2];
         sample_.radiated += port_[2];
     }
     for (auto& mode : modes_) {

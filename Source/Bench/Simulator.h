@@ -52,15 +52,15 @@ private:
     double h_ = 0;
     Sample sample_;
     double flux_ = 0, resistance_ = 0, coilTemperature_ = 0, magnetTemperature_ = 0;
-    double portPosition_ = 0, portVelocity_ = 0;
+    double portPosition_ = 0, portVelocity_ = 0, leaked_ = 0;
     std::vector<double> frictionState_;
     std::vector<Mode> modes_;
     RelaxationBank eddy_, creep_;
     double creepScale_ = 0;       // what multiplies the creep cells' output
 
-    Triple i_ {}, a_ {}, port_ {};                          // this step: current, acceleration, port acceleration
-    Triple iBefore_ {}, aBefore_ {}, portBefore_ {};        // the step before it
-    Triple x_ {}, v_ {}, y_ {}, bl_ {}, suspension_ {}, frictionSum_ {}, eddyHistory_ {}, creepHistory_ {};
+    Triple i_ {}, a_ {}, port_ {}, leak_ {};                 // this step: current, acceleration, the port's, what leaks a second
+    Triple iBefore_ {}, aBefore_ {}, portBefore_ {}, leakBefore_ {};   // the step before it
+    Triple x_ {}, v_ {}, box_ {}, bl_ {}, suspension_ {}, frictionSum_ {}, eddyHistory_ {}, creepHistory_ {};
     std::vector<Triple> friction_;
     double iLargest_ = 0, aLargest_ = 0;
 };

@@ -57,7 +57,8 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
                 {"magnetCapacity", heating.magnetCapacity}, {"magnetResistance", heating.magnetResistance}};
     }
     if (id == "vented-box")
-        return {{"stiffness", speaker.ventedBox->stiffness}, {"mass", speaker.ventedBox->mass}, {"resistance", speaker.ventedBox->resistance}};
+        return {{"stiffness", speaker.ventedBox->stiffness}, {"mass", speaker.ventedBox->mass}, {"resistance", speaker.ventedBox->resistance},
+                {"leak", speaker.ventedBox->leak}, {"absorption", speaker.ventedBox->absorption}, {"spring", speaker.ventedBox->spring}};
     if (id == "cone-breakup") {
         Json modes = Json::array();
         for (const auto& mode : speaker.coneBreakup)

@@ -78,6 +78,11 @@ TEST_CASE("linear effects are their closed forms", "[bench][slow]")
         speaker.ventedBox = VentedBox {2500.0, 0.02, 0.7};
         CHECK(againstClosedForm(speaker, setup) < -100.0);
     }
+    SECTION("passive radiator in a box that leaks and absorbs")
+    {
+        speaker.ventedBox = VentedBox {2500.0, 0.02, 0.7, 60.0, 0.3, 700.0};
+        CHECK(againstClosedForm(speaker, setup) < -100.0);
+    }
 }
 
 TEST_CASE("a cone mode leaves its resonance in the pressure alone", "[bench]")

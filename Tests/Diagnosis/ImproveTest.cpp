@@ -112,7 +112,7 @@ TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is ca
 TEST_CASE("One hidden effect is named, added, and the error falls to the noise", "[improve][slow]")
 {
     const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness", "inductance-position", "eddy-currents", "creep",
-                             "damping-velocity");
+                             "damping-velocity", "vented-box");
     INFO(id);
     const auto ladder = improve(take({{id, 0.25}}));
     CHECK(added(ladder) == std::vector {id});

@@ -6,6 +6,7 @@
 #include "Engine/Measurement/TakeFile.h"
 #include "Measurement/Scratch.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace excursion;
@@ -132,5 +133,30 @@ TEST_CASE("A designer's impedance files end in a sane verdict", "[slow]")
             CHECK(ladder.rungs[1].added == "eddy-currents");
             CHECK(percent(ladder.rungs[1]) <= left);
         }
+    }
+}
+
+TEST_CASE("Woofers in vented boxes are told from tweeters, mids and closed boxes", "[slow]")
+{
+    const auto folder = dataFolder("impedance-boxes");
+    if (folder.empty())
+        return;
+    struct Expected {
+        const char* file;
+        double tuning, left;   // Hz, percent; no tuning where there is no port
+    };
+    for (const auto& [file, tuning, left] : {Expected {"Dayton_DC160-8_and_Vifa_DX25TG59-04_Woofer.zma", 44.5, 3.6},
+                                             Expected {"SB12PFCR25-4_and_SB21RDCN-4_tweeter.zma", 0.0, 0.6}, Expected {"koan-3way_mid.zma", 0.0, 4.0}}) {
+        INFO(file);
+        const auto ladder = improve(readTake(folder / file));
+        const auto* box = ladder.model().find("vented-box");
+        CHECK((box != nullptr) == (tuning > 0.0));
+        CHECK(percent(ladder.rungs.back()) <= left);
+        if (!box)
+            continue;
+        const auto order = ladder.model().effectIds();
+        CHECK(std::find(order.begin(), order.end(), "vented-box") - order.begin() < 2);
+        CHECK(box->parameters[1].value == Approx(tuning).epsilon(0.01));
+        checkParameters(ladder.model());
     }
 }

@@ -172,7 +172,9 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
                 bestLeft = std::min(bestLeft, excess(after.chi, before.noiseKnown));
                 for (const auto& channel : after.channels)
                     entry.confirmedErrorDb[channel.quantity] = channel.total.db;
-                entry.significant = after.chi < before.chi * (1.0 - options.significantFall);
+                const auto& added = trial.components.back();
+                entry.significant = after.chi < before.chi * (1.0 - options.significantFall)
+                                    && added.effect->plausible(added.extent, added.parameters, trial.base().parameters);
                 errorAfter = entry.confirmedErrorDb;
             }
         }
@@ -231,7 +233,7 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
             entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(entry.model, target);
         entry.predictedChi = entry.confirmedChi;
         // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be sure of them.
-        entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model.components.back());
+        entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model);
         entry.reason = reasonFor(*effect, entry.model, before, entry.confirmedErrorDb);
         diagnosis.ranking.push_back(std::move(entry));
     }

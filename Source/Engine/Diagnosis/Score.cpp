@@ -69,7 +69,7 @@ std::vector<Eigen::Index> strengthPositions(const Model& model, std::size_t k, c
         first += static_cast<Eigen::Index>(model.components[j].parameters.size());
     std::vector<Eigen::Index> positions;
     for (std::size_t j = 0; j < model.components[k].parameters.size(); ++j)
-        if (model.components[k].parameters[j].strength) {
+        if (const auto& p = model.components[k].parameters[j]; p.strength && p.free) {
             const auto index = first + static_cast<Eigen::Index>(j);
             positions.push_back(std::lower_bound(active.begin(), active.end(), index) - active.begin());
         }
@@ -81,7 +81,7 @@ bool feasible(const Model& model, std::size_t k, const Eigen::VectorXd& d, const
 {
     std::size_t n = 0;
     for (const auto& p : model.components[k].parameters)
-        if (p.strength && p.value + d[positions[n++]] <= p.lower)
+        if (p.strength && p.free && p.value + d[positions[n++]] <= p.lower)
             return false;
     return true;
 }
@@ -137,7 +137,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     for (std::size_t k = 0; k < augmented.components.size(); ++k)
         for (const auto& p : augmented.components[k].parameters) {
             const bool isOwn = k < model.components.size();
-            if (isOwn ? p.free : p.strength) {
+            if (p.free && (isOwn || p.strength)) {
                 if (isOwn)
                     own.push_back(static_cast<Eigen::Index>(active.size()));
                 active.push_back(static_cast<Eigen::Index>(position));
@@ -185,7 +185,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         auto& parameters = score.model.components.back().parameters;
         std::size_t n = 0;
         for (auto& p : parameters)
-            if (p.strength)
+            if (p.strength && p.free)
                 p.value += d[positions[n++]];
         if (known != result.scores.end())
             *known = std::move(score);

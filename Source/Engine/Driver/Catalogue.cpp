@@ -9,7 +9,7 @@ namespace excursion {
 const std::vector<const Effect*>& catalogue()
 {
     static const std::vector<const Effect*> effects {&forceFactor(), &stiffness(), &inductancePosition(), &eddyCurrents(),
-                                                     &creep(), &dampingVelocity(), &doppler(), &coneBreakup()};
+                                                     &creep(), &dampingVelocity(), &ventedBox(), &doppler(), &coneBreakup()};
     return effects;
 }
 

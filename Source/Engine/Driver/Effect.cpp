@@ -11,6 +11,10 @@ std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
     return {values};
 }
 
+std::vector<double> Effect::restarts(const Extent&, const std::vector<double>&) const { return {}; }
+
+bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::vector<Parameter>&) const { return true; }
+
 double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
 
 } // namespace excursion

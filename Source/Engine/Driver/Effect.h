@@ -63,6 +63,7 @@ struct Parameter {
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
     bool free = true;          ///< may a fit move it
+    bool heard = false;        ///< only the sound shows it: not free where none was measured
     bool strength = false;     ///< an effect whose strengths are all zero is absent
     double prior = std::numeric_limits<double>::infinity();   ///< standard deviation about zero that is plausible beforehand
     double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown or not identifiable
@@ -97,6 +98,14 @@ public:
 
     /// Shapes to try when nothing is known yet: parameter vectors with every strength at zero.
     virtual std::vector<std::vector<double>> starts(const Extent&) const;
+
+    /// Resonances of the base in Hz from which a search on a frequency response begins together with a start, besides the one that the base
+    /// has: a base that was fitted without the effect may sit on a part of what the effect does.
+    virtual std::vector<double> restarts(const Extent&, const std::vector<double>& start) const;
+
+    /// Whether such values can be the effect's own, beside a base with those parameters. If not, its shape has been bent to stand for something
+    /// else, and it is not named.
+    virtual bool plausible(const Extent&, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const;
 
     virtual std::optional<LawInfo> law() const { return std::nullopt; }
     /// Difference that the effect adds at `argument` to the base parameter of its law.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -84,6 +86,16 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
         if (positive(p) && p.lower == 0.0 && p.value < unseenErrors * p.standardError)
             p.value = unseenErrors * p.standardError;
     }
+}
+
+/// The model with a base that resonates at that frequency, neither sharply nor dully.
+Model withResonance(Model model, double frequency)
+{
+    constexpr double quality = 4.0;
+    const double omega = 2.0 * std::numbers::pi * frequency, mass = model.baseParameter("m").value;
+    model.baseParameter("K").value = mass * omega * omega;
+    model.baseParameter("Rms").value = mass * omega / quality;
+    return model;
 }
 
 } // namespace
@@ -171,21 +183,37 @@ LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std:
 
 LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
-    constexpr int pointsPerOctave = 16;   // enough to tell one start from another
-    const auto thin = thinned(targets, pointsPerOctave);
-    Model best = model;
-    double lowest = std::numeric_limits<double>::infinity();
+    struct Way {
+        Model model;
+        double cost;
+    };
+    std::vector<Way> ways;
     const auto& newest = model.components.back();
+    const auto from = [&](Model trial, const std::vector<ResponseTarget>& at, const LeastSquaresOptions& search) {
+        const auto run = fitResponse(trial, at, search);
+        if (run.usable)
+            ways.push_back({std::move(trial), run.finalCost});
+    };
+    // A few steps on few points tell which starts lead somewhere.
+    constexpr int fewPoints = 10, enoughPoints = 16;   // an octave
+    constexpr std::size_t most = 3;
+    const auto few = thinned(targets, fewPoints), enough = thinned(targets, enoughPoints);
+    const auto cheaper = [](const Way& a, const Way& b) { return a.cost < b.cost; };
     for (const auto& start : newest.effect->starts(newest.extent)) {
         auto trial = model;
         for (std::size_t k = 0; k < start.size(); ++k)
             trial.components.back().parameters[k].value = start[k];
-        const auto run = fitResponse(trial, thin, {30, 1e-5});
-        if (run.usable && run.finalCost < lowest) {
-            lowest = run.finalCost;
-            best = std::move(trial);
-        }
+        for (const double resonance : newest.effect->restarts(newest.extent, start))
+            from(withResonance(trial, resonance), few, {10, 1e-3});
+        from(std::move(trial), few, {10, 1e-3});
     }
+    std::stable_sort(ways.begin(), ways.end(), cheaper);
+    ways.resize(std::min(ways.size(), most));
+    for (auto& way : std::exchange(ways, {}))
+        from(std::move(way.model), enough, {40, 1e-5});
+    if (ways.empty())
+        return {};
+    auto best = std::move(std::min_element(ways.begin(), ways.end(), cheaper)->model);
     // Twice: priors and the reach of the search are relative to where a fit starts.
     fitResponse(best, targets, {40, 1e-6});
     const auto summary = fitResponse(best, targets, {80, 1e-8});
@@ -194,20 +222,34 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
     return summary;
 }
 
-bool isSeen(const Component& component)
+bool isSeen(const Model& model)
 {
     constexpr double sure = 4.0;        // standard errors, which take neighbouring points for independent
     constexpr double atBound = 0.002;   // of the range
-    bool strong = false;
-    for (const auto& p : component.parameters) {
-        if (p.strength) {
-            strong |= std::abs(p.value) > sure * p.standardError;   // never so when the standard error is not known
-        } else if (const double range = p.upper - p.lower; std::isfinite(range)) {
-            if (std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
-                return false;
+    const auto& newest = model.components.back();
+    const auto& parameters = newest.parameters;
+    if (!newest.effect->plausible(newest.extent, parameters, model.base().parameters))
+        return false;
+    for (const auto& p : parameters)
+        if (const double range = p.upper - p.lower; !p.strength && std::isfinite(range)
+            && std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
+            return false;
+    // Whether a strength differs from zero is asked at the shape that was found: at zero there is none.
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k + 1 < model.components.size(); ++k)
+        first += static_cast<Eigen::Index>(model.components[k].parameters.size());
+    std::vector<Eigen::Index> known;
+    std::vector<std::size_t> which;
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+        if (const auto row = first + static_cast<Eigen::Index>(k); row < model.covariance.rows() && model.covariance(row, row) > 0.0) {
+            known.push_back(row);
+            which.push_back(k);
         }
-    }
-    return strong;
+    const Eigen::MatrixXd information = model.covariance(known, known).inverse();
+    for (std::size_t k = 0; k < which.size(); ++k)
+        if (const auto& p = parameters[which[k]]; p.strength && p.value * p.value * information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) > sure * sure)
+            return true;
+    return false;
 }
 
 } // namespace excursion

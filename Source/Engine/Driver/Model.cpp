@@ -88,6 +88,9 @@ Model withEffect(Model model, const Effect& effect, const Extent& visited, std::
     const auto& values = starts.at(start);
     for (std::size_t k = 0; k < values.size(); ++k)
         component.parameters[k].value = values[k];
+    const bool listens = model.path.parameters[1].free;   // the delay is, where a pressure was measured
+    for (auto& p : component.parameters)
+        p.free = p.free && (listens || !p.heard);
     model.components.push_back(std::move(component));
     model.covariance.resize(0, 0);
     return model;

@@ -12,6 +12,7 @@ const Effect& inductancePosition();
 const Effect& eddyCurrents();
 const Effect& creep();
 const Effect& dampingVelocity();
+const Effect& ventedBox();
 const Effect& doppler();
 const Effect& coneBreakup();
 
