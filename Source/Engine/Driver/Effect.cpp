@@ -11,6 +11,8 @@ std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
     return {values};
 }
 
+std::vector<Figure> Effect::summary(const Extent&, const double*) const { return {}; }
+
 double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
 
 } // namespace excursion

@@ -57,6 +57,14 @@ struct Parameter {
     double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown or not identifiable
 };
 
+/// A number that a person knows an effect by, where its parameters are too many to be told.
+struct Figure {
+    std::string name;
+    std::string unit;
+    double value = 0.0;
+    double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown
+};
+
 /// A law is a curve a person knows the effect by: Bl(x), K(x), Le(x), Rms(v). The effect adds a
 /// difference, zero at rest, to a parameter of the base.
 struct LawInfo {
@@ -85,6 +93,9 @@ public:
 
     /// Shapes to try when nothing is known yet: parameter vectors with every strength at zero.
     virtual std::vector<std::vector<double>> starts(const Extent&) const;
+
+    /// What the parameters come to, in a few numbers (without errors, see figuresOf() in Summary.h); none where they speak for themselves.
+    virtual std::vector<Figure> summary(const Extent&, const double* parameters) const;
 
     virtual std::optional<LawInfo> law() const { return std::nullopt; }
     /// Difference that the effect adds at `argument` to the base parameter of its law.
