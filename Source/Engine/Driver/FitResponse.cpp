@@ -3,6 +3,8 @@
 
 #include "Engine/Driver/Linearize.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -186,28 +188,49 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
             best = std::move(trial);
         }
     }
-    // Twice: priors and the reach of the search are relative to where a fit starts.
+    // More than once: priors and the reach of the search are relative to where a fit starts.
     fitResponse(best, targets, {40, 1e-6});
-    const auto summary = fitResponse(best, targets, {80, 1e-8});
+    auto summary = fitResponse(best, targets, {80, 1e-8});
+    constexpr int mostRounds = 5;
+    for (int n = 0; n < mostRounds && summary.usable && summary.finalCost < 0.9 * summary.initialCost; ++n)
+        summary = fitResponse(best, targets, {80, 1e-8});
     if (summary.usable)
         model = std::move(best);
     return summary;
 }
 
-bool isSeen(const Component& component)
+bool isSeen(const Model& model, std::size_t component)
 {
     constexpr double sure = 4.0;        // standard errors, which take neighbouring points for independent
     constexpr double atBound = 0.002;   // of the range
-    bool strong = false;
-    for (const auto& p : component.parameters) {
-        if (p.strength) {
-            strong |= std::abs(p.value) > sure * p.standardError;   // never so when the standard error is not known
-        } else if (const double range = p.upper - p.lower; std::isfinite(range)) {
-            if (std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
-                return false;
-        }
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < component; ++k)
+        first += static_cast<Eigen::Index>(model.components[k].parameters.size());
+    const auto& parameters = model.components[component].parameters;
+    std::vector<Eigen::Index> shapes, strengths;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+        const auto& p = parameters[k];
+        const auto index = first + static_cast<Eigen::Index>(k);
+        if (p.strength)
+            strengths.push_back(index);
+        else if (const double range = p.upper - p.lower; std::isfinite(range) && std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
+            return false;
+        else if (model.covariance.size() > 0 && model.covariance(index, index) > 0.0)
+            shapes.push_back(index);
     }
-    return strong;
+    if (model.covariance.size() == 0)
+        return false;
+    const Eigen::LDLT<Eigen::MatrixXd> known(Eigen::MatrixXd(model.covariance(shapes, shapes)));
+    for (const auto index : strengths) {
+        double variance = model.covariance(index, index);   // NaN where it is not known
+        if (!shapes.empty()) {
+            const Eigen::VectorXd shared = model.covariance(shapes, index);
+            variance -= shared.dot(known.solve(shared));
+        }
+        if (std::abs(parameters[static_cast<std::size_t>(index - first)].value) > sure * std::sqrt(std::max(variance, 0.0)) && std::isfinite(variance))
+            return true;
+    }
+    return false;
 }
 
 } // namespace excursion

@@ -73,6 +73,8 @@ public:
     /// K and a of the straight line through log|Z| over log w in the band, and how far |Z| lies from it (rms).
     std::vector<Figure> summary(const Extent& e, const double* parameters) const override
     {
+        if (!(parameters[0] > 0.0))
+            return {{"K", "ohm s^a", 0.0}, {"a", "1", parameters[1]}, {"departure", "%", 0.0}};
         std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
         prepareFor(e, parameters, c.data());
         constexpr int points = 60;
