@@ -14,6 +14,7 @@ namespace excursion::bench {
 struct HiddenEffect {
     std::string id;
     double strength = 0.0;   ///< what the law changes over the visited range, 0.05 .. 0.6; 0: drawn, log-uniform
+    std::optional<bool> chain {};   ///< eddy currents and creep: cells of random size instead of a law; absent: drawn, 2 in 5
 };
 
 /// What is asked of a draw; what is left open is drawn from the seed.

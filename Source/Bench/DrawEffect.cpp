@@ -91,6 +91,40 @@ Creep drawCreep(double strength, double f0, double lowEdge, Random& random)
     return creep;
 }
 
+/// A chain as irons have it: one to three cells a decade at random places from well below the band to above it, each up to several times
+/// off the power law that they follow on the whole.
+EddyCurrents drawEddyChain(double exponent, double lowEdge, double highEdge, Random& random)
+{
+    EddyCurrents eddy;
+    const double low = turn * lowEdge / 30.0, high = turn * highEdge * 10.0;
+    const int count = static_cast<int>(std::ceil(std::log10(high / low) * random.uniform(1.0, 3.0)));
+    const double scatter = random.uniform(0.2, 0.7);
+    for (int n = 0; n < count; ++n) {
+        const double rate = low * std::pow(high / low, (n + random.uniform()) / count);
+        eddy.cells.push_back({std::pow(rate, exponent) * std::exp(scatter * random.normal()), rate});
+    }
+    return eddy;
+}
+
+/// Three to seven Kelvin-Voigt cells of random yields, from well below the band to above the resonance.
+Creep drawCreepChain(double strength, double f0, double lowEdge, Random& random)
+{
+    Creep creep;
+    creep.family = Creep::Family::chain;
+    const double low = turn * lowEdge * 0.05, high = turn * f0 * 10.0;
+    const int count = 3 + random.index(5);
+    const std::complex<double> s {0.0, turn * lowEdge};
+    std::complex<double> give = 0.0;
+    for (int n = 0; n < count; ++n) {
+        const double rate = low * std::pow(high / low, (n + random.uniform()) / count);
+        creep.cells.push_back({std::exp(0.5 * random.normal()), rate});
+        give += creep.cells.back().yield / (1.0 + s / rate);
+    }
+    for (auto& cell : creep.cells)
+        cell.yield *= strength / std::abs(give);
+    return creep;
+}
+
 Friction drawFriction(double strength, double springForce, double range, Random& random)
 {
     // Up to a quarter of the spring's peak force, reached within 3 to 20 % of the way
@@ -128,6 +162,13 @@ VentedBox drawBox(double strength, const Loudspeaker& speaker, double f0, Random
     if (random.chance(0.5))
         box.absorption = impedance / random.logUniform(20.0, 100.0);
     return box;
+}
+
+bool isChain(const HiddenEffect& effect, Random& random)
+{
+    constexpr double share = 0.4;
+    const bool drawn = random.chance(share);
+    return effect.chain.value_or(drawn);
 }
 
 std::vector<ConeMode> drawBreakup(double strength, double highEdge, Random& random)
@@ -172,9 +213,19 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
     }
     if (effect.id == "eddy-currents") {   // strength: its impedance against the coil's at the high edge
         const double w = turn * plan.bandHigh, exponent = random.uniform(0.45, 0.9);
-        speaker.eddyCurrents = EddyCurrents {strength * std::hypot(speaker.Re, w * speaker.Le) / std::pow(w, exponent), exponent};
-    } else if (effect.id == "creep")      // strength: change of compliance over the band
+        const double size = strength * std::hypot(speaker.Re, w * speaker.Le);
+        speaker.eddyCurrents = EddyCurrents {size / std::pow(w, exponent), exponent};
+        if (isChain(effect, random)) {
+            speaker.eddyCurrents = drawEddyChain(exponent, plan.bandLow, plan.bandHigh, random);
+            const double now = std::abs(speaker.eddyImpedance({0.0, w}));
+            for (auto& cell : speaker.eddyCurrents->cells)
+                cell.resistance *= size / now;
+        }
+    } else if (effect.id == "creep") {    // strength: change of compliance over the band
         speaker.creep = drawCreep(strength, f0, plan.bandLow, random);
+        if (isChain(effect, random))
+            speaker.creep = drawCreepChain(strength, f0, plan.bandLow, random);
+    }
     else if (effect.id == "friction")
         speaker.friction = drawFriction(strength, speaker.K * visited.displacement, visited.displacement, random);
     else if (effect.id == "coil-heating")   // strength: rise of Re in the end at the loudest level

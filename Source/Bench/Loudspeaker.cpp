@@ -29,7 +29,14 @@ double Loudspeaker::dampingAt(double v) const { return Rms * valueOf(dampingVelo
 
 std::complex<double> Loudspeaker::eddyImpedance(std::complex<double> s) const
 {
-    return eddyCurrents ? eddyCurrents->coefficient * std::pow(s, eddyCurrents->exponent) : 0.0;
+    if (!eddyCurrents)
+        return 0.0;
+    if (eddyCurrents->cells.empty())
+        return eddyCurrents->coefficient * std::pow(s, eddyCurrents->exponent);
+    std::complex<double> sum = 0.0;
+    for (const auto& cell : eddyCurrents->cells)
+        sum += cell.resistance * s / (s + cell.rate);
+    return sum;
 }
 
 std::complex<double> Loudspeaker::suspensionStiffness(std::complex<double> s) const
@@ -43,6 +50,12 @@ std::complex<double> Loudspeaker::suspensionStiffness(std::complex<double> s) co
         return K / (1.0 + creep->amount / (1.0 + s / creep->low));
     case Creep::Family::fractional:
         return K * (1.0 + creep->amount * std::pow(s / creep->low, creep->exponent));
+    case Creep::Family::chain: {
+        std::complex<double> give = 1.0;
+        for (const auto& cell : creep->cells)
+            give += cell.yield / (1.0 + s / cell.rate);
+        return K / give;
+    }
     }
     return K;
 }

@@ -12,10 +12,16 @@
 
 namespace excursion::bench {
 
-/// Semi-inductance: u = coefficient * s^exponent i, beside Re and Le.
+/// Beside Re and Le: a semi-inductance u = coefficient * s^exponent i, or, where there are cells, a chain of resistors in parallel with
+/// inductors, u = sum of resistance s/(s + rate) i.
 struct EddyCurrents {
     double coefficient = 0.0;   ///< ohm s^exponent
     double exponent = 0.6;      ///< 0.45 .. 0.9
+    struct Cell {
+        double resistance = 0.0;   ///< ohm
+        double rate = 0.0;         ///< rad/s, resistance over inductance
+    };
+    std::vector<Cell> cells {};
 };
 
 /// Linear visco-elasticity of the suspension; K is the spring without it.
@@ -23,13 +29,19 @@ struct Creep {
     enum class Family {
         logarithmic,   ///< compliance (1/K) (1 + amount ln((s + high)/(s + low)))
         standard,      ///< compliance (1/K) (1 + amount / (1 + s/low)): one Kelvin-Voigt cell
-        fractional     ///< stiffness K (1 + amount (s/low)^exponent)
+        fractional,    ///< stiffness K (1 + amount (s/low)^exponent)
+        chain          ///< compliance (1/K) (1 + sum of yield / (1 + s/rate)): Kelvin-Voigt cells in series
     };
     Family family = Family::logarithmic;
     double amount = 0.1;
     double low = 1.0;        ///< rad/s
     double high = 1000.0;    ///< rad/s
     double exponent = 0.2;   ///< 0 .. 1
+    struct Cell {
+        double yield = 0.0;   ///< its compliance over that of the spring
+        double rate = 0.0;    ///< rad/s
+    };
+    std::vector<Cell> cells {};
 };
 
 /// Dahl elements in parallel, dF/dt = stiffness v - stiffness |v| F / limit each: hysteresis that

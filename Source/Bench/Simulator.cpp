@@ -41,7 +41,14 @@ Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, do
       inductance_(speaker.inductancePosition, speaker.Le), saturation_(speaker.inductanceCurrent, 1.0),
       damping_(speaker.dampingVelocity, speaker.Rms), h_(step), resistance_(speaker.Re)
 {
-    if (const auto& eddy = speaker.eddyCurrents) {   // K s^a = s * K s^(a - 1): K s^(a - 1) i is a flux
+    if (const auto& eddy = speaker.eddyCurrents; eddy && !eddy->cells.empty()) {   // R s/(s + p) = s * R/(s + p)
+        Relaxations cells;
+        for (const auto& cell : eddy->cells) {
+            cells.rate.push_back(cell.rate);
+            cells.weight.push_back(cell.resistance);
+        }
+        eddy_ = RelaxationBank(cells, step);
+    } else if (eddy) {   // K s^a = s * K s^(a - 1): K s^(a - 1) i is a flux
         auto cells = fractionalIntegral(1.0 - eddy->exponent, lowest, highest);
         for (auto& weight : cells.weight)
             weight *= eddy->coefficient;
@@ -61,6 +68,16 @@ Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, do
             creep_ = RelaxationBank(fractionalIntegral(1.0 - creep->exponent, lowest, highest), step);
             creepScale_ = speaker.K * creep->amount * std::pow(creep->low, -creep->exponent);
             break;
+        case Creep::Family::chain: {
+            Relaxations cells;
+            for (const auto& cell : creep->cells) {
+                cells.rate.push_back(cell.rate);
+                cells.weight.push_back(cell.yield * cell.rate);
+            }
+            creep_ = RelaxationBank(cells, step);
+            creepScale_ = 1.0 / speaker.K;
+            break;
+        }
         }
     }
     if (speaker.friction) {

@@ -37,13 +37,20 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
         return curveJson(speaker.inductanceCurrent);
     if (id == "damping-velocity")
         return curveJson(speaker.dampingVelocity);
-    if (id == "eddy-currents")
-        return {{"coefficient", speaker.eddyCurrents->coefficient}, {"exponent", speaker.eddyCurrents->exponent}};
+    if (id == "eddy-currents") {
+        Json json {{"coefficient", speaker.eddyCurrents->coefficient}, {"exponent", speaker.eddyCurrents->exponent}};
+        for (const auto& cell : speaker.eddyCurrents->cells)
+            json["cells"].push_back({{"resistance", cell.resistance}, {"rate", cell.rate}});
+        return json;
+    }
     if (id == "creep") {
-        static constexpr const char* families[] {"logarithmic", "standard", "fractional"};
+        static constexpr const char* families[] {"logarithmic", "standard", "fractional", "chain"};
         const auto& creep = *speaker.creep;
-        return {{"family", families[static_cast<int>(creep.family)]}, {"amount", creep.amount}, {"low", creep.low},
-                {"high", creep.high}, {"exponent", creep.exponent}};
+        Json json {{"family", families[static_cast<int>(creep.family)]}, {"amount", creep.amount}, {"low", creep.low},
+                   {"high", creep.high}, {"exponent", creep.exponent}};
+        for (const auto& cell : creep.cells)
+            json["cells"].push_back({{"yield", cell.yield}, {"rate", cell.rate}});
+        return json;
     }
     if (id == "friction") {
         Json elements = Json::array();

@@ -4,6 +4,7 @@
 #include "Cli/Terminal.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Document/JsonText.h"
+#include "Engine/Driver/Summary.h"
 #include "Plots/Engineering.h"
 
 #include <algorithm>
@@ -32,6 +33,15 @@ void addRows(Rows& rows, const std::vector<Parameter>& parameters)
     }
 }
 
+void addRows(Rows& rows, const std::vector<Figure>& figures)
+{
+    for (const auto& figure : figures) {
+        const int decimals = decimalsFor(figure.value, figure.standardError);
+        rows.push_back({figure.name, fixed(figure.value, decimals), std::isfinite(figure.standardError) ? fixed(figure.standardError, decimals) : "-",
+                        figure.unit, ""});
+    }
+}
+
 void printLaws(const Model& model, Terminal& terminal)
 {
     Rows rows;
@@ -54,9 +64,13 @@ void printLaws(const Model& model, Terminal& terminal)
 void printParameters(const Model& model, Terminal& terminal)
 {
     Rows rows;
-    for (const auto& component : model.components)
-        if (!component.effect->law())   // a law is better read as the curve than as the coefficients of its expansion
+    for (std::size_t k = 0; k < model.components.size(); ++k) {
+        const auto& component = model.components[k];
+        if (const auto figures = figuresOf(model, k); !figures.empty())
+            addRows(rows, figures);
+        else if (!component.effect->law())   // a law is better read as the curve than as the coefficients of its expansion
             addRows(rows, component.parameters);
+    }
     addRows(rows, model.path.parameters);
     const bool held = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.back().empty(); });
     terminal.table({"parameter", "value", "std error", "unit", held ? "remark" : ""}, rows);
@@ -108,6 +122,11 @@ nlohmann::ordered_json modelJson(const Model& model, const Comparison& compariso
     for (const auto& component : model.components)
         add(component.effect->id(), component.parameters);
     add(model.path.effect->id(), model.path.parameters);
+    document["summary"] = nlohmann::ordered_json::array();
+    for (std::size_t k = 0; k < model.components.size(); ++k)
+        for (const auto& figure : figuresOf(model, k))
+            document["summary"].push_back({{"of", model.components[k].effect->id()}, {"name", figure.name}, {"value", figure.value},
+                                           {"unit", figure.unit}, {"standardError", numberOrNull(figure.standardError)}});
     document["fit"] = {{"converged", fit.converged}, {"iterations", fit.iterations}, {"reason", fit.reason}, {"substeps", fit.substeps}};
     return document;
 }

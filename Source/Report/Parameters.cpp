@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/Summary.h"
 #include "Plots/Engineering.h"
 #include "Plots/Words.h"
 #include "Report/Sections.h"
@@ -21,6 +22,16 @@ void addRows(std::vector<std::vector<Page::Cell>>& rows, const std::string& of, 
     }
 }
 
+/// What the parameters of one component come to, ahead of them.
+void addRows(std::vector<std::vector<Page::Cell>>& rows, const std::string& of, const std::vector<Figure>& figures)
+{
+    for (std::size_t k = 0; k < figures.size(); ++k) {
+        const auto& f = figures[k];
+        rows.push_back({k == 0 ? of : std::string(), f.name, Page::figure(withError(f.value, f.standardError, f.unit)), Page::figure(""),
+                        "summary of the spectrum"});
+    }
+}
+
 } // namespace
 
 void addParameters(Page& page, const LadderFile& file)
@@ -31,6 +42,7 @@ void addParameters(Page& page, const LadderFile& file)
     std::vector<std::vector<Page::Cell>> rows;
     for (std::size_t k = 0; k < model.components.size(); ++k) {
         const auto& component = model.components[k];
+        addRows(rows, component.effect->title(), figuresOf(model, k));
         const auto* start = k == 0 ? &first.base() : first.find(component.effect->id());
         addRows(rows, component.effect->title(), component.parameters, start ? &start->parameters : nullptr);
     }

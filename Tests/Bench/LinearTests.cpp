@@ -58,6 +58,16 @@ TEST_CASE("linear effects are their closed forms", "[bench][slow]")
             CHECK(againstClosedForm(speaker, setup) < -100.0);
         }
     }
+    SECTION("eddy currents in a chain of cells")
+    {
+        speaker.eddyCurrents = EddyCurrents {0.0, 0.6, {{0.3, 900.0}, {1.1, 5000.0}, {2.5, 40000.0}}};
+        CHECK(againstClosedForm(speaker, setup) < -100.0);
+    }
+    SECTION("creep in a chain of cells")
+    {
+        speaker.creep = Creep {Creep::Family::chain, 0.0, 0.0, 0.0, 0.0, {{0.1, 12.0}, {0.2, 90.0}, {0.05, 1500.0}}};
+        CHECK(againstClosedForm(speaker, setup) < -100.0);
+    }
     SECTION("logarithmic creep")
     {
         speaker.creep = Creep {Creep::Family::logarithmic, 0.08, 6.0, 2000.0, 0.0};

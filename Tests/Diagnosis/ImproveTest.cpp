@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <stop_token>
 
@@ -125,6 +126,36 @@ TEST_CASE("One hidden effect is named, added, and the error falls to the noise",
     CHECK_FALSE(first.ranking.front().reason.empty());
     CHECK(ladder.rungs.front().comparison.chi > 10.0 * ladder.rungs.back().comparison.chi);
     requireAtTheNoise(ladder.rungs.back().comparison);
+}
+
+TEST_CASE("Eddy currents and creep that follow no law are found, and nothing beside them", "[improve][slow]")
+{
+    const auto id = GENERATE(as<std::string> {}, "eddy-currents", "creep");
+    INFO(id);
+    const auto ladder = improve(take({{id, 0.25, true}}));
+    CHECK(added(ladder) == std::vector {id});
+    CHECK(ladder.verdict == Verdict::complete);
+    requireAtTheNoise(ladder.rungs.back().comparison);
+}
+
+TEST_CASE("Random chains of cells are explained at the noise in nineteen of twenty takes", "[.study]")
+{
+    const auto id = GENERATE(as<std::string> {}, "eddy-currents", "creep");
+    int alone = 0, atNoise = 0;
+    constexpr int takes = 20;
+    for (int seed = 1000; seed < 1000 + takes; ++seed) {
+        bench::DrawOptions options;
+        options.seconds = 3.0;
+        options.hidden = {{id, 0.0, true}};
+        const auto drawn = bench::draw(static_cast<std::uint64_t>(seed), options);
+        const auto ladder = improve(bench::measure(drawn.speaker, drawn.setup));
+        alone += added(ladder) == std::vector {id};
+        const auto& channels = ladder.rungs.back().comparison.channels;
+        atNoise += std::all_of(channels.begin(), channels.end(), [](const auto& c) { return c.total.chi < 2.0; });
+    }
+    WARN(id << ": alone " << alone << ", within 3 dB of the noise " << atNoise << " of " << takes);
+    CHECK(alone >= 19);
+    CHECK(atNoise >= 19);
 }
 
 TEST_CASE("Two hidden effects are added one after the other", "[improve][slow]")

@@ -2,7 +2,9 @@
 // The linear part of a model against the closed forms that any textbook has.
 #include "Driver/EffectBench.h"
 
+#include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/Summary.h"
 #include "Engine/Error.h"
 
 #include <catch2/catch.hpp>
@@ -181,6 +183,55 @@ TEST_CASE("The ladder of the eddy currents is K s^a within its accuracy over its
             INFO("a " << a << ", up to " << high << " Hz");
             CHECK(worst < accuracy);
         }
+}
+
+TEST_CASE("The eddy currents follow a chain of few resistors and inductors that is far from a power law", "[effects]")
+{
+    // Cells well inside the band, off any power law by 40 %; the ladder finds them from the impedance of the blocked coil.
+    struct Cell {
+        double resistance, inductance;
+    };
+    const Cell chain[] {{0.5, 0.4e-3}, {2.0, 0.3e-3}, {1.5, 0.05e-3}};
+    std::vector<double> frequency;
+    for (double f = 15.0; f <= 8000.0; f *= 1.04)
+        frequency.push_back(f);
+    ResponseTarget target;
+    target.impedance = true;
+    target.frequency = frequency;
+    for (const double f : frequency) {
+        const Complex s(0.0, 2.0 * std::numbers::pi * f);
+        Complex Z = Re + s * Le;
+        for (const auto& cell : chain)
+            Z += cell.resistance * s * cell.inductance / (cell.resistance + s * cell.inductance);
+        target.value.push_back(Z);
+        target.deviation.push_back(1e-4 * std::abs(Z));
+    }
+    auto model = midbass();
+    model.baseParameter("Bl").value = 1e-6;
+    for (const char* held : {"Bl", "m", "Rms", "K"})
+        model.baseParameter(held).free = false;
+    REQUIRE(addByResponse(model, effectNamed("eddy-currents"), {target}).usable);
+    INFO("error " << responseErrorDb(model, target) << " dB");
+    CHECK(responseErrorDb(model, target) < -65.0);
+    const auto figures = figuresOf(model, 1);
+    REQUIRE(figures.size() == 3);
+    CHECK(figures[2].value > 5.0);   // percent off a power law
+    for (const auto& figure : figures)
+        CHECK(figure.standardError < 0.1 * figure.value);
+}
+
+TEST_CASE("What an effect sums up to is its law where nothing departs from it", "[effects]")
+{
+    auto model = withEffect(midbass(), effectNamed("eddy-currents"), someExtent(1.0));
+    model.components.back().parameters[0].value = 0.05;
+    model.components.back().parameters[1].value = 0.6;
+    const auto figures = figuresOf(model, 1);
+    REQUIRE(figures.size() == 3);
+    CHECK(figures[0].value == Approx(0.05).epsilon(1e-3));
+    CHECK(figures[1].value == Approx(0.6).epsilon(1e-3));
+    CHECK(figures[2].value < 0.05);
+    CHECK(std::isnan(figures[0].standardError));
+    CHECK(figuresOf(model, 0).empty());
 }
 
 TEST_CASE("Creep is a sum of relaxing springs, stiffer the faster it is stretched", "[effects]")

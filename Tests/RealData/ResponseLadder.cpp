@@ -3,6 +3,7 @@
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/Summary.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Measurement/Scratch.h"
 
@@ -38,6 +39,17 @@ void checkParameters(const Model& model)
     }
 }
 
+/// The exponent that others found, who had a power law, within two standard errors of that of the spectrum.
+void checkExponent(const Model& model, double others)
+{
+    const auto figures = figuresOf(model, 1);
+    REQUIRE(figures.size() == 3);
+    REQUIRE(figures[1].name == "a");
+    INFO("a " << figures[1].value << " +- " << figures[1].standardError);
+    CHECK(figures[1].standardError < 0.1);
+    CHECK(std::abs(figures[1].value - others) < 2.0 * figures[1].standardError);
+}
+
 /// rms of |Z - Z_measured|/|Z_measured| at every measured frequency below `highest`, counted again without the engine's grid.
 double plainError(const Model& model, const Spectra& take, double highest)
 {
@@ -65,8 +77,8 @@ TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow
     REQUIRE(ladder.rungs.size() >= 2);
     CHECK(ladder.rungs[1].added == "eddy-currents");
     CHECK(percent(ladder.rungs[0]) == Approx(20.0).margin(2.0));
-    CHECK(percent(ladder.rungs[1]) <= 5.1);
-    CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 21000.0) <= 5.1);
+    CHECK(percent(ladder.rungs[1]) <= 4.3);
+    CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 21000.0) <= 4.4);
     CHECK(percent(ladder.rungs[1], Quantity::velocity) < 0.75 * percent(ladder.rungs[0], Quantity::velocity));
     // What others found with this driver: Re 4.92 ohm, Bl 10.8 N/A, m 11 g, resonance 161 Hz, exponent 0.74.
     const auto& model = ladder.rungs[1].model;
@@ -74,7 +86,7 @@ TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow
     CHECK(model.baseParameter("Re").value == Approx(4.92).epsilon(0.05));
     CHECK(model.baseParameter("Bl").value == Approx(10.8).epsilon(0.05));
     CHECK(model.baseParameter("m").value == Approx(0.011).epsilon(0.05));
-    CHECK(model.find("eddy-currents")->parameters[1].value == Approx(0.74).margin(0.05));
+    checkExponent(ladder.rungs[1].model, 0.74);
     CHECK(model.baseParameter("m").free);
     CHECK_THAT(ladder.sentence, Catch::Contains("The velocity counts up to"));
 }
@@ -92,12 +104,13 @@ TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its 
         REQUIRE(ladder.rungs.size() >= 2);
         CHECK(ladder.rungs[1].added == "eddy-currents");
         CHECK(percent(ladder.rungs[0]) == Approx(21.0).margin(3.0));
-        CHECK(std::round(10.0 * percent(ladder.rungs[1])) <= 39.0);   // 3.9 % to the digit in which it is published
-        CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 20001.0) <= 3.95);
+        CHECK(percent(ladder.rungs[1]) <= 2.8);
+        CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 20001.0) <= 2.8);
+        CHECK(percent(ladder.rungs.back()) <= 1.5);   // with creep, which follows
         const auto& model = ladder.rungs[1].model;
         checkParameters(model);
         CHECK(model.baseParameter("Re").value == Approx(5.6).epsilon(0.05));
-        CHECK(model.find("eddy-currents")->parameters[1].value == Approx(0.68).margin(0.03));
+        checkExponent(ladder.model(), 0.68);
         resonance.push_back(std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / 6.2831853);
         // One impedance does not show the mass, and the ladder says so.
         CHECK_FALSE(model.baseParameter("m").free);
@@ -118,8 +131,8 @@ TEST_CASE("A designer's impedance files end in a sane verdict", "[slow]")
         bool onePeak;
         double left;   // percent, with eddy currents
     };
-    for (const auto& [file, onePeak, left] : {Expected {"Morel_CAW938_caw938.zma", true, 4.1}, Expected {"Morel_CAW938_sb26adc.zma", true, 1.5},
-                                              Expected {"Sealed_SIG120_DX25TG59_Woofer.zma", true, 2.7},
+    for (const auto& [file, onePeak, left] : {Expected {"Morel_CAW938_caw938.zma", true, 1.95}, Expected {"Morel_CAW938_sb26adc.zma", true, 0.95},
+                                              Expected {"Sealed_SIG120_DX25TG59_Woofer.zma", true, 1.9},
                                               Expected {"SB15NRX2C30-4_SB26STCN-4_Woofer.zma", false, 100.0}}) {
         INFO(file);
         const auto ladder = improve(readTake(folder / file));

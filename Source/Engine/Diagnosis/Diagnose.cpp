@@ -233,7 +233,7 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
             entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(entry.model, target);
         entry.predictedChi = entry.confirmedChi;
         // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be sure of them.
-        entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model);
+        entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model, entry.model.components.size() - 1);
         entry.reason = reasonFor(*effect, entry.model, before, entry.confirmedErrorDb);
         diagnosis.ranking.push_back(std::move(entry));
     }

@@ -68,13 +68,20 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
         return curve.info.name + " comes out " + number(std::round(low) + 0.0, "%+.0f") + " % at " + number(-end, "%.3g") + " and "
                + number(std::round(high) + 0.0, "%+.0f") + " % at " + number(end, "%+.3g") + " " + unit;
     }
-    if (const auto* component = model.find(effect.id())) {
-        std::string text;
+    const auto* component = model.find(effect.id());
+    if (!component)
+        return "";
+    std::vector<double> values;
+    for (const auto& p : component->parameters)
+        values.push_back(p.value);
+    auto figures = effect.summary(component->extent, values.data());
+    if (figures.empty())
         for (const auto& p : component->parameters)
-            text += (text.empty() ? "" : ", ") + p.name + " = " + number(p.value, "%.3g") + (p.unit == "1" ? "" : " " + p.unit);
-        return "it comes out with " + text;
-    }
-    return "";
+            figures.push_back({p.name, p.unit, p.value});
+    std::string text;
+    for (const auto& f : figures)
+        text += (text.empty() ? "" : ", ") + f.name + " = " + number(f.value, "%.3g") + (f.unit == "1" ? "" : " " + f.unit);
+    return "it comes out with " + text;
 }
 
 } // namespace

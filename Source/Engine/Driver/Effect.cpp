@@ -15,6 +15,8 @@ std::vector<double> Effect::restarts(const Extent&, const std::vector<double>&) 
 
 bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::vector<Parameter>&) const { return true; }
 
+std::vector<Figure> Effect::summary(const Extent&, const double*) const { return {}; }
+
 double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
 
 } // namespace excursion

@@ -69,6 +69,14 @@ struct Parameter {
     double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown or not identifiable
 };
 
+/// A number that a person knows an effect by, where its parameters are too many to be told.
+struct Figure {
+    std::string name;
+    std::string unit;
+    double value = 0.0;
+    double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown
+};
+
 /// A law is a curve a person knows the effect by: Bl(x), K(x), Le(x), Rms(v). The effect adds a
 /// difference, zero at rest, to a parameter of the base.
 struct LawInfo {
@@ -106,6 +114,9 @@ public:
     /// Whether such values can be the effect's own, beside a base with those parameters. If not, its shape has been bent to stand for something
     /// else, and it is not named.
     virtual bool plausible(const Extent&, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const;
+
+    /// What the parameters come to, in a few numbers (without errors, see figuresOf() in Summary.h); none where they speak for themselves.
+    virtual std::vector<Figure> summary(const Extent&, const double* parameters) const;
 
     virtual std::optional<LawInfo> law() const { return std::nullopt; }
     /// Difference that the effect adds at `argument` to the base parameter of its law.

@@ -3,6 +3,8 @@
 
 #include "Engine/Driver/Linearize.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -214,41 +216,49 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
     if (ways.empty())
         return {};
     auto best = std::move(std::min_element(ways.begin(), ways.end(), cheaper)->model);
-    // Twice: priors and the reach of the search are relative to where a fit starts.
+    // More than once: priors and the reach of the search are relative to where a fit starts.
     fitResponse(best, targets, {40, 1e-6});
-    const auto summary = fitResponse(best, targets, {80, 1e-8});
+    auto summary = fitResponse(best, targets, {80, 1e-8});
+    constexpr int mostRounds = 5;
+    for (int n = 0; n < mostRounds && summary.usable && summary.finalCost < 0.9 * summary.initialCost; ++n)
+        summary = fitResponse(best, targets, {80, 1e-8});
     if (summary.usable)
         model = std::move(best);
     return summary;
 }
 
-bool isSeen(const Model& model)
+bool isSeen(const Model& model, std::size_t component)
 {
     constexpr double sure = 4.0;        // standard errors, which take neighbouring points for independent
     constexpr double atBound = 0.002;   // of the range
-    const auto& newest = model.components.back();
-    const auto& parameters = newest.parameters;
-    if (!newest.effect->plausible(newest.extent, parameters, model.base().parameters))
-        return false;
-    for (const auto& p : parameters)
-        if (const double range = p.upper - p.lower; !p.strength && std::isfinite(range)
-            && std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
-            return false;
-    // Whether a strength differs from zero is asked at the shape that was found: at zero there is none.
     Eigen::Index first = 0;
-    for (std::size_t k = 0; k + 1 < model.components.size(); ++k)
+    for (std::size_t k = 0; k < component; ++k)
         first += static_cast<Eigen::Index>(model.components[k].parameters.size());
-    std::vector<Eigen::Index> known;
-    std::vector<std::size_t> which;
-    for (std::size_t k = 0; k < parameters.size(); ++k)
-        if (const auto row = first + static_cast<Eigen::Index>(k); row < model.covariance.rows() && model.covariance(row, row) > 0.0) {
-            known.push_back(row);
-            which.push_back(k);
+    const auto& parameters = model.components[component].parameters;
+    std::vector<Eigen::Index> shapes, strengths;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+        const auto& p = parameters[k];
+        const auto index = first + static_cast<Eigen::Index>(k);
+        if (p.strength)
+            strengths.push_back(index);
+        else if (const double range = p.upper - p.lower; std::isfinite(range) && std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
+            return false;
+        else if (model.covariance.size() > 0 && model.covariance(index, index) > 0.0)
+            shapes.push_back(index);
+    }
+    const auto& newest = model.components[component];
+    if (model.covariance.size() == 0 || !newest.effect->plausible(newest.extent, parameters, model.base().parameters))
+        return false;
+    const Eigen::LDLT<Eigen::MatrixXd> known(Eigen::MatrixXd(model.covariance(shapes, shapes)));
+    for (const auto index : strengths) {
+        double variance = model.covariance(index, index);   // NaN where it is not known
+        if (!shapes.empty()) {
+            const Eigen::VectorXd shared = model.covariance(shapes, index);
+            variance -= shared.dot(known.solve(shared));
         }
-    const Eigen::MatrixXd information = model.covariance(known, known).inverse();
-    for (std::size_t k = 0; k < which.size(); ++k)
-        if (const auto& p = parameters[which[k]]; p.strength && p.value * p.value * information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) > sure * sure)
+        if (std::abs(parameters[static_cast<std::size_t>(index - first)].value) > sure * std::sqrt(std::max(variance, 0.0)) && std::isfinite(variance))
             return true;
+    }
     return false;
 }
 

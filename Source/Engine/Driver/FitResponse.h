@@ -58,9 +58,10 @@ LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<Respo
 /// The same for a linear effect that the model has already, as its newest: its present values do not count.
 LeastSquaresSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 
-/// Whether a fit is sure that the newest effect is there: one of its strengths exceeds four standard errors at the shape that was found, and no
-/// parameter of its shape was driven to a bound, or all of them to implausible values, where they would stand for something else.
-bool isSeen(const Model&);
+/// Whether a fit is sure that a component is there: one of its strengths exceeds four standard errors, and no parameter of its shape was
+/// driven to a bound, or all of them to implausible values, where they would stand for something else. The errors are those for the shape that was found: data that shows that there is a spectrum need
+/// not show how it is distributed, nor what it comes to far beyond the band.
+bool isSeen(const Model&, std::size_t component);
 
 /// A linear base model with start values that need no tuning, from a micro speaker to a subwoofer: candidates over the
 /// resonance frequency, its quality and the electrical damping are fitted and the best is kept. Parameters that the channels cannot

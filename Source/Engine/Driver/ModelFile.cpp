@@ -6,6 +6,7 @@
 #include "Engine/Driver/Curve.h"
 #include "Engine/Error.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace excursion {
@@ -82,6 +83,9 @@ Extent extentFrom(const JsonField& field)
     return e;
 }
 
+/// What a file may leave out at the end: departures from a shape, which are zero unless data says otherwise.
+bool mayLack(const Parameter& p) { return !p.strength && std::isfinite(p.prior); }
+
 /// Reads values into `known`, which has the names, units and bounds.
 std::vector<Parameter> parametersFrom(const JsonField& field, std::vector<Parameter> known)
 {
@@ -90,6 +94,11 @@ std::vector<Parameter> parametersFrom(const JsonField& field, std::vector<Parame
         names += (names.empty() ? "" : ", ") + p.name;
     const auto items = field.items();
     for (std::size_t k = 0; k < std::max(items.size(), known.size()); ++k) {
+        if (k >= items.size() && std::all_of(known.begin() + static_cast<std::ptrdiff_t>(k), known.end(), mayLack)) {
+            for (; k < known.size(); ++k)
+                known[k].value = 0.0;
+            break;
+        }
         if (k >= items.size())
             throw Error(Error::Kind::input, "'" + field.source() + "': field '" + field.path() + "' lacks the parameter '"
                                                 + known[k].name + "'; expected are, in this order, " + names + ".");

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
+#include "Engine/Driver/RelaxationSpectrum.h"
+
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace excursion {
@@ -10,10 +13,11 @@ namespace {
 
 /// A viscoelastic suspension is a spring with relaxing ones beside it (generalized Maxwell body):
 ///     F = K x + sum_k K_k (x - y_k),   dy_k/dt = 2 pi f_k (x - y_k),
-/// so that the stiffness rises from K at rest to K + S in fast motion, S = sum K_k. The relaxation
-/// frequencies f_k lie evenly on a logarithmic axis, over `width` decades around 10^centre Hz, and K_k grows like f_k^tilt. A wide
+/// which any linear suspension with positive relaxations is, a chain of Kelvin-Voigt cells too. Beforehand the relaxation frequencies f_k lie
+/// evenly on a logarithmic axis, over `width` decades around 10^centre Hz, and K_k grows like f_k^tilt, sum K_k = S. A wide
 /// even band is the logarithmic creep of Knudsen and Jensen (J. Audio Eng. Soc. 41, 1993), a wide tilted one a fractional
-/// (spring-pot) suspension, a narrow one the three-parameter solid.
+/// (spring-pot) suspension, a narrow one the three-parameter solid. From there f_k and K_k depart as far as the data asks
+/// (RelaxationSpectrum.h).
 class Creep final : public EffectOf<Creep> {
 public:
     std::string id() const override { return "creep"; }
@@ -52,12 +56,33 @@ public:
         tilt.name = "tilt";
         tilt.unit = "1";
         tilt.prior = 0.5;
-        return {strength, centre, width, tilt};
+        std::vector<Parameter> result {strength, centre, width, tilt};
+        for (auto& p : spectrum::parameters())
+            result.push_back(std::move(p));
+        return result;
     }
     std::vector<std::vector<double>> starts(const Extent& e) const override
     {
         const double low = std::log10(e.lowFrequency);
-        return {{0.0, low, 3.0, 0.0}, {0.0, low + 0.3, 0.5, 0.0}, {0.0, low - 0.5, 0.5, 0.0}};
+        std::vector<std::vector<double>> result {{0.0, low, 3.0, 0.0}, {0.0, low + 0.3, 0.5, 0.0}, {0.0, low - 0.5, 0.5, 0.0}};
+        for (auto& start : result)
+            start.resize(shape + spectrum::departures, 0.0);
+        return result;
+    }
+
+    /// By how much the stiffness rises over the lowest decade of the band: the rate of creep.
+    std::vector<Figure> summary(const Extent& e, const double* parameters) const override
+    {
+        std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
+        prepareFor(e, parameters, c.data());
+        const auto stiffness = [&](double frequency) {
+            const std::complex<double> s {0.0, 2.0 * std::numbers::pi * frequency};
+            std::complex<double> sum = 0.0;
+            for (int k = 0; k < cells; ++k)
+                sum += c[static_cast<std::size_t>(2 * k)] * s / (s + c[static_cast<std::size_t>(2 * k + 1)]);
+            return sum.real();
+        };
+        return {{"creep rate", "N/m per decade", stiffness(10.0 * e.lowFrequency) - stiffness(e.lowFrequency)}};
     }
 
     int memorySize(const Extent&) const override { return cells; }
@@ -75,8 +100,11 @@ public:
             c[2 * k + 1] = 2.0 * std::numbers::pi * exp(std::numbers::ln10 * p[1] + logarithm);
             sum += c[2 * k];
         }
-        for (int k = 0; k < cells; ++k)
-            c[2 * k] *= p[0] / sum;
+        for (int k = 0; k < cells; ++k) {
+            const auto departs = spectrum::departure(p + shape, k);
+            c[2 * k] *= p[0] / sum * departs.weight;
+            c[2 * k + 1] *= departs.rate;
+        }
     }
 
     template <class T>
@@ -92,7 +120,8 @@ public:
     }
 
 private:
-    static constexpr int cells = 8;   // over five decades: a ripple below a thousandth of S
+    static constexpr int shape = 4;                // parameters ahead of the departures
+    static constexpr int cells = spectrum::cells;   // over five decades: a ripple below a thousandth of S
 };
 
 } // namespace
