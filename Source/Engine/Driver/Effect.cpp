@@ -11,6 +11,12 @@ std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
     return {values};
 }
 
+std::string Effect::sizedBy() const
+{
+    const auto info = law();
+    return info ? info->base : "";
+}
+
 double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
 
 } // namespace excursion

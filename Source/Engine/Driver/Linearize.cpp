@@ -13,38 +13,18 @@
 namespace excursion {
 namespace {
 
-/// A state so close to rest that only the linear part speaks, as curved laws enter in second order: for each of i, x and v a small share
-/// of where a law holds. What is linear does not mind the size.
-std::vector<double> nearRest(const Model& model, std::size_t order)
-{
-    constexpr double share = 1e-9;
-    std::vector<double> state(order, share);
-    bool curved = false;
-    for (const auto& component : model.components) {
-        if (component.effect->linear())
-            continue;
-        const double reach[] {component.extent.current, component.extent.displacement, component.extent.velocity};
-        for (std::size_t j = 0; j < 3; ++j)
-            state[j] = share * (curved ? std::min(reach[j], state[j] / share) : reach[j]);
-        curved = true;
-    }
-    return state;
-}
-
+/// The rates of a linear model at every unit state, and under a unit input.
 template <class T>
 void columns(const Model& model, const std::vector<T>& parameters, std::vector<std::vector<T>>& result)
 {
     const Dynamics<T> dynamics(model, parameters);
     const auto n = static_cast<std::size_t>(dynamics.order());
-    const auto small = nearRest(model, n);
     result.assign(n + 1, std::vector<T>(n, T(0.0)));
     for (std::size_t j = 0; j <= n; ++j) {
         std::vector<T> z(n, T(0.0));
         if (j < n)
-            z[j] = T(small[j]);
+            z[j] = T(1.0);
         dynamics.rates(z.data(), T(j < n ? 0.0 : 1.0), result[j].data());
-        for (auto& entry : result[j])
-            entry = entry * (j < n ? 1.0 / small[j] : 1.0);
     }
 }
 
@@ -68,7 +48,10 @@ std::vector<Entry> nonzero(const Linearization& linear)
 
 } // namespace
 
-Linearization linearize(const Model& model, bool withGradient)
+namespace {
+
+/// Of a model that is linear.
+Linearization linearForm(const Model& model, bool withGradient)
 {
     const auto theta = parameterVector(model);
     std::vector<std::vector<double>> plain;
@@ -101,6 +84,50 @@ Linearization linearize(const Model& model, bool withGradient)
                     dA(row, column) = derivative(static_cast<std::size_t>(column));
                 result.dB[static_cast<std::size_t>(k)][row] = derivative(static_cast<std::size_t>(n));
             }
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+Linearization linearize(const Model& model, bool withGradient)
+{
+    // Places of the linear part's states and parameters among those of the whole.
+    std::vector<Eigen::Index> states {0, 1, 2}, parameters;
+    Eigen::Index n = 3, count = 0;
+    for (const auto& component : model.components) {
+        const bool linear = component.effect->linear();
+        for (int k = component.effect->memorySize(component.extent); k > 0; --k, ++n)
+            if (linear)
+                states.push_back(n);
+        for (std::size_t k = 0; k < component.parameters.size(); ++k, ++count)
+            if (linear)
+                parameters.push_back(count);
+    }
+    for (std::size_t k = 0; k < model.path.size(); ++k)
+        parameters.push_back(count++);
+    const auto part = linearForm(linearPart(model), withGradient);
+    if (static_cast<Eigen::Index>(states.size()) == n && static_cast<Eigen::Index>(parameters.size()) == count)
+        return part;
+
+    const auto placed = [&](const Eigen::MatrixXd& A) {
+        Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n, A.cols() == 1 ? 1 : n);
+        if (A.cols() == 1)
+            whole(states, 0) = A;
+        else
+            whole(states, states) = A;
+        return whole;
+    };
+    Linearization result;
+    result.A = placed(part.A);
+    result.B = placed(part.B);
+    if (withGradient) {
+        result.dA.assign(static_cast<std::size_t>(count), Eigen::MatrixXd::Zero(n, n));
+        result.dB.assign(static_cast<std::size_t>(count), Eigen::VectorXd::Zero(n));
+        for (std::size_t k = 0; k < parameters.size(); ++k) {
+            result.dA[static_cast<std::size_t>(parameters[k])] = placed(part.dA[k]);
+            result.dB[static_cast<std::size_t>(parameters[k])] = placed(part.dB[k]);
         }
     }
     return result;

@@ -12,5 +12,8 @@ const Effect& inductancePosition();
 const Effect& eddyCurrents();
 const Effect& creep();
 const Effect& dampingVelocity();
+const Effect& inductanceCurrent();
+const Effect& friction();
+const Effect& coilHeating();
 
 } // namespace excursion
