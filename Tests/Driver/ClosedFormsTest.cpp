@@ -28,12 +28,12 @@ double lossOfFriction(double frequency, double X, double limit, double reach)
     alone.extent.velocity = 2.0 * std::numbers::pi * frequency * X;
     alone.parameters = {limit, reach, 0.0};
     alone.prepare();
-    constexpr int steps = 20000;
+    constexpr int steps = 8000, cycles = 16;
     auto memory = alone.rest();
     std::vector<double> rate(memory.size()), later(memory.size()), middle(memory.size());
     const double w = 2.0 * std::numbers::pi * frequency, h = 1.0 / (frequency * steps);
     double work = 0.0;
-    for (int n = 0; n < 3 * steps; ++n) {
+    for (int n = 0; n < cycles * steps; ++n) {
         const auto at = [&](double t, const std::vector<double>& m, std::vector<double>& out) {
             return alone.at(0.0, X * std::cos(w * t), -w * X * std::sin(w * t), m, &out);
         };
@@ -41,7 +41,7 @@ double lossOfFriction(double frequency, double X, double limit, double reach)
         for (std::size_t k = 0; k < memory.size(); ++k)
             middle[k] = memory[k] + 0.5 * h * rate[k];
         const auto sum = at((n + 0.5) * h, middle, later);
-        if (n >= 2 * steps)
+        if (n >= (cycles - 1) * steps)
             work += h * sum.force * w * X * std::sin(w * (n + 0.5) * h);
         for (std::size_t k = 0; k < memory.size(); ++k)
             memory[k] += h * later[k];
