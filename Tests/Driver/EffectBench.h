@@ -21,16 +21,23 @@ inline Extent someExtent(double scale)
     extent.lowFrequency = 15.0;
     extent.highFrequency = 8000.0;
     extent.scale = scale;
+    extent.duration = 0.1;   // slow memories have settled within a second
     return extent;
 }
 
 /// The size of the parameter that the effect bends or stands beside: that of a midbass.
 inline double someScale(const Effect& effect)
 {
-    const auto law = effect.law();
-    if (!law)
+    const auto base = effect.sizedBy();
+    if (base.empty())
         return effect.electrical() || !effect.felt() ? 0.02 : 1800.0;
-    return law->base == "Bl" ? 5.0 : law->base == "K" ? 1800.0 : law->base == "Le" ? 3e-4 : 0.8;
+    return base == "Re" ? 3.3 : base == "Bl" ? 5.0 : base == "K" ? 1800.0 : base == "Le" ? 3e-4 : 0.8;
+}
+
+/// What makes a strength strong: a share of what is plausible, where the effect says what that is, else of its scale.
+inline double strengthOf(const Effect& effect, const Parameter& p, const Extent& extent, double share)
+{
+    return share * (effect.law() || !std::isfinite(p.prior) ? extent.scale : p.prior);
 }
 
 /// One effect on its own, with parameters that make it strong, asked at any state.
@@ -40,7 +47,7 @@ struct Alone {
         double sign = 1.0;
         for (const auto& p : effect.parameters(extent)) {
             const double strength = p.lower == 0.0 ? 0.3 : 0.1 * (sign *= -1.0);
-            parameters.push_back(p.strength ? strength * extent.scale : p.value);
+            parameters.push_back(p.strength ? strengthOf(effect, p, extent, strength) : p.value);
         }
         prepare();
     }

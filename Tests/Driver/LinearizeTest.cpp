@@ -44,7 +44,8 @@ Model allAtWork()
         double sign = 1.0;
         for (auto& p : component.parameters)
             if (p.strength)
-                p.value = effect->law() ? 0.1 * (sign *= -1.0) * component.extent.scale : someScale(*effect);
+                p.value = effect->law() ? 0.1 * (sign *= -1.0) * component.extent.scale
+                          : std::isfinite(p.prior) ? strengthOf(*effect, p, component.extent, 0.3) : someScale(*effect);
     }
     return model;
 }

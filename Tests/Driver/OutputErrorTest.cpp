@@ -28,12 +28,15 @@ Model bent()
         model = withEffect(model, *effect, extent);
         auto& component = model.components.back();
         double sign = 1.0;
+        if (effect->id() == "friction")
+            component.parameters[1].value = 2e-5;   // m, so that what it remembers of the start is forgotten in the lead-in
         for (auto& p : component.parameters)
             if (p.strength)
-                p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.extent.scale : someScale(*effect) / 5.0;
+                p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.extent.scale
+                          : std::isfinite(p.prior) ? strengthOf(*effect, p, component.extent, 0.05) : someScale(*effect) / 5.0;
     }
-    for (auto& p : model.path.parameters)
-        p.free = true;
+    for (auto* p : parametersOf(model))
+        p->free = true;
     model.path.parameters[1].value = 3e-4;
     return model;
 }
@@ -81,7 +84,7 @@ OutputErrorOptions plain()
     OutputErrorOptions options;
     options.gradient = false;
     options.spectra = true;
-    options.substeps = options.gradientSubsteps = 4;
+    options.substeps = options.gradientSubsteps = 16;
     return options;
 }
 

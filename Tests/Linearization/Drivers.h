@@ -39,13 +39,13 @@ inline Model withStrong(const Model& plain, const Effect& effect)
     auto model = withEffect(plain, effect, extent);
     auto& added = model.components.back();
     if (const auto law = effect.law()) {
-        const bool rises = law->base == "K" || law->base == "Rms";
-        added.parameters[0].value = (rises ? 0.05 : -0.06) * added.extent.scale;
-        added.parameters[1].value = (rises ? 0.25 : -0.2) * added.extent.scale;
+        const bool rises = law->base == "K" || law->base == "Rms", flux = law->argument == "i";   // d(Le i)/di falls thrice as far as Le(i)
+        added.parameters[0].value = (rises ? 0.05 : flux ? -0.02 : -0.06) * added.extent.scale;
+        added.parameters[1].value = (rises ? 0.25 : flux ? -0.03 : -0.2) * added.extent.scale;
     } else {
         for (auto& parameter : added.parameters)
             if (parameter.strength)
-                parameter.value = effect.electrical() ? 0.02 : 300.0;
+                parameter.value = std::isfinite(parameter.prior) ? 0.1 * parameter.prior : effect.electrical() ? 0.02 : 300.0;
     }
     return model;
 }

@@ -17,6 +17,12 @@ bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::
 
 std::vector<Figure> Effect::summary(const Extent&, const double*) const { return {}; }
 
+std::string Effect::sizedBy() const
+{
+    const auto info = law();
+    return info ? info->base : "";
+}
+
 double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
 
 } // namespace excursion

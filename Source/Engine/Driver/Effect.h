@@ -53,7 +53,8 @@ struct Extent {
     double lowFrequency = 10.0;    ///< Hz, lowest frequency of interest
     double highFrequency = 1.0e4;  ///< Hz, highest frequency of interest
     int degree = 6;                ///< of a law's expansion
-    double scale = 1.0;            ///< the base parameter that a law bends, in its unit: what is large for the law
+    double scale = 1.0;            ///< the base parameter that the effect is sized by, in its unit: what is large for a law
+    double duration = 10.0;        ///< s, of the take: what a slow memory had time for
 };
 
 struct Parameter {
@@ -122,7 +123,12 @@ public:
     /// Difference that the effect adds at `argument` to the base parameter of its law.
     virtual double lawAt(const Extent&, const double* parameters, double argument) const;
 
+    /// Name of the base parameter whose value is Extent::scale; of a law the one that it bends. Empty: none.
+    virtual std::string sizedBy() const;
+
     virtual int memorySize(const Extent&) const { return 0; }         ///< extra states
+    /// The memory changes little within a period: what it holds was made by the whole take before. Its rate is to be affine in it.
+    virtual bool slow() const { return false; }
     virtual int coefficientCount(const Extent&) const = 0;
 
     /// Turns parameters into coefficients: all that depends on the parameters alone, once a run.

@@ -5,6 +5,7 @@
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/TallProduct.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -14,9 +15,11 @@
 namespace excursion {
 namespace {
 
-/// max |lambda|, lambda^2 - tr(J) lambda + det(J) = 0.
-double spectralRadius(const Eigen::Matrix2d& J)
+/// max |lambda|; of two rows from lambda^2 - tr(J) lambda + det(J) = 0.
+double spectralRadius(const Eigen::MatrixXd& J)
 {
+    if (J.rows() > 2)
+        return J.eigenvalues().cwiseAbs().maxCoeff();
     const std::complex<double> half = 0.5 * J.trace(), root = std::sqrt(half * half - J.determinant());
     return std::max(std::abs(half + root), std::abs(half - root));
 }
@@ -163,25 +166,31 @@ double ExponentialStep::step(double* z, std::span<const double> u)
 
 double ExponentialStep::fastestLaw()
 {
-    // N moves di/dt and dv/dt alone, so its eigenvalues are those of its derivatives by i and v.
+    // N moves di/dt, dv/dt and the laws' memories alone, so its eigenvalues are those of its derivatives by i, v and these memories.
+    const auto laws = N_[0].size(), memories = laws - rates;
     double fastest = 0.0;
     for (const auto& law : laws_) {
         const auto& extent = law.component->extent;
-        const double di = 1e-6 * extent.current, dv = 1e-6 * extent.velocity;
         for (const double i : {-extent.current, extent.current})
             for (int k = -4; k <= 4; ++k)
                 for (const double v : {-extent.velocity, extent.velocity}) {
-                    const auto at = [&](double current, double velocity) -> Eigen::Vector2d {
+                    const auto at = [&](double current, double velocity, Eigen::Index memory) -> Eigen::VectorXd {
                         y_.setZero();
                         y_.head(3) << current, 0.25 * k * extent.displacement, velocity;
                         y_[3] = A_.row(0).head(3) * y_.head(3);
                         y_[4] = A_.row(2).head(3) * y_.head(3);
+                        if (memory >= 0)
+                            y_[motions + memory] = 1.0;   // what is affine in them does not mind the size
                         ask(0.0, N_[0].data());
-                        return N_[0].head(2);
+                        return N_[0];
                     };
-                    const Eigen::Vector2d here = at(i, v);
-                    Eigen::Matrix2d J;
-                    J << (at(i + di, v) - here) / di, (at(i, v + dv) - here) / dv;
+                    const double di = 1e-6 * extent.current, dv = 1e-6 * extent.velocity;
+                    const Eigen::VectorXd here = at(i, v, -1);
+                    Eigen::MatrixXd J(laws, laws);
+                    J.col(0) = (at(i + di, v, -1) - here) / di;
+                    J.col(1) = (at(i, v + dv, -1) - here) / dv;
+                    for (Eigen::Index m = 0; m < memories; ++m)
+                        J.col(rates + m) = at(i, v, m) - here;
                     if (J.allFinite())
                         fastest = std::max(fastest, spectralRadius(J));
                 }

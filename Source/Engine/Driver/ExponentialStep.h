@@ -38,7 +38,7 @@ public:
     /// @param u  coefficients of the input on the step, u(s) = sum u_k s^k, 0 <= s <= 1, V (or N); at most `terms`
     double step(double* z, std::span<const double> u);
 
-    /// The largest eigenvalue of dN/d(i, v), in size, over what was visited (1/s): where h times it goes beyond 2, the step is too long
+    /// The largest eigenvalue of dN/d(i, v, the laws' memories), in size, over what was visited (1/s): where h times it goes beyond 2, the step is too long
     /// to be stable.
     double fastestLaw();
 

@@ -137,6 +137,8 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
     extent.degree = degree;
     extent.lowFrequency = record.bandLow;
     extent.highFrequency = record.bandHigh;
+    if (!record.sections.empty() && record.sections.back().end > 0.0)
+        extent.duration = record.sections.back().end;
     double x = 0.0, v = 0.0, i = 0.0;
     for (const auto& section : record.sections)
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
@@ -183,6 +185,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
+    followBase(model);
     FitSummary summary;
     summary.substeps = std::max(stableSubsteps(model, record.sampleRate),
                                 options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));

@@ -14,25 +14,7 @@
 namespace excursion {
 namespace {
 
-/// A state so close to rest that only the linear part speaks, as curved laws enter in second order: for each of i, x and v a small share
-/// of where a law holds. What is linear does not mind the size.
-std::vector<double> nearRest(const Model& model, std::size_t order)
-{
-    constexpr double share = 1e-9;
-    std::vector<double> state(order, share);
-    bool curved = false;
-    for (const auto& component : model.components) {
-        if (component.effect->linear())
-            continue;
-        const double reach[] {component.extent.current, component.extent.displacement, component.extent.velocity};
-        for (std::size_t j = 0; j < 3; ++j)
-            state[j] = share * (curved ? std::min(reach[j], state[j] / share) : reach[j]);
-        curved = true;
-    }
-    return state;
-}
-
-/// Column by column dz/dt and what leaves the driver, for a unit of each state and of the input.
+/// Of a linear model, column by column: dz/dt and what leaves the driver, for a unit of each state and of the input.
 template <class T>
 struct Columns {
     std::vector<std::vector<T>> rates;   ///< by state, and of the input
@@ -45,20 +27,16 @@ Columns<T> columns(const Model& model, const std::vector<T>& parameters)
 {
     const Dynamics<T> dynamics(model, parameters);
     const auto n = static_cast<std::size_t>(dynamics.order());
-    const auto small = nearRest(model, n);
     Columns<T> result;
     result.rates.assign(n + 1, std::vector<T>(n, T(0.0)));
     for (std::size_t j = 0; j <= n; ++j) {
         std::vector<T> z(n, T(0.0));
         if (j < n)
-            z[j] = T(small[j]);
-        const double perUnit = j < n ? 1.0 / small[j] : 1.0;
+            z[j] = T(1.0);
         auto& rates = result.rates[j];
         dynamics.rates(z.data(), T(j < n ? 0.0 : 1.0), rates.data());
         const auto emission = dynamics.emission(z.data(), rates.data());
-        result.outputs.push_back({emission.area * emission.acceleration * perUnit, emission.spot * perUnit});
-        for (auto& entry : rates)
-            entry = entry * perUnit;
+        result.outputs.push_back({emission.area * emission.acceleration, emission.spot});
     }
     const std::vector<T> rest(n, T(0.0));
     std::vector<T> still(n, T(0.0));
@@ -121,9 +99,8 @@ Observed observe(const Model& model, const Linearization& linear, Quantity quant
     return observed;
 }
 
-} // namespace
-
-Linearization linearize(const Model& model, bool withGradient)
+/// Of a model that is linear.
+Linearization linearForm(const Model& model, bool withGradient)
 {
     const auto theta = parameterVector(model);
     const auto plain = columns(model, std::vector<double>(theta.begin(), theta.end()));
@@ -165,6 +142,68 @@ Linearization linearize(const Model& model, bool withGradient)
                     (isState ? result.dC[own](row, at) : result.dD[own][row]) = jets.outputs[column][static_cast<std::size_t>(row)].v[k - first];
             }
             result.dLateness[own] = jets.lateness.v[k - first];
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+Linearization linearize(const Model& model, bool withGradient)
+{
+    // Places of the linear part's states and parameters among those of the whole.
+    std::vector<Eigen::Index> states {0, 1, 2}, parameters;
+    Eigen::Index n = 3, count = 0;
+    for (const auto& component : model.components) {
+        const bool linear = component.effect->linear();
+        for (int k = component.effect->memorySize(component.extent); k > 0; --k, ++n)
+            if (linear)
+                states.push_back(n);
+        for (std::size_t k = 0; k < component.parameters.size(); ++k, ++count)
+            if (linear)
+                parameters.push_back(count);
+    }
+    for (std::size_t k = 0; k < model.path.parameters.size(); ++k)
+        parameters.push_back(count++);
+    const auto part = linearForm(linearPart(model), withGradient);
+    if (static_cast<Eigen::Index>(states.size()) == n && static_cast<Eigen::Index>(parameters.size()) == count)
+        return part;
+
+    const auto square = [&](const Eigen::MatrixXd& A) {
+        Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n, n);
+        whole(states, states) = A;
+        return whole;
+    };
+    const auto wide = [&](const Eigen::MatrixXd& C) {
+        Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(C.rows(), n);
+        whole(Eigen::all, states) = C;
+        return whole;
+    };
+    const auto tall = [&](const Eigen::VectorXd& B) {
+        Eigen::VectorXd whole = Eigen::VectorXd::Zero(n);
+        whole(states) = B;
+        return whole;
+    };
+    Linearization result;
+    result.A = square(part.A);
+    result.B = tall(part.B);
+    result.C = wide(part.C);
+    result.D = part.D;
+    result.lateness = part.lateness;
+    if (withGradient) {
+        const auto all = static_cast<std::size_t>(count);
+        result.dA.assign(all, Eigen::MatrixXd::Zero(n, n));
+        result.dB.assign(all, Eigen::VectorXd::Zero(n));
+        result.dC.assign(all, Eigen::MatrixXd::Zero(2, n));
+        result.dD.assign(all, Eigen::VectorXd::Zero(2));
+        result.dLateness.assign(all, 0.0);
+        for (std::size_t k = 0; k < parameters.size(); ++k) {
+            const auto place = static_cast<std::size_t>(parameters[k]);
+            result.dA[place] = square(part.dA[k]);
+            result.dB[place] = tall(part.dB[k]);
+            result.dC[place] = wide(part.dC[k]);
+            result.dD[place] = part.dD[k];
+            result.dLateness[place] = part.dLateness[k];
         }
     }
     return result;

@@ -10,8 +10,10 @@
 
 namespace excursion {
 
-/// The model linearized at rest, dz/dt = A z + B u, with z as in Dynamics (seed 2.3, extended by the memories), and what leaves it,
+/// The model's linear part, dz/dt = A z + B u, with z as in Dynamics (seed 2.3, extended by the memories), and what leaves it,
 ///     (area acceleration, spot) = C z + D u     (Emission).
+/// Laws are zero at rest and have no part in it. Neither have their memories, which stand still here: friction is a spring for motions that
+/// are smaller than its reach, but such a small motion says nothing about the driver in use.
 /// A mechanical-only driver has no current; its first state is decoupled.
 struct Linearization {
     Eigen::MatrixXd A, C;

@@ -81,8 +81,8 @@ Model makeModel(std::string_view baseId)
 Model withEffect(Model model, const Effect& effect, const Extent& visited, std::size_t start)
 {
     Extent extent = visited;
-    if (const auto law = effect.law())
-        extent.scale = model.baseParameter(law->base).value;
+    if (const auto base = effect.sizedBy(); !base.empty())
+        extent.scale = model.baseParameter(base).value;
     Component component {&effect, extent, effect.parameters(extent)};
     const auto starts = effect.starts(extent);
     const auto& values = starts.at(start);
@@ -94,6 +94,13 @@ Model withEffect(Model model, const Effect& effect, const Extent& visited, std::
     model.components.push_back(std::move(component));
     model.covariance.resize(0, 0);
     return model;
+}
+
+void followBase(Model& model)
+{
+    for (auto& component : model.components)
+        if (const auto base = component.effect->sizedBy(); !base.empty())
+            component.extent.scale = model.baseParameter(base).value;
 }
 
 Model withoutEffect(Model model, std::string_view effectId)

@@ -46,6 +46,8 @@ Model makeModel(std::string_view baseId);
 
 /// The model with that effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
+/// Extent::scale of every effect as its base parameter is now.
+void followBase(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
 Model linearPart(Model);

@@ -33,7 +33,7 @@ Json extentJson(const Extent& e)
 {
     return {{"displacement", e.displacement},   {"velocity", e.velocity},           {"current", e.current},
             {"lowFrequency", e.lowFrequency}, {"highFrequency", e.highFrequency}, {"degree", e.degree},
-            {"scale", e.scale}};
+            {"scale", e.scale},               {"duration", e.duration}};
 }
 
 Json covarianceJson(const Eigen::MatrixXd& covariance)
@@ -80,6 +80,8 @@ Extent extentFrom(const JsonField& field)
         field.at("highFrequency").refuse("more than lowFrequency");
     e.degree = field.at("degree").count(1, curve::maximumDegree);
     e.scale = field.at("scale").numberWithin(least, most);
+    if (field.has("duration"))   // files of older versions have none
+        e.duration = field.at("duration").numberWithin(1e-6, 1e12);
     return e;
 }
 

@@ -18,6 +18,14 @@ namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
 
+/// Whether a law is at work whose memory forgets by the way that the cone goes, and not in time.
+bool remembersWay(const Component& component)
+{
+    const auto& effect = *component.effect;
+    return !effect.linear() && !effect.slow() && effect.memorySize(component.extent) > 0
+        && std::any_of(component.parameters.begin(), component.parameters.end(), [](const Parameter& p) { return p.strength && p.value != 0.0; });
+}
+
 class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section, const std::vector<Eigen::Index>& active,
@@ -173,7 +181,8 @@ std::size_t settlingTime(const Model& model, const Record& record)
             if (-pole.real() > slowest)
                 needed = std::max(needed, by60dB / -pole.real());
     const auto period = static_cast<double>(record.sections.front().window);
-    return static_cast<std::size_t>(std::clamp(needed * record.sampleRate, 0.25 * period, 4.0 * period));
+    const double least = std::any_of(model.components.begin(), model.components.end(), remembersWay) ? 2.0 : 0.25;   // periods
+    return static_cast<std::size_t>(std::clamp(needed * record.sampleRate, least * period, 4.0 * period));
 }
 
 std::vector<SectionFit> outputError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,

@@ -46,7 +46,8 @@ struct OutputErrorOptions {
 };
 
 /// How many samples the model must run before its periodic response is settled: until the slowest pole of the base has decayed by
-/// 110 dB, and relaxations (creep) by 60 dB as far as they answer to the band, f > 0.3 of its low edge; at most four periods.
+/// 110 dB, and relaxations (creep) by 60 dB as far as they answer to the band, f > 0.3 of its low edge; at most four periods. With
+/// hysteresis at least two, in which the cone goes everywhere twice.
 std::size_t settlingTime(const Model&, const Record&);
 
 /// Simulates the model on the sections and compares (output error). Sections run in parallel; the result does not depend on the number of

@@ -172,6 +172,11 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
             section.realization = realization;
             section.periodic = true;
             section.validation = realization == held;
+            const double period = static_cast<double>(e.period) / take.sampleRate;
+            const int played = e.settlePeriods + e.periods;
+            section.begin = period * played * (level * e.realizations + realization);
+            section.end = section.begin + period * played;
+            section.middle = section.end - 0.5 * period * e.periods;
             section.input = averagePeriod(take, take.input(), level, realization);
             section.window = section.input.size();
             section.excited = e.lines;
@@ -206,6 +211,9 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
         Section section;
         section.window = window;
         section.validation = n >= fitted;
+        section.begin = n > 0 ? static_cast<double>(begin) / take.sampleRate : 0.0;
+        section.end = static_cast<double>(begin + window) / take.sampleRate;
+        section.middle = section.end - 0.5 * static_cast<double>(window) / take.sampleRate;
         const auto& input = take.input().samples;
         section.input.assign(input.begin() + static_cast<std::ptrdiff_t>(begin - lead),
                              input.begin() + static_cast<std::ptrdiff_t>(begin + window));

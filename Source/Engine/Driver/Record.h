@@ -17,6 +17,8 @@ struct Section {
     bool periodic = false;
     std::vector<double> input;          ///< one averaged period; of an aperiodic section lead-in and window
     std::size_t window = 0;             ///< samples at the end of `input` that are compared
+    double begin = 0.0, end = 0.0;      ///< s, when in the take it was played, periods that are not compared included
+    double middle = 0.0;                ///< s, in the take: of the window, or of the periods that it is the average of
 
     std::vector<std::vector<std::complex<double>>> measured;   ///< [channel][line], unnormalized DFT of the window
     std::vector<std::vector<double>> deviation;                ///< [channel][line], sqrt(E|noise|^2) of `measured`

@@ -46,7 +46,7 @@ std::vector<std::vector<Eigen::Index>> columnsByComponent(const Model& model, st
 SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const Eigen::Index> active)
     : motion_(model, h), count_(static_cast<Eigen::Index>(active.size()))
 {
-    const auto n = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();
+    const auto n = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();   // with the laws' memories
     dInductance_.setZero(count_);
     dMass_.setZero(count_);
     memoryFrom_ = padded(count_);
@@ -57,27 +57,38 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
         if (!model.components[n].effect->linear())
             addLaw(law++, columns[n]);
 
-    carry_ = motion_.linear_.topLeftCorner(n + 3 * outputs, n).transpose();
+    // Rows of what ExponentialStep makes of a state: the linear part's states at the end, their motions now, halfway and at the end.
+    const auto& places = motion_.linearPlace_;
+    const auto linearStates = static_cast<Eigen::Index>(places.size());
+    constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
+    std::vector<Eigen::Index> reached(places);
+    for (Eigen::Index instant = 0; instant < 3; ++instant)
+        for (Eigen::Index q = 0; q < motions; ++q)
+            reached.push_back(n + instant * outputs + q);
+    carry_ = motion_.linear_(reached, places).transpose();
     const auto memories = static_cast<Eigen::Index>(std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
     for (auto& weights : memoryQuadrature_)
-        weights.resize(memories, n);
-    memoryStage_.resize(memories, outputs);
-    memoryLater_.resize(memories, outputs);
-    const Eigen::MatrixXd C = motion_.linear_.block(n, 0, outputs, n), decay = motion_.halfway_.leftCols(n);
+        weights.resize(memories, linearStates);
+    memoryStage_.resize(memories, motions);
+    memoryLater_.resize(memories, motions);
+    const Eigen::MatrixXd C = motion_.linear_.block(n, 0, motions, n), decay = motion_.halfway_.leftCols(n);
     for (Eigen::Index state = 0; state < n; ++state)
         if (const auto k = place_[static_cast<std::size_t>(state)]; k != none) {
             const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, state);
             const auto weights = quadrature(motion_.A_, unit, h);
             for (Eigen::Index point = 0; point < 3; ++point)
-                memoryQuadrature_[static_cast<std::size_t>(point)].row(k) = weights.col(point).transpose();
+                memoryQuadrature_[static_cast<std::size_t>(point)].row(k) = weights.col(point)(places).transpose();
             const Eigen::VectorXd Q = exponential(motion_.A_, unit, 0.5 * h, 1).phi;
             memoryStage_.row(k) = (C * Q).transpose();
             memoryLater_.row(k) = (C * (decay * Q)).transpose();
         }
-    stageWeights_ = motion_.stage_.transpose();
-    laterWeights_ = motion_.last_.transpose();
-    quadratureWeights_ = motion_.quadrature_.transpose();
+    stageWeights_ = motion_.stage_.topLeftCorner(motions, rates).transpose();
+    laterWeights_ = motion_.last_.topLeftCorner(motions, rates).transpose();
+    quadratureWeights_.resize(3 * rates, linearStates);
+    for (Eigen::Index point = 0; point < 3; ++point)
+        quadratureWeights_.middleRows(point * rates, rates) = motion_.quadrature_.middleCols(point * laws, rates)(places, Eigen::all).transpose();
     const auto rows = padded(count_);
+    step_ = h;
     for (auto* instant : {&start_, &halfway_, &end_}) {
         instant->Ny.setZero(outputs, laws);
         instant->Ntheta.setZero(rows, laws);
@@ -91,7 +102,7 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
     twice_.setZero(rows, memories);
     run_.setZero(rows, carry_.cols());
     Y_.setZero(rows, outputs);
-    K_.setZero(rows, 3 * laws);
+    K_.setZero(rows, 3 * ExponentialStep::rates);
     begin(Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(count_, n));
 }
 
@@ -250,14 +261,27 @@ void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
 void SensitivityStep::begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S)
 {
     z_ = z;
+    const auto& linear = motion_.linearPlace_;
+    const auto& laws = motion_.lawPlace_;
     S_.setZero(padded(count_), z.size());
-    S_.topRows(count_) = S;
+    S_.topLeftCorner(count_, static_cast<Eigen::Index>(linear.size())) = S(Eigen::all, linear);
+    S_.topRightCorner(count_, static_cast<Eigen::Index>(laws.size())) = S(Eigen::all, laws);
     fresh_ = true;
+}
+
+void SensitivityStep::slopesByState(Eigen::MatrixXd& out) const
+{
+    out.resize(count_, z_.size());
+    Eigen::Index from = 0;
+    for (const auto* places : {&motion_.linearPlace_, &motion_.lawPlace_})
+        for (const auto place : *places)
+            out.col(place) = S_.col(from++).head(count_);
 }
 
 void SensitivityStep::step(std::span<const double> u)
 {
-    const auto n = z_.size(), outputs = y_.size(), laws = motion_.N_[0].size(), memories = memoryStage_.rows();
+    constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
+    const auto outputs = y_.size(), laws = motion_.N_[0].size(), lawMemories = laws - rates, n = z_.size() - lawMemories, memories = memoryStage_.rows();
     const auto [middle, end] = ExponentialStep::later(u);
     if (fresh_)
         look(z_, u[0], start_);
@@ -273,44 +297,53 @@ void SensitivityStep::step(std::span<const double> u)
     };
     run_.setZero();
     add(S_.data(), n, carry_, run_.data());
-    auto atEnd = run_.leftCols(n), now = run_.middleCols(n, outputs), half = run_.middleCols(n + outputs, outputs), later = run_.rightCols(outputs);
+    const auto remembered = S_.rightCols(lawMemories);   // stands still but for the laws: no exponential is needed
+    auto atEnd = run_.leftCols(n), now = run_.middleCols(n, motions), half = run_.middleCols(n + motions, motions), later = run_.rightCols(motions);
     if (memories > 0) {
         const auto addMemory = [&](const Eigen::MatrixXd& memory, const double* W, Eigen::Index columns, double* Y) {
             addTallProduct(memory.data(), S_.rows(), memories, W, columns, Y, memoryFrom_, memoryTo_);
         };
         twice_ = 2.0 * halfway_.memory;
-        addMemory(halfway_.memory, memoryStage_.data(), outputs, half.data());
+        addMemory(halfway_.memory, memoryStage_.data(), motions, half.data());
         addMemory(start_.memory, memoryQuadrature_[0].data(), n, atEnd.data());
         addMemory(twice_, memoryQuadrature_[1].data(), n, atEnd.data());
         addMemory(end_.memory, memoryQuadrature_[2].data(), n, atEnd.data());
-        addMemory(start_.memory, memoryLater_.data(), outputs, later.data());
+        addMemory(start_.memory, memoryLater_.data(), motions, later.data());
         twice_ -= start_.memory;
-        addMemory(twice_, memoryStage_.data(), outputs, later.data());
+        addMemory(twice_, memoryStage_.data(), motions, later.data());
     }
     // The stages of ExponentialStep, for the derivatives.
     auto& [K1, K2, K3, K4] = stage_;
-    K1 = start_.Ntheta;
-    add(now.data(), outputs, start_.Ny, K1.data());
+    const auto drive = [&](const auto& motion, Eigen::MatrixXd& K, const Instant& at) {   // from motions (their memories are in Y_) to K
+        Y_.leftCols(motions) += motion;
+        K = at.Ntheta;
+        add(Y_.data(), outputs, at.Ny, K.data());
+    };
+    const auto stageFrom = [&](const Eigen::MatrixXd& K) {
+        Y_.leftCols(motions).setZero();
+        add(K.data(), rates, stageWeights_, Y_.data());
+        Y_.rightCols(lawMemories) = remembered + 0.5 * step_ * K.rightCols(lawMemories);
+    };
+    Y_.leftCols(motions).setZero();
+    Y_.rightCols(lawMemories) = remembered;
+    drive(now, K1, start_);
     accelerationSlopes_ = now.col(4).head(count_) + K1.col(1).head(count_);
-    Y_ = half;
-    add(K1.data(), laws, stageWeights_, Y_.data());
-    K2 = halfway_.Ntheta;
-    add(Y_.data(), outputs, halfway_.Ny, K2.data());
-    Y_ = half;
-    add(K2.data(), laws, stageWeights_, Y_.data());
-    K3 = halfway_.Ntheta;
-    add(Y_.data(), outputs, halfway_.Ny, K3.data());
-    Y_ = later;
-    add(K1.data(), laws, laterWeights_, Y_.data());
-    K_.leftCols(laws) = 2.0 * K3 - K1;
-    add(K_.data(), laws, stageWeights_, Y_.data());
-    K4 = end_.Ntheta;
-    add(Y_.data(), outputs, end_.Ny, K4.data());
-    K_.leftCols(laws) = K1;
-    K_.middleCols(laws, laws) = K2 + K3;
-    K_.rightCols(laws) = K4;
-    S_ = atEnd;
-    add(K_.data(), 3 * laws, quadratureWeights_, S_.data());
+    stageFrom(K1);
+    drive(half, K2, halfway_);
+    stageFrom(K2);
+    drive(half, K3, halfway_);
+    Y_.leftCols(motions).setZero();
+    add(K1.data(), rates, laterWeights_, Y_.data());
+    K_.leftCols(rates) = 2.0 * K3.leftCols(rates) - K1.leftCols(rates);
+    add(K_.data(), rates, stageWeights_, Y_.data());
+    Y_.rightCols(lawMemories) = remembered + step_ * K3.rightCols(lawMemories);
+    drive(later, K4, end_);
+    K_.leftCols(rates) = K1.leftCols(rates);
+    K_.middleCols(rates, rates) = K2.leftCols(rates) + K3.leftCols(rates);
+    K_.rightCols(rates) = K4.leftCols(rates);
+    S_.rightCols(lawMemories) += step_ / 6.0 * (K1 + 2.0 * (K2 + K3) + K4).rightCols(lawMemories);
+    S_.leftCols(n) = atEnd;
+    add(K_.data(), 3 * rates, quadratureWeights_, S_.data());
     std::swap(start_, end_);
 }
 

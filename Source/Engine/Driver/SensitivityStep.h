@@ -26,7 +26,9 @@ public:
     void step(std::span<const double> u);
 
     const Eigen::VectorXd& state() const { return z_; }   ///< at the latest step's end
-    auto slopes() const { return S_.topRows(count_); }   ///< parameters x states, at the latest step's end
+    auto slopes() const { return S_.topRows(count_); }   ///< parameters x states (i, x, v first, the laws' memories last), at the latest step's end
+    /// The same in the order of Dynamics.
+    void slopesByState(Eigen::MatrixXd& out) const;
     double acceleration() const { return acceleration_; }   ///< dv/dt at the latest step's start, m/s^2
     const Eigen::VectorXd& accelerationSlopes() const { return accelerationSlopes_; }   ///< at the latest step's start, by parameter
 
@@ -65,14 +67,15 @@ private:
     std::vector<Eigen::Index> place_;                ///< by state: its column in Instant::memory, or none
     Eigen::VectorXd dInductance_, dMass_;            ///< of the linear part, by parameter
     std::vector<Eigen::Index> linearParameters_;     ///< columns of S whose parameters belong to the linear part
-    Eigen::MatrixXd carry_;                          ///< S -> (S at the end, C S now, halfway and at the end) without drive
+    double step_ = 0.0;
+    Eigen::MatrixXd carry_;                          ///< S -> (S at the end, its motions now, halfway and at the end) without drive
     Eigen::MatrixXd stageWeights_, laterWeights_, quadratureWeights_;   ///< those of ExponentialStep, transposed
     std::array<Eigen::MatrixXd, 3> memoryQuadrature_;
     Eigen::MatrixXd memoryStage_, memoryLater_;
     Eigen::Index memoryFrom_ = 0, memoryTo_ = 0;     ///< rows of S whose parameters act upon memories
     double acceleration_ = 0.0;
     Eigen::VectorXd z_, middle_, y_, accelerationSlopes_;
-    Eigen::MatrixXd S_, run_, Y_, K_, twice_;   ///< rows, one a parameter, are padded
+    Eigen::MatrixXd S_, run_, Y_, K_, twice_;   ///< rows, one a parameter, are padded; S: the linear part's states, then the laws' memories
     std::array<Eigen::MatrixXd, 4> stage_;
     Instant start_, halfway_, end_;
     bool fresh_ = true;

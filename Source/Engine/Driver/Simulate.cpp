@@ -137,7 +137,7 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
                 if (observed[q] < Trace::acceleration)
                     out[q].col(column) = motion.slopes().col(static_cast<Eigen::Index>(observed[q]));
             if (radiates) {
-                before = motion.slopes();
+                motion.slopesByState(before);
                 from = motion.state();
             }
         }

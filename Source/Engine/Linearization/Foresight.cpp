@@ -13,7 +13,7 @@ namespace excursion {
 Foresight::Foresight(const Model& model, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps, double step, double since)
     : coasting(times.size(), reference.basis().cols()), driven(Eigen::MatrixXd::Zero(times.size(), steps))
 {
-    const auto linear = linearize(model);
+    const auto linear = linearize(linearPart(model));
     const auto n = linear.A.rows();
     Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(n + 1, n + 1);   // the input beside the state
     chain.topLeftCorner(n, n) = linear.A;

@@ -72,7 +72,7 @@ std::vector<double> padded(const Eigen::VectorXd& values, std::size_t rows)
 
 Reference::Reference(const Model& model, double sampleRate) : electrical_(model.electrical())
 {
-    const auto linear = linearize(model);
+    const auto linear = linearize(linearPart(model));
     const auto& A = linear.A;
     const auto n = A.rows();
     order_ = static_cast<std::size_t>(n);

@@ -20,7 +20,7 @@ struct MotionPoint {
     double i = 0.0;   ///< A, the current with which the linear driver gets there
 };
 
-/// What the driver would do if it were linear: the model linearized at rest (Linearize.h), dz/dt = A z + B u, solved exactly
+/// What the driver would do if it were linear: the linear part of the model (Linearize.h), dz/dt = A z + B u, solved exactly
 /// from sample to sample for an input that is the cubic through the latest four samples,
 ///     z(n) = exp(A T) z(n-1) + sum_{k=0..3} g_k u(n-k).
 /// Position, velocity, acceleration and jerk are read from the same state, so that each is the derivative of the one before
