@@ -50,12 +50,12 @@ inline Model withStrong(const Model& plain, const Effect& effect)
     return model;
 }
 
-/// All that is felt: what is heard or seen only would part the sensors from the coil.
+/// All that predistortion takes out, and linear effects that are felt.
 inline Model everything()
 {
     auto model = midbass();
     for (const auto* effect : catalogue())
-        if (effect->felt())
+        if (effect->undone())
             model = withStrong(model, *effect);
     return model;
 }

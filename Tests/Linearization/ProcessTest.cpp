@@ -110,8 +110,7 @@ TEST_CASE("An empty block is nothing", "[linearization]")
 
 TEST_CASE("Around what is not finite there is silence, without a step", "[linearization]")
 {
-    // Without hysteresis, which holds a force for a while when the cone stands still.
-    Predistorter engine(withoutEffect(everything(), "friction"), {48000.0, 2}, {});
+    auto engine = predistorter();
     auto u = std::vector<double>(30000);
     for (std::size_t n = 0; n < u.size(); ++n)
         u[n] = 5.0 * std::sin(2.0 * std::numbers::pi * 40.0 * static_cast<double>(n) / 48000.0);
@@ -210,7 +209,7 @@ TEST_CASE("No model and no signal makes the inverse run away", "[linearization]"
     for (const auto& [id, factor] :
          {std::pair {"force-factor", -1.6}, {"stiffness", -1.5}, {"inductance-position", -1.5}, {"damping-velocity", -1.5}}) {
         INFO(id);
-        auto model = withoutEffect(withoutEffect(everything(), id), "friction");   // which bends what is quiet, too
+        auto model = withoutEffect(everything(), id);
         model = withStrong(model, effectNamed(id));
         auto& law = model.components.back();
         law.parameters[0].value = 0.3 * law.extent.scale;

@@ -116,9 +116,9 @@ Model linearPart(Model model)
     return model;
 }
 
-Model feltPart(Model model)
+Model undonePart(Model model)
 {
-    if (std::erase_if(model.components, [](const Component& c) { return !c.effect->felt(); }) > 0)
+    if (std::erase_if(model.components, [](const Component& c) { return !c.effect->undone(); }) > 0)
         model.covariance.resize(0, 0);
     return model;
 }

@@ -51,8 +51,8 @@ void followBase(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
 Model linearPart(Model);
-/// The base and those effects that act on coil and cone; what is heard only is left out.
-Model feltPart(Model);
+/// The base and those effects that predistortion reckons with.
+Model undonePart(Model);
 /// The model with the law of that component expanded to another degree; coefficients that are new are zero.
 Model withDegree(Model, std::size_t component, int degree);
 

@@ -23,8 +23,8 @@ double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(st
 } // namespace
 
 Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const LinearizationControls& controls)
-    : oversampling_((requireRunnable(model, options), options.oversampling)), protection_(feltPart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
-      linearizer_(feltPart(model), options.sampleRate * options.oversampling),
+    : oversampling_((requireRunnable(model, options), options.oversampling)), protection_(undonePart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
+      linearizer_(undonePart(model), options.sampleRate * options.oversampling),
       recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
       ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), amount_(amountTime, options.sampleRate), near_(nearTime, options.sampleRate),
       effort_(nearTime, options.sampleRate, 1.0),

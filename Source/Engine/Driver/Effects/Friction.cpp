@@ -33,6 +33,8 @@ public:
     }
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
+    /// To undo what hysteresis holds the voltage would have to hold it in silence, too.
+    bool undone() const override { return false; }
     std::string sizedBy() const override { return "K"; }
 
     std::vector<Parameter> parameters(const Extent& e) const override
