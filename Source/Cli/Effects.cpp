@@ -35,7 +35,9 @@ void print(const Effect& effect, Terminal& terminal)
     };
     terminal.say(effect.id() + std::string(effect.id().size() < 22 ? 22 - effect.id().size() : 1, ' ') + effect.title());
     line("what it is", effect.physics());
-    line("acts", std::string(effect.electrical() ? "on the coil, so it needs a voltage and a current" : "on the cone, with or without a coil")
+    line("acts", std::string(effect.electrical() ? "on the coil, so it needs a voltage and a current"
+                             : effect.felt()     ? "on the cone, with or without a coil"
+                                                 : "on what leaves the cone, so it needs a microphone")
                      + (effect.linear() ? "; linear: it bends the frequency response" : "; nonlinear: it distorts"));
     if (const auto law = effect.law())
         line("law", lawText(*law));
@@ -50,7 +52,7 @@ nlohmann::ordered_json json(const Effect& effect)
     nlohmann::ordered_json object {{"id", effect.id()},
                                    {"title", effect.title()},
                                    {"physics", effect.physics()},
-                                   {"domain", effect.electrical() ? "electrical" : "mechanical"},
+                                   {"domain", effect.electrical() ? "electrical" : effect.felt() ? "mechanical" : "acoustical"},
                                    {"linear", effect.linear()}};
     if (const auto law = effect.law())
         object["law"] = {{"name", law->name}, {"unit", law->unit}, {"argument", law->argument}, {"argumentUnit", law->argumentUnit},

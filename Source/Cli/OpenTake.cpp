@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Fit.h"
+#include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/TakeFile.h"
@@ -32,15 +33,10 @@ OpenTake openTake(const std::string& path)
 
 void requireEffects(const std::vector<std::string>& ids, const Take& take)
 {
-    for (const auto& id : ids) {
-        const auto& effect = effectNamed(id);
-        if (effect.electrical() && !hasCoil(take))
-            throw Error(Error::Kind::usage, "The take drives the cone by a force and shows no coil, so the electrical effect \"" + id
-                                                + "\" cannot be part of its model.");
-        if (!effect.linear() && std::holds_alternative<Spectra>(take))
-            throw Error(Error::Kind::usage, "A frequency response cannot show the nonlinear effect \"" + id
-                                                + "\"; measure a take at several levels.");
-    }
+    const auto seen = std::visit([](const auto& t) { return seenIn(t); }, take);
+    for (const auto& id : ids)
+        if (const auto why = whyUnseen(effectNamed(id), seen); !why.empty())
+            throw Error(Error::Kind::usage, why);
 }
 
 void requireSameKind(const Model& model, const OpenTake& open)

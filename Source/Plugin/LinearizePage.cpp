@@ -167,8 +167,10 @@ void LinearizePage::resized()
         dial.second->slider().setBounds(row);
     }
     left.removeFromTop(8);
-    for (auto& one : switches_)
-        one->button().setBounds(left.removeFromTop(24));
+    auto switches = left.removeFromTop(24 * ((static_cast<int>(switches_.size()) + 1) / 2));
+    auto second = switches.removeFromRight(switches.getWidth() / 2);
+    for (std::size_t k = 0; k < switches_.size(); ++k)
+        switches_[k]->button().setBounds((2 * k < switches_.size() ? switches : second).removeFromTop(24));
     left.removeFromTop(12);
     for (auto* meter : {&excursion_, &voltage_, &power_}) {
         meter->setBounds(left.removeFromTop(32));

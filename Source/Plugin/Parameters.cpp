@@ -28,11 +28,18 @@ Parameters::Parameters(juce::AudioProcessor& processor)
     displacementLimit_ = number("displacementLimit", "Excursion limit", {Settings::displacements, 1000, 1.0, 100.0, "%"}, first.displacementLimit);
     voltageLimit_ = number("voltageLimit", "Voltage limit", {Settings::voltages, 100, 30.0, 1.0, "V"}, first.voltageLimit);
     trim_ = number("trim", "Output trim", {Settings::trims, 10, 0.0, 1.0, "dB"}, first.trimDb);
-    for (const auto* effect : catalogue())
-        effects_.push_back(added(new OnOff("effect-" + words(effect->id()), words(effect->title()))));
     // Later ones stand behind, so that the earlier ones keep their places.
-    powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 100, 30.0, 1.0, "W"}, first.powerLimit);
+    constexpr std::size_t firstEffects = 6;
+    const auto switchOf = [&](std::size_t k) {
+        const auto& effect = *catalogue()[k];
+        effects_.push_back(added(new OnOff("effect-" + words(effect.id()), words(effect.title()))));
+    };
+    for (std::size_t k = 0; k < firstEffects; ++k)
+        switchOf(k);
+    powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 1000, 30.0, 1.0, "W"}, first.powerLimit);
     margin_ = number("margin", "Model margin", {Settings::margins, 1000, 0.15, 100.0, "%"}, first.margin);
+    for (std::size_t k = firstEffects; k < catalogue().size(); ++k)
+        switchOf(k);
 }
 
 Settings Parameters::settings() const

@@ -93,6 +93,8 @@ TEST_CASE("Predistorter and driver together are linear to -90 dB at 75 % of xmax
     SECTION("each effect alone")
     {
         for (const auto* effect : catalogue()) {
+            if (!effect->undone())
+                continue;
             INFO(effect->id());
             checkResidual(withStrong(midbass(), *effect), 48000.0, 2);
         }

@@ -44,7 +44,7 @@ inline Model withStrong(const Model& plain, const Effect& effect)
         added.parameters[1].value = (rises ? 0.25 : flux ? -0.03 : -0.2) * added.extent.scale;
     } else {
         for (auto& parameter : added.parameters)
-            if (parameter.strength)
+            if (parameter.strength && !parameter.heard)
                 parameter.value = std::isfinite(parameter.prior) ? 0.1 * parameter.prior : effect.electrical() ? 0.02 : 300.0;
     }
     return model;

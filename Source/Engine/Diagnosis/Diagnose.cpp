@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Seen.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -215,8 +216,9 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
         return sum / static_cast<double>(targets.size());
     };
     const double now = cost(model);
+    const auto seen = seenIn(spectra);
     for (const auto* effect : catalogue()) {
-        if (!effect->linear() || model.has(effect->id()) || (effect->electrical() && !model.electrical()))
+        if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
             continue;
         progress.at(static_cast<double>(diagnosis.ranking.size()) / static_cast<double>(catalogue().size()), "trying " + effect->id());
         RankedEffect entry;

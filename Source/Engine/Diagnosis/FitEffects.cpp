@@ -5,6 +5,7 @@
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/OutputError.h"
+#include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
 
 #include <algorithm>
@@ -27,8 +28,8 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
 {
     requireOnce(effects);
     for (const auto& id : effects)
-        if (effectNamed(id).electrical() && !record.electrical)
-            throw Error(Error::Kind::usage, "The take drives the cone by a force and shows no coil, so \"" + id + "\" cannot be part of its model.");
+        if (const auto why = whyUnseen(effectNamed(id), seenIn(record)); !why.empty())
+            throw Error(Error::Kind::usage, why);
     progress.at(0.0, "finding start values");
     Model model = startModel(record);
     adapt(record, model);
@@ -58,8 +59,8 @@ Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects
     Model model = startModel(targets, spectra.find(Quantity::voltage) != nullptr, spectra.driver);
     for (const auto& id : effects) {
         const auto& effect = effectNamed(id);
-        if (!effect.linear())
-            throw Error(Error::Kind::usage, "A frequency response cannot show the nonlinear effect \"" + id + "\"; measure a take at several levels.");
+        if (const auto why = whyUnseen(effect, seenIn(spectra)); !why.empty())
+            throw Error(Error::Kind::usage, why);
         if (!addByResponse(model, effect, targets).usable)
             throw Error(Error::Kind::numerical, "The effect \"" + id + "\" could not be fitted to the frequency response.");
     }

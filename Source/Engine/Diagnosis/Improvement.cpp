@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
 
@@ -46,12 +47,6 @@ FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const
     return summary;
 }
 
-bool canShow(const Effect& effect, const Record& record) { return record.electrical || !effect.electrical(); }
-bool canShow(const Effect& effect, const Spectra& spectra)
-{
-    return effect.linear() && (spectra.find(Quantity::voltage) != nullptr || !effect.electrical());
-}
-
 } // namespace
 
 Improvement::Improvement(const Take& take, const ImproveOptions& options, const Progress& progress) : options_(options)
@@ -91,8 +86,8 @@ void Improvement::add(const std::string& id, const Progress& progress)
     const auto& last = ladder_.rungs.back();
     if (last.model.has(id))
         throw Error(Error::Kind::data, "The model already has the effect \"" + id + "\".");
-    if (!std::visit([&](const auto& d) { return canShow(effect, d); }, data_))
-        throw Error(Error::Kind::data, "This take cannot show the effect \"" + id + "\".");
+    if (const auto why = whyUnseen(effect, std::visit([](const auto& d) { return seenIn(d); }, data_)); !why.empty())
+        throw Error(Error::Kind::data, why);
     Rung rung;
     rung.added = id;
     rung.model = last.model;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Score.h"
 
+#include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Curve.h"
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Seen.h"
 #include "Engine/Driver/Simulate.h"
 
 #include <algorithm>
@@ -13,7 +15,7 @@
 namespace excursion {
 namespace {
 
-/// Normal equations on both kinds of sections, by channel and summed.
+/// Normal equations on sections to estimate on and on those that were held out, by channel and summed.
 struct Sums {
     NormalEquations estimation, validation;
     std::vector<NormalEquations> byChannel;     // of the validation sections
@@ -21,8 +23,8 @@ struct Sums {
     bool finite = true;
 };
 
-Sums sum(const Model& model, const Record& record, const std::vector<Eigen::Index>& active, const ScoreOptions& options,
-         const Progress& progress)
+Sums sum(const Model& model, const Record& record, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active,
+         const ScoreOptions& options, const Progress& progress)
 {
     Sums sums;
     sums.byChannel.resize(record.channels.size());
@@ -30,25 +32,26 @@ Sums sum(const Model& model, const Record& record, const std::vector<Eigen::Inde
     OutputErrorOptions run;
     run.substeps = options.substeps;
     run.threads = options.threads;
-    std::vector<std::size_t> all(record.sections.size());
-    for (std::size_t n = 0; n < all.size(); ++n)
-        all[n] = n;
     const auto held = validationSections(record);
-    const auto fits = outputError(model, record, all, active, run, progress);
-    for (std::size_t n = 0; n < fits.size(); ++n) {
-        if (!fits[n].finite) {
+    for (const auto n : held)
+        if (std::find(sections.begin(), sections.end(), n) == sections.end())
+            sections.push_back(n);
+    const auto fits = outputError(model, record, sections, active, run, progress);
+    for (std::size_t k = 0; k < fits.size(); ++k) {
+        const auto n = sections[k];
+        if (!fits[k].finite) {
             sums.finite = false;
             return sums;
         }
         const bool validates = std::find(held.begin(), held.end(), n) != held.end();
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
             if (!record.sections[n].validation)
-                sums.estimation.add(fits[n].channels[c]);
+                sums.estimation.add(fits[k].channels[c]);
             if (validates) {
-                sums.validation.add(fits[n].channels[c]);
-                sums.byChannel[c].add(fits[n].channels[c]);
-                sums.power[c].error += fits[n].power[c].error;
-                sums.power[c].measured += fits[n].power[c].measured;
+                sums.validation.add(fits[k].channels[c]);
+                sums.byChannel[c].add(fits[k].channels[c]);
+                sums.power[c].error += fits[k].power[c].error;
+                sums.power[c].measured += fits[k].power[c].measured;
             }
         }
     }
@@ -111,8 +114,9 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     };
     std::vector<Entry> entries;
     std::vector<ResponseTarget> responses;
+    const auto seen = seenIn(record);
     for (const auto* effect : catalogue()) {
-        if (model.has(effect->id()) || (effect->electrical() && !model.electrical()))
+        if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
             continue;
         const auto starts = effect->starts(extent).size();
         std::vector<Model> candidates;
@@ -151,7 +155,8 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         }
 
     progress.at(0.1, "testing every effect of the catalogue");
-    const auto sums = sum(augmented, record, active, options, progress);
+    // Who the culprit may be shows in one realization a level; all of them would only tell it more exactly.
+    const auto sums = sum(augmented, record, trialSections(record, 1), active, options, progress);
     ScoreResult result;
     if (!sums.finite)
         throw Error(Error::Kind::numerical, "The model runs away on this take, so nothing can be said about what it lacks; fit it again.");
@@ -217,7 +222,7 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     if (candidates.empty())
         return raised;
     const auto active = freeParameters(higher);
-    const auto sums = sum(higher, record, active, options, {});
+    const auto sums = sum(higher, record, estimationSections(record), active, options, {});
     if (!sums.finite)
         return raised;
     std::vector<Eigen::Index> old;

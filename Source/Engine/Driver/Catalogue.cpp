@@ -8,9 +8,9 @@ namespace excursion {
 
 const std::vector<const Effect*>& catalogue()
 {
-    static const std::vector<const Effect*> effects {&forceFactor(),  &stiffness(), &inductancePosition(), &inductanceCurrent(),
-                                                     &eddyCurrents(), &creep(),     &dampingVelocity(),    &friction(),
-                                                     &coilHeating(),  &ventedBox(), &doppler(),            &coneBreakup()};
+    static const std::vector<const Effect*> effects {&forceFactor(),       &stiffness(), &inductancePosition(), &eddyCurrents(),
+                                                     &creep(),             &dampingVelocity(), &inductanceCurrent(), &friction(),
+                                                     &coilHeating(),       &ventedBox(), &doppler(), &coneBreakup()};
     return effects;
 }
 

@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// Every effect that Excursion knows, in the order of this list. Simulation, fit, diagnosis, report and the
+/// Every effect that Excursion knows, in the order in which they came: new ones go to the end. Simulation, fit, diagnosis, report and the
 /// plugin are driven by it; none of them names an effect.
 const std::vector<const Effect*>& catalogue();
 

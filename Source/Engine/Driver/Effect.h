@@ -102,6 +102,7 @@ public:
     virtual bool electrical() const = 0;        ///< needs a coil; a mechanical-only driver has none
     virtual bool linear() const = 0;            ///< changes the frequency response, adds no distortion
     virtual bool felt() const { return true; }  ///< acts on coil and cone; else it is heard or seen only
+    virtual bool shownBy(Quantity) const { return true; }   ///< a channel of that quantity can show it
     virtual bool undone() const { return felt(); }   ///< predistortion reckons with it; else it leaves it as it is
 
     virtual std::vector<Parameter> parameters(const Extent&) const = 0;

@@ -19,7 +19,7 @@ Cone::Cone(const Model& model, double sampleRate)
     : substeps_(stableSubsteps(model, sampleRate, ExponentialAdams::stable)), motion_(model, 1.0 / (sampleRate * substeps_)),
       reference_(model, sampleRate), radiator_(model), area_(radiator_.area()), share_(shareTime, sampleRate)
 {
-    const auto linear = linearize(model);
+    const auto linear = linearize(linearPart(model));   // as in Reference
     linear_ = (linear.C.row(Linearization::sound) * reference_.basis()).transpose() / area_;
     linearInput_ = linear.D[Linearization::sound] / area_;
 }

@@ -29,6 +29,11 @@ public:
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
     bool felt() const override { return false; }
+    /// The displacement falls with the square of the frequency: where modes are, a laser that tells it sees its noise.
+    bool shownBy(Quantity quantity) const override
+    {
+        return quantity == Quantity::pressure || quantity == Quantity::velocity || quantity == Quantity::acceleration;
+    }
 
     std::vector<Parameter> parameters(const Extent&) const override
     {

@@ -27,6 +27,7 @@ public:
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
     bool felt() const override { return false; }
+    bool shownBy(Quantity quantity) const override { return quantity == Quantity::pressure; }
 
     std::vector<Parameter> parameters(const Extent&) const override
     {
