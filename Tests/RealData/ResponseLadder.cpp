@@ -83,7 +83,9 @@ TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow
     // What others found with this driver: Re 4.92 ohm, Bl 10.8 N/A, m 11 g, resonance 161 Hz, exponent 0.74.
     const auto& model = ladder.rungs[1].model;
     checkParameters(model);
-    CHECK(model.baseParameter("Re").value == Approx(4.92).epsilon(0.05));
+    // Their 4.92 ohm are what a power law leaves at 0 Hz; the lowest that was measured is 5.27 ohm, at 12 Hz.
+    CHECK(model.baseParameter("Re").value > 0.95 * 4.92);
+    CHECK(model.baseParameter("Re").value < 5.27);
     CHECK(model.baseParameter("Bl").value == Approx(10.8).epsilon(0.05));
     CHECK(model.baseParameter("m").value == Approx(0.011).epsilon(0.05));
     checkExponent(ladder.rungs[1].model, 0.74);
@@ -158,7 +160,7 @@ TEST_CASE("Woofers in vented boxes are told from tweeters, mids and closed boxes
         const char* file;
         double tuning, left;   // Hz, percent; no tuning where there is no port
     };
-    for (const auto& [file, tuning, left] : {Expected {"Dayton_DC160-8_and_Vifa_DX25TG59-04_Woofer.zma", 44.5, 3.6},
+    for (const auto& [file, tuning, left] : {Expected {"Dayton_DC160-8_and_Vifa_DX25TG59-04_Woofer.zma", 44.0, 1.0},
                                              Expected {"SB12PFCR25-4_and_SB21RDCN-4_tweeter.zma", 0.0, 0.6}, Expected {"koan-3way_mid.zma", 0.0, 4.0}}) {
         INFO(file);
         const auto ladder = improve(readTake(folder / file));

@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double unseenErrors = 1e-2;   // standard errors
+constexpr double unseenErrors = 1e-2, unseenAlone = 0.3;   // standard errors, with the other parameters free and as they are
 constexpr double reach = 1e3;   // a search does not leave its start by more than this factor
 
 bool positive(const Parameter& p) { return p.lower >= 0.0 && p.value > 0.0 && !p.strength; }
@@ -74,6 +74,7 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
     for (const auto& target : targets)
         add(target, respond(model, {target.quantity}, target.frequency, true).front(), active, Eigen::VectorXd::Ones(P), true, sum);
     const double variance = sum.cost / std::max(1.0, sum.rows - static_cast<double>(P));
+    const Eigen::VectorXd alone = sum.N.diagonal();
     addPriors(model, active, Eigen::VectorXd::Ones(P), variance, true, sum);
     const auto covariance = covarianceOf(sum.N, variance);
     model.covariance = Eigen::MatrixXd::Zero(count, count);
@@ -85,8 +86,9 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
         p.standardError = std::sqrt(covariance(r, r));
         // A positive parameter that the data takes for zero (an inductance that the eddy currents have taken over) stays away from the
         // singular point, but so near that nobody sees it.
-        if (positive(p) && p.lower == 0.0 && p.value < unseenErrors * p.standardError)
-            p.value = unseenErrors * p.standardError;
+        const double near = std::min(unseenErrors * p.standardError, unseenAlone * std::sqrt(variance / alone[r]));
+        if (positive(p) && p.lower == 0.0 && p.value < near)
+            p.value = near;
     }
 }
 
