@@ -36,7 +36,7 @@ Parameters::Parameters(juce::AudioProcessor& processor)
     };
     for (std::size_t k = 0; k < firstEffects; ++k)
         switchOf(k);
-    powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 1000, 30.0, 1.0, "W"}, first.powerLimit);
+    powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 100, 30.0, 1.0, "W"}, first.powerLimit);
     margin_ = number("margin", "Model margin", {Settings::margins, 1000, 0.15, 100.0, "%"}, first.margin);
     for (std::size_t k = firstEffects; k < catalogue().size(); ++k)
         switchOf(k);

@@ -25,8 +25,11 @@ ErrorByChannel errorOf(const Comparison& comparison)
     return error;
 }
 
+/// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that can.
 bool better(const RankedEffect& a, const RankedEffect& b)
 {
+    if (a.significant != b.significant)
+        return a.significant;
     const bool triedA = a.confirmedChi > 0.0, triedB = b.confirmedChi > 0.0;
     if (triedA != triedB)
         return triedA;
@@ -93,11 +96,20 @@ double leastLeft(const std::vector<double>& before, const std::vector<double>& a
     return least;
 }
 
+/// Whether something that cannot be it does far better than the first: then it is not the first whose shape is missing.
+bool outdone(const std::vector<RankedEffect>& ranking, bool noiseKnown)
+{
+    constexpr double far = 4.0;
+    return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& other) {
+        return !other.significant && other.confirmedChi > 0.0 && far * excess(other.confirmedChi, noiseKnown) < excess(ranking.front().confirmedChi, noiseKnown);
+    });
+}
+
 /// The verdict once the ranking is made.
 Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& comparison, double smallestShare)
 {
     const double before = excess(comparison.chi, comparison.noiseKnown);
-    if (!ranking.empty() && ranking.front().significant
+    if (!ranking.empty() && ranking.front().significant && !outdone(ranking, comparison.noiseKnown)
         && 1.0 - excess(ranking.front().confirmedChi, comparison.noiseKnown) / before >= smallestShare)
         return Verdict::missingEffect;
     constexpr double onlyNoise = 1.6;   // mean squared error over the noise's, 2 dB
@@ -170,13 +182,14 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
                 const auto after = compare(trial, record, {quick.substeps, false});
                 entry.model = trial;
                 entry.confirmedChi = after.chi;
-                bestLeft = std::min(bestLeft, excess(after.chi, before.noiseKnown));
                 for (const auto& channel : after.channels)
                     entry.confirmedErrorDb[channel.quantity] = channel.total.db;
                 const auto& added = trial.components.back();
                 entry.significant = after.chi < before.chi * (1.0 - options.significantFall)
                                     && added.effect->plausible(added.extent, added.parameters, trial.base().parameters);
                 errorAfter = entry.confirmedErrorDb;
+                if (entry.significant)
+                    bestLeft = std::min(bestLeft, excess(after.chi, before.noiseKnown));
             }
         }
         entry.reason = reasonFor(*candidate.effect, entry.model, before, errorAfter);
@@ -241,8 +254,8 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
     judge(diagnosis.ranking, now, false, diagnosis);
-    diagnosis.verdict = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant ? Verdict::missingEffect
-                                                                                            : Verdict::unknownEffect;
+    const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, false);
+    diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
     diagnosis.sentence = sentenceFor(diagnosis, before) + caveatsOf(model, targets);
     static_cast<void>(options);
     return diagnosis;
