@@ -71,10 +71,7 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
     const auto* component = model.find(effect.id());
     if (!component)
         return "";
-    std::vector<double> values;
-    for (const auto& p : component->parameters)
-        values.push_back(p.value);
-    auto figures = effect.summary(component->extent, values.data());
+    auto figures = effect.summary(component->extent, valuesOf(*component).data());
     if (figures.empty())
         for (const auto& p : component->parameters)
             figures.push_back({p.name, p.unit, p.value});

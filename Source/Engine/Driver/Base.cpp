@@ -5,16 +5,6 @@
 namespace excursion {
 namespace {
 
-Parameter positive(const char* name, const char* unit, double value)
-{
-    Parameter p;
-    p.name = name;
-    p.unit = unit;
-    p.value = value;
-    p.lower = 0.0;
-    return p;
-}
-
 class Electrodynamic final : public EffectOf<Electrodynamic> {
 public:
     std::string id() const override { return "electrodynamic"; }
@@ -27,8 +17,8 @@ public:
 
     std::vector<Parameter> parameters(const Extent&) const override
     {
-        return {positive("Re", "ohm", 6.0), positive("Le", "H", 3e-4),   positive("Bl", "N/A", 5.0),
-                positive("m", "kg", 1e-2),  positive("Rms", "N s/m", 1), positive("K", "N/m", 2e3)};
+        return {positiveParameter("Re", "ohm", 6.0), positiveParameter("Le", "H", 3e-4),   positiveParameter("Bl", "N/A", 5.0),
+                positiveParameter("m", "kg", 1e-2),  positiveParameter("Rms", "N s/m", 1), positiveParameter("K", "N/m", 2e3)};
     }
     int coefficientCount(const Extent&) const override { return 6; }
 
@@ -61,7 +51,7 @@ public:
 
     std::vector<Parameter> parameters(const Extent&) const override
     {
-        return {positive("m", "kg", 1e-2), positive("Rms", "N s/m", 1), positive("K", "N/m", 2e3)};
+        return {positiveParameter("m", "kg", 1e-2), positiveParameter("Rms", "N s/m", 1), positiveParameter("K", "N/m", 2e3)};
     }
     int coefficientCount(const Extent&) const override { return 3; }
 

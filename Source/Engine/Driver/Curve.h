@@ -104,4 +104,20 @@ inline std::vector<Parameter> parameters(const Extent& extent, const std::string
 }
 
 } // namespace curve
+
+/// An effect that is a law along one curve, and no more: its parameters are the curve's, its coefficients those of the monomials. A subclass
+/// says the law and what it does with the curve.
+template <class Self>
+class CurveLaw : public EffectOf<Self> {
+public:
+    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, this->law()->unit); }
+    int coefficientCount(const Extent& e) const override { return e.degree + 1; }
+
+    template <class T>
+    void prepareFor(const Extent& e, const T* p, T* c) const
+    {
+        curve::prepare(e.degree, p, c);
+    }
+};
+
 } // namespace excursion

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace excursion {
@@ -69,6 +70,12 @@ struct Parameter {
     double prior = std::numeric_limits<double>::infinity();   ///< standard deviation about zero that is plausible beforehand
     double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown or not identifiable
 };
+
+/// A parameter of which only what is not negative makes sense.
+inline Parameter positiveParameter(std::string name, std::string unit, double value)
+{
+    return {.name = std::move(name), .unit = std::move(unit), .value = value, .lower = 0.0};
+}
 
 /// A number that a person knows an effect by, where its parameters are too many to be told.
 struct Figure {

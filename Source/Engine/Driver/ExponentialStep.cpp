@@ -24,15 +24,6 @@ double spectralRadius(const Eigen::MatrixXd& J)
     return std::max(std::abs(half + root), std::abs(half - root));
 }
 
-std::vector<double> coefficientsOf(const Component& component)
-{
-    std::vector<double> parameters, coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
-    for (const auto& p : component.parameters)
-        parameters.push_back(p.value);
-    component.effect->prepare(component.extent, parameters.data(), coefficients.data());
-    return coefficients;
-}
-
 } // namespace
 
 ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), electrical_(model.electrical())
@@ -42,7 +33,7 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     Balance<double> atRest;
     for (const auto& component : model_.components) {
         const Eigen::Index size = component.effect->memorySize(component.extent);
-        auto coefficients = coefficientsOf(component);
+        auto coefficients = coefficientsOf(component, valuesOf(component));
         auto& places = component.effect->linear() ? linearPlace_ : lawPlace_;
         if (component.effect->linear()) {
             const std::vector<double> memory(static_cast<std::size_t>(size), 0.0);

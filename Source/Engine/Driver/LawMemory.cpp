@@ -8,14 +8,6 @@
 namespace excursion {
 namespace {
 
-template <class T>
-std::vector<T> prepared(const Component& component, const std::vector<T>& parameters)
-{
-    std::vector<T> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
-    component.effect->prepare(component.extent, parameters.data(), coefficients.data());
-    return coefficients;
-}
-
 double rateOf(double value) { return std::abs(value); }
 double rateOf(const Jet& value) { return std::abs(value.a); }
 
@@ -93,7 +85,7 @@ template <class T>
 std::vector<std::vector<T>> walk(const Component& component, const std::vector<T>& parameters, const Record& record,
                                  const std::vector<PeriodicMotion>& motions, const std::vector<double>& run)
 {
-    const auto coefficients = prepared(component, parameters);
+    const auto coefficients = coefficientsOf(component, parameters);
     std::vector<std::size_t> order(record.sections.size());
     std::iota(order.begin(), order.end(), std::size_t {0});
     std::stable_sort(order.begin(), order.end(),
@@ -123,10 +115,7 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
 MemoryStart settledMemory(const Component& component, const PeriodicMotion& motion, std::size_t begin, double sampleRate)
 {
     const auto size = static_cast<std::size_t>(component.effect->memorySize(component.extent));
-    std::vector<double> parameters;
-    for (const auto& p : component.parameters)
-        parameters.push_back(p.value);
-    const auto coefficients = prepared(component, parameters);
+    const auto coefficients = coefficientsOf(component, valuesOf(component));
     constexpr int parts = 2;   // steps a sample
     const double h = 1.0 / (parts * sampleRate);
     const std::size_t N = motion.i.size();
@@ -165,7 +154,7 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
     result.value = Eigen::Map<const Eigen::VectorXd>(m.data(), static_cast<Eigen::Index>(size));
     if (!result.value.allFinite())
         result.value.setZero();
-    result.gradient = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(parameters.size()));
+    result.gradient = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(component.parameters.size()));
     return result;
 }
 
@@ -176,21 +165,15 @@ std::vector<MemoryStart> historyOf(const Component& component, const Record& rec
     const auto count = static_cast<Eigen::Index>(component.parameters.size());
     std::vector<MemoryStart> starts(record.sections.size(), {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});
     if (!withGradient) {
-        std::vector<double> parameters;
-        for (const auto& p : component.parameters)
-            parameters.push_back(p.value);
-        const auto values = walk(component, parameters, record, motions, run);
+        const auto values = walk(component, valuesOf(component), record, motions, run);
         for (std::size_t n = 0; n < starts.size(); ++n)
             starts[n].value = Eigen::Map<const Eigen::VectorXd>(values[n].data(), size);
         return starts;
     }
     for (Eigen::Index first = 0; first < count; first += jetWidth) {
-        std::vector<Jet> parameters;
-        for (Eigen::Index k = 0; k < count; ++k) {
-            parameters.emplace_back(component.parameters[static_cast<std::size_t>(k)].value);
-            if (k >= first && k < first + jetWidth)
-                parameters.back().v[k - first] = 1.0;
-        }
+        auto parameters = valuesOf<Jet>(component);
+        for (Eigen::Index k = first; k < std::min<Eigen::Index>(count, first + jetWidth); ++k)
+            parameters[static_cast<std::size_t>(k)].v[k - first] = 1.0;
         const auto values = walk(component, parameters, record, motions, run);
         for (std::size_t n = 0; n < starts.size(); ++n)
             for (Eigen::Index row = 0; row < size; ++row) {

@@ -25,6 +25,7 @@ struct Linearization {
     std::vector<double> dLateness;
 
     enum Output { sound, spot };   ///< rows of C
+    bool shiftsSpot() const { return !C.row(spot).isZero(0.0) || D[spot] != 0.0; }
 };
 
 Linearization linearize(const Model&, bool withGradient = false);

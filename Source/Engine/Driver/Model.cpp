@@ -168,9 +168,7 @@ std::vector<LawCurve> laws(const Model& model, int points)
             LawCurve curve;
             curve.info = *info;
             curve.effectId = component.effect->id();
-            std::vector<double> values;
-            for (const auto& p : component.parameters)
-                values.push_back(p.value);
+            const auto values = valuesOf(component);
             const auto& baseParameters = model.base().parameters;
             const auto base = std::find_if(baseParameters.begin(), baseParameters.end(),
                                            [&](const Parameter& p) { return p.name == info->base; });

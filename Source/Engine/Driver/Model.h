@@ -18,6 +18,25 @@ struct Component {
     std::vector<Parameter> parameters;
 };
 
+/// The values of a component's parameters.
+template <class T = double>
+std::vector<T> valuesOf(const Component& component)
+{
+    std::vector<T> values;
+    for (const auto& p : component.parameters)
+        values.emplace_back(p.value);
+    return values;
+}
+
+/// The coefficients that its effect makes of such parameters (Effect::prepare).
+template <class T>
+std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& parameters)
+{
+    std::vector<T> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
+    component.effect->prepare(component.extent, parameters.data(), coefficients.data());
+    return coefficients;
+}
+
 /// The physical model of a driver: the base, then the effects in the order in which they were added, and the path to the microphone, as
 /// whose sum the sound comes (Emission); without an effect that is heard, p(t) = rho Sd / (2 pi d) a(t - tau).
 struct Model {

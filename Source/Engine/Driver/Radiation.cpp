@@ -22,14 +22,7 @@ public:
     /// Both are held until a channel of pressure is there to see them.
     std::vector<Parameter> parameters(const Extent&) const override
     {
-        Parameter area, delay;
-        area.name = "Sd";
-        area.unit = "m^2";
-        area.value = 0.01;
-        delay.name = "tau";
-        delay.unit = "s";
-        area.free = delay.free = false;
-        return {area, delay};
+        return {{.name = "Sd", .unit = "m^2", .value = 0.01, .free = false}, {.name = "tau", .unit = "s", .free = false}};
     }
     int coefficientCount(const Extent&) const override { return 2; }
 

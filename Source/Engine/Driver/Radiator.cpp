@@ -1,23 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Radiator.h"
 
-#include "Engine/Driver/Linearize.h"
-
 #include <algorithm>
 
 namespace excursion {
-namespace {
-
-std::vector<Jet> valuesOf(const Component& component)
-{
-    std::vector<Jet> values;
-    for (const auto& p : component.parameters)
-        values.emplace_back(p.value);
-    return values;
-}
-
-} // namespace
-
 Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : model_(model)
 {
     struct Placed {
@@ -37,13 +23,8 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
 
     for (const auto& [component, firstParameter, memory] : emitting) {
         const auto& effect = *component->effect;
-        const auto coefficientCount = static_cast<std::size_t>(effect.coefficientCount(component->extent));
         const auto memories = static_cast<std::size_t>(effect.memorySize(component->extent));
-        std::vector<double> values, coefficients(coefficientCount);
-        for (const auto& p : component->parameters)
-            values.push_back(p.value);
-        effect.prepare(component->extent, values.data(), coefficients.data());
-        parts_.push_back({component, static_cast<std::size_t>(memory), std::move(coefficients), std::vector<double>(memories)});
+        parts_.push_back({component, static_cast<std::size_t>(memory), coefficientsOf(*component, valuesOf(*component)), std::vector<double>(memories)});
         if (active.empty())
             continue;
 
@@ -59,12 +40,12 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
         for (int k = 0; k < static_cast<int>(memories); ++k)
             directions.push_back({memory + k, 0, none});
         for (std::size_t c = 0; c < active.size(); ++c)
-            if (const auto own = active[c] - firstParameter; own >= 0 && own < static_cast<Eigen::Index>(values.size()))
+            if (const auto own = active[c] - firstParameter; own >= 0 && own < static_cast<Eigen::Index>(component->parameters.size()))
                 directions.push_back({none, static_cast<std::size_t>(own), static_cast<int>(c)});
         for (std::size_t first = 0; first < directions.size(); first += jetWidth) {
             Chunk chunk;
             chunk.part = parts_.size() - 1;
-            auto parameters = valuesOf(*component);
+            auto parameters = valuesOf<Jet>(*component);
             for (std::size_t lane = 0; lane < jetWidth && first + lane < directions.size(); ++lane) {
                 const auto& direction = directions[first + lane];
                 chunk.place.push_back(direction.place);
@@ -72,8 +53,7 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
                 if (direction.column != none)
                     parameters[direction.own].v[static_cast<Eigen::Index>(lane)] = 1.0;
             }
-            chunk.coefficients.resize(coefficientCount);
-            effect.prepare(component->extent, parameters.data(), chunk.coefficients.data());
+            chunk.coefficients = coefficientsOf(*component, parameters);
             chunk.memory.resize(memories);
             chunk.rates.resize(memories);
             chunks_.push_back(std::move(chunk));
@@ -151,12 +131,6 @@ void Radiator::differentiate(const double* z, double acceleration, const Eigen::
     out.col(0) = driven * slopes_.col(0) + area * slopes_.col(1);
     out.col(1) = slopes_.col(2);
     out.col(2) = slopes_.col(3);
-}
-
-bool shiftsSpot(const Model& model)
-{
-    const auto linear = linearize(model);
-    return !linear.C.row(Linearization::spot).isZero(0.0) || linear.D[Linearization::spot] != 0.0;
 }
 
 } // namespace excursion

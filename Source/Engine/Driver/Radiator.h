@@ -64,7 +64,4 @@ private:
     Eigen::MatrixXd slopes_;   ///< active parameters x (area, acceleration, lateness, spot)
 };
 
-/// Whether an effect of the model shifts the spot that the laser sees.
-bool shiftsSpot(const Model&);
-
 } // namespace excursion

@@ -10,21 +10,6 @@
 namespace excursion {
 namespace {
 
-std::vector<Jet> prepared(const Component& component, const std::vector<Jet>& parameters)
-{
-    std::vector<Jet> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
-    component.effect->prepare(component.extent, parameters.data(), coefficients.data());
-    return coefficients;
-}
-
-std::vector<Jet> constants(const Component& component)
-{
-    std::vector<Jet> parameters;
-    for (const auto& p : component.parameters)
-        parameters.emplace_back(p.value);
-    return parameters;
-}
-
 /// By component and parameter: its place among the active ones, or -1.
 std::vector<std::vector<Eigen::Index>> columnsByComponent(const Model& model, std::span<const Eigen::Index> active)
 {
@@ -134,9 +119,9 @@ void SensitivityStep::addLinear(const Model& model, const std::vector<std::vecto
                         memoryFrom_ = std::min(memoryFrom_, c / tallBlock * tallBlock);
                         memoryTo_ = std::max(memoryTo_, padded(c + 1));
                     }
-            auto parameters = constants(component);
+            auto parameters = valuesOf<Jet>(component);
             parameters[own].v[0] = 1.0;
-            const auto coefficients = prepared(component, parameters);
+            const auto coefficients = coefficientsOf(component, parameters);
             std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)), unused(memory);
             Balance<Jet> atRest;
             component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)}, memory.data(),
@@ -169,7 +154,7 @@ void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& c
         chunk.law = law;
         chunk.output.fill(none);
         chunk.parameter.fill(none);
-        auto parameters = constants(component);
+        auto parameters = valuesOf<Jet>(component);
         for (std::size_t lane = 0; lane < jetWidth && first + lane < directions.size(); ++lane) {
             const auto& direction = directions[first + lane];
             chunk.output[lane] = direction.output;
@@ -177,7 +162,7 @@ void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& c
             if (direction.column != none)
                 parameters[direction.own].v[static_cast<Eigen::Index>(lane)] = 1.0;
         }
-        chunk.coefficients = prepared(component, parameters);
+        chunk.coefficients = coefficientsOf(component, parameters);
         chunk.memory.resize(static_cast<std::size_t>(memories));
         chunk.rate.resize(static_cast<std::size_t>(memories));
         chunks_.push_back(std::move(chunk));

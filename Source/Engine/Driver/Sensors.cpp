@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Sensors.h"
 
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Radiator.h"
 #include "Engine/Signal/Fft.h"
 
 #include <cmath>
@@ -38,10 +36,13 @@ std::vector<double> beyond(const std::vector<double>& lateness, double rest)
 
 } // namespace
 
-Sensors::Sensors(const Model& model, const Trajectory& run, double sampleRate)
-    : run_(run), sampleRate_(sampleRate), gain_(radiationPerArea() / model.microphoneDistance), restLateness_(linearize(model).lateness),
-      spot_(shiftsSpot(model)), arrival_(beyond(run[Trace::lateness], restLateness_), sampleRate)
+Sensors::Sensors(const Model& model, const Linearization& linear, const Trajectory& run, double sampleRate)
+    : run_(run), sampleRate_(sampleRate), gain_(radiationPerArea() / model.microphoneDistance), restLateness_(linear.lateness),
+      spot_(linear.shiftsSpot()), arrival_(beyond(run[Trace::lateness], restLateness_), sampleRate),
+      flowByLeaving_(slopeOf(run[Trace::flow], sampleRate))
 {
+    for (std::size_t n = 0; n < flowByLeaving_.size(); ++n)
+        flowByLeaving_[n] /= 1.0 + arrival_.drift()[n];
 }
 
 std::vector<Trace> Sensors::tracesOf(Quantity quantity) const
@@ -93,9 +94,8 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
     if (quantity == Quantity::pressure) {
         // What arrives at t has left at s, so d(flow) there is that of the flow and that of s: ds = -d(lateness)/(1 + lateness').
         auto change = row(0);
-        const auto flowSlope = slopeOf(run_[Trace::flow], sampleRate_);
         for (std::size_t n = 0; n < change.size(); ++n)
-            change[n] -= flowSlope[n] / (1.0 + arrival_.drift()[n]) * slopes(1, static_cast<Eigen::Index>(n));
+            change[n] -= flowByLeaving_[n] * slopes(1, static_cast<Eigen::Index>(n));
         auto spectrum = fft(arrival_.heard(change));
         delay(spectrum);
         return spectrum;
@@ -108,6 +108,8 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
 
 std::vector<double> Sensors::record(Quantity quantity) const
 {
+    if (quantity != Quantity::pressure && !spot_)
+        return run_[tracesOf(quantity).front()];
     auto spectrum = seen(quantity);
     const auto length = run_[Trace::current].size();
     if (length % 2 == 0)

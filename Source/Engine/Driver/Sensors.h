@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Driver/Arrival.h"
+#include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
 
 #include <Eigen/Core>
@@ -20,7 +21,7 @@ class Sensors {
 public:
     using Spectrum = std::vector<std::complex<double>>;
 
-    Sensors(const Model&, const Trajectory&, double sampleRate);
+    Sensors(const Model& model, const Trajectory& run, double sampleRate) : Sensors(model, linearize(model), run, sampleRate) {}
 
     /// The traces of a trajectory that a channel is made of.
     std::vector<Trace> tracesOf(Quantity) const;
@@ -35,6 +36,7 @@ public:
     std::vector<double> record(Quantity) const;
 
 private:
+    Sensors(const Model&, const Linearization&, const Trajectory&, double sampleRate);
     void delay(Spectrum&) const;
     void addSpot(Spectrum&, std::span<const double> spot, int order) const;
 
@@ -42,6 +44,7 @@ private:
     double sampleRate_, gain_, restLateness_;
     bool spot_;
     Arrival arrival_;   ///< of what the lateness is more than at rest
+    std::vector<double> flowByLeaving_;   ///< d(flow)/dt over 1 + d(lateness)/dt
 };
 
 } // namespace excursion

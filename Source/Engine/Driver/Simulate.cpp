@@ -249,19 +249,11 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
         const double peak = peakOf(samples);
         result.channels.push_back({quantity, std::string(siUnit(quantity)), peak > 0.0 ? 1.25 * peak : 1.0, std::move(samples)});
     };
-    const bool spot = shiftsSpot(model);
-    auto pressure = sensors.record(Quantity::pressure);
-    auto displacement = spot ? sensors.record(Quantity::displacement) : run.displacement;
-    auto velocity = spot ? sensors.record(Quantity::velocity) : run.velocity;
-    auto acceleration = spot ? sensors.record(Quantity::acceleration) : run.acceleration;
     std::vector<double> copy(input.begin(), input.end());
     add(model.electrical() ? Quantity::voltage : Quantity::force, std::move(copy));
-    if (model.electrical())
-        add(Quantity::current, std::move(run.current));
-    add(Quantity::displacement, std::move(displacement));
-    add(Quantity::velocity, std::move(velocity));
-    add(Quantity::acceleration, std::move(acceleration));
-    add(Quantity::pressure, std::move(pressure));
+    for (const auto quantity : {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration, Quantity::pressure})
+        if (quantity != Quantity::current || model.electrical())
+            add(quantity, sensors.record(quantity));
     progress.at(1.0, "simulated");
     return result;
 }

@@ -9,9 +9,7 @@ namespace excursion {
 std::vector<Figure> figuresOf(const Model& model, std::size_t component)
 {
     const auto& c = model.components.at(component);
-    std::vector<double> values;
-    for (const auto& p : c.parameters)
-        values.push_back(p.value);
+    const auto values = valuesOf(c);
     auto figures = c.effect->summary(c.extent, values.data());
     if (figures.empty() || model.covariance.size() == 0)
         return figures;

@@ -33,28 +33,15 @@ public:
 
     std::vector<Parameter> parameters(const Extent& e) const override
     {
-        Parameter rise, fast, share, slow;
-        rise.name = "rise";
-        rise.unit = "ohm/W";
-        rise.lower = 0.0;
-        rise.strength = true;
-        rise.prior = 10.0 / (e.current * e.current);   // Re doubles at a current of a third of the visited peak
-        fast.name = "fast";
-        fast.unit = "log10 s";
-        fast.value = std::log10(0.1 * e.duration);
-        fast.lower = std::log10(0.003 * e.duration);
-        fast.upper = std::log10(2.0 * e.duration);
-        share.name = "share";
-        share.unit = "1";
-        share.value = 0.3;
-        share.lower = 0.0;
-        share.upper = 30.0;
-        slow.name = "slow";
-        slow.unit = "log10 s";
-        slow.value = std::log10(4.0 * e.duration);
-        slow.lower = std::log10(0.5 * e.duration);
-        slow.upper = std::log10(100.0 * e.duration);
-        return {rise, fast, share, slow};
+        constexpr double plausibleRise = 10.0;   // Re doubles at a current of a third of the visited peak
+        const auto time = [&e](const char* name, double likely, double least, double most) -> Parameter {
+            return {.name = name, .unit = "log10 s", .value = std::log10(likely * e.duration), .lower = std::log10(least * e.duration),
+                    .upper = std::log10(most * e.duration)};
+        };
+        return {{.name = "rise", .unit = "ohm/W", .lower = 0.0, .strength = true, .prior = plausibleRise / (e.current * e.current)},
+                time("fast", 0.1, 0.003, 2.0),
+                {.name = "share", .unit = "1", .value = 0.3, .lower = 0.0, .upper = 30.0},
+                time("slow", 4.0, 0.5, 100.0)};
     }
 
     int memorySize(const Extent&) const override { return 2; }

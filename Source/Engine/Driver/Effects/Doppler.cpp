@@ -31,12 +31,7 @@ public:
 
     std::vector<Parameter> parameters(const Extent&) const override
     {
-        Parameter slowness;
-        slowness.name = "1/c";
-        slowness.unit = "s/m";
-        slowness.lower = 0.0;
-        slowness.strength = true;
-        return {slowness};
+        return {{.name = "1/c", .unit = "s/m", .lower = 0.0, .strength = true}};
     }
     int coefficientCount(const Extent&) const override { return 1; }
 

@@ -7,7 +7,7 @@ namespace {
 
 /// Bl(x) = Bl + c(x): force c(x) i, motion voltage c(x) v. The same curve stands in both equations, because
 /// the motor converts without loss.
-class ForceFactor final : public EffectOf<ForceFactor> {
+class ForceFactor final : public CurveLaw<ForceFactor> {
 public:
     std::string id() const override { return "force-factor"; }
     std::string title() const override { return "Force factor Bl(x)"; }
@@ -27,18 +27,10 @@ public:
     bool electrical() const override { return true; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, "N/A"); }
     std::optional<LawInfo> law() const override { return LawInfo {"Bl(x)", "N/A", "x", "m", "Bl"}; }
     double lawAt(const Extent& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
-    }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1; }
-
-    template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
-    {
-        curve::prepare(e.degree, p, c);
     }
 
     template <class T>

@@ -39,22 +39,11 @@ public:
 
     std::vector<Parameter> parameters(const Extent& e) const override
     {
-        Parameter limit, reach, spread;
-        limit.name = "Fc";
-        limit.unit = "N";
-        limit.lower = 0.0;
-        limit.strength = true;
-        limit.prior = e.scale * e.displacement;   // as much as the spring's
-        reach.name = "reach";
-        reach.unit = "m";
-        reach.value = 0.08 * e.displacement;
-        reach.lower = 2e-3 * e.displacement;
-        reach.upper = 2.0 * e.displacement;
-        spread.name = "spread";
-        spread.unit = "octaves";
-        spread.value = 2.0;
-        spread.prior = 3.0;   // its sign says nothing: a search that passes through the single element at 0 must not hit a wall
-        return {limit, reach, spread};
+        const double springForce = e.scale * e.displacement, X = e.displacement;
+        constexpr double anySpread = 3.0;   // its sign says nothing: a search that passes through the single element at 0 must not hit a wall
+        return {{.name = "Fc", .unit = "N", .lower = 0.0, .strength = true, .prior = springForce},
+                {.name = "reach", .unit = "m", .value = 0.08 * X, .lower = 2e-3 * X, .upper = 2.0 * X},
+                {.name = "spread", .unit = "octaves", .value = 2.0, .prior = anySpread}};
     }
 
     int memorySize(const Extent&) const override { return elements; }

@@ -12,7 +12,7 @@ namespace {
 /// An even law saturates the iron; an odd one is the field of the coil that adds to the magnet's or takes from it. The flux depends on
 /// no position, so it makes no force; beside Le(x) the two differences add. Beyond the visited range the flux goes on with the slope
 /// that it has at the end.
-class InductanceCurrent final : public EffectOf<InductanceCurrent> {
+class InductanceCurrent final : public CurveLaw<InductanceCurrent> {
 public:
     std::string id() const override { return "inductance-current"; }
     std::string title() const override { return "Flux modulation Le(i)"; }
@@ -31,7 +31,6 @@ public:
     bool electrical() const override { return true; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, "H"); }
     std::optional<LawInfo> law() const override { return LawInfo {"Le(i)", "H", "i", "A", "Le"}; }
     double lawAt(const Extent& e, const double* p, double i) const override
     {
@@ -41,13 +40,6 @@ public:
             return curve::at(e.degree, b.data(), i, e.current).value;
         const double end = i > 0.0 ? e.current : -e.current;
         return (curve::at(e.degree, b.data(), end, e.current).value * end + fluxSlope(e, b.data(), end) * (i - end)) / i;
-    }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1; }
-
-    template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
-    {
-        curve::prepare(e.degree, p, c);
     }
 
     template <class T>

@@ -7,7 +7,7 @@ namespace {
 
 /// Le(x) = Le + c(x): flux c(x) i, hence a voltage d/dt[c(x) i] = c di/dt + c' v i, and from the coil's
 /// magnetic coenergy W' = 1/2 Le(x) i^2 the reluctance force dW'/dx = 1/2 i^2 c'(x).
-class InductancePosition final : public EffectOf<InductancePosition> {
+class InductancePosition final : public CurveLaw<InductancePosition> {
 public:
     std::string id() const override { return "inductance-position"; }
     std::string title() const override { return "Inductance Le(x) with reluctance force"; }
@@ -26,18 +26,10 @@ public:
     bool electrical() const override { return true; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, "H"); }
     std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
     double lawAt(const Extent& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
-    }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1; }
-
-    template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
-    {
-        curve::prepare(e.degree, p, c);
     }
 
     template <class T>

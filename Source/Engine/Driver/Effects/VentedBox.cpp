@@ -41,16 +41,9 @@ public:
 
     std::vector<Parameter> parameters(const Extent& e) const override
     {
-        const auto positive = [](const char* name, const char* unit, double value) {
-            Parameter p;
-            p.name = name;
-            p.unit = unit;
-            p.value = value;
-            p.lower = 0.0;
-            return p;
-        };
-        auto stiffness = positive("Kb", "N/m", 0.0), tuning = positive("fB", "Hz", 4.0 * e.lowFrequency), port = positive("1/QP", "1", someLoss),
-             leak = positive("1/QL", "1", someLoss), absorption = positive("1/QA", "1", 0.0), radiator = positive("Kp/Ka", "1", 0.0), share = positive("port", "1", 0.0);
+        auto stiffness = positiveParameter("Kb", "N/m", 0.0), tuning = positiveParameter("fB", "Hz", 4.0 * e.lowFrequency),
+             port = positiveParameter("1/QP", "1", someLoss), leak = positiveParameter("1/QL", "1", someLoss),
+             absorption = positiveParameter("1/QA", "1", 0.0), radiator = positiveParameter("Kp/Ka", "1", 0.0), share = positiveParameter("port", "1", 0.0);
         stiffness.strength = share.strength = true;
         // Losses are small and an open port has no spring: without better knowledge they stay near zero.
         for (auto* p : {&port, &leak, &absorption, &radiator})
