@@ -116,6 +116,8 @@ Draw draw(std::uint64_t seed, const DrawOptions& options)
         if (effect.id == "doppler" || effect.id == "cone-breakup")
             requirePressure(result.setup);
     }
+    if (result.speaker.eddyCurrents && result.speaker.inductancePosition)
+        result.speaker.eddyCurrents->moves = Random(seed, 19).chance(0.7);
 
     for (int round = 0; round < 4 && !result.hidden.empty(); ++round) {
         const double reached = pilotPeak(result.speaker, result.setup);

@@ -54,6 +54,7 @@ Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, do
             weight *= eddy->coefficient;
         eddy_ = RelaxationBank(cells, step);
     }
+    loopsMove_ = speaker.eddyCurrents && speaker.eddyCurrents->moves && inductance_.present();
     if (const auto& creep = speaker.creep) {
         switch (creep->family) {
         case Creep::Family::logarithmic:
@@ -119,6 +120,20 @@ void Simulator::predict()
     }
 }
 
+void Simulator::coupleLoops()
+{
+    for (int j = 0; loopsMove_ && j < 3; ++j) {   // k = (Le(x)/Le(0))^1/2
+        const auto [L, slope] = inductance_(x_[j]);
+        coupling_[j] = std::sqrt(L / speaker_.Le);
+        couplingSlope_[j] = 0.5 * slope / (speaker_.Le * coupling_[j]);
+    }
+}
+
+Triple Simulator::coupledCurrent() const
+{
+    return {coupling_[0] * i_[0], coupling_[1] * i_[1], coupling_[2] * i_[2]};
+}
+
 void Simulator::solveCurrents(const Triple& voltage)
 {
     const auto& A = Radau::once();
@@ -132,13 +147,13 @@ void Simulator::solveCurrents(const Triple& voltage)
         slope[j] = L * (saturated.value + saturated.slope * i_[j]);
     }
     const auto drive = times(A, back);
-    const auto eddy = speaker_.eddyCurrents ? times(eddy_.gain(), i_) : Triple {};
+    const auto eddy = speaker_.eddyCurrents ? times(eddy_.gain(), coupledCurrent()) : Triple {};
     Square jacobian {};
     Triple residual {};
     for (int j = 0; j < 3; ++j) {
-        residual[j] = flux_ + h_ * drive[j] - flux[j] - eddyHistory_[j] - eddy[j];
+        residual[j] = flux_ + h_ * drive[j] - flux[j] - coupling_[j] * (eddyHistory_[j] + eddy[j]);
         for (int l = 0; l < 3; ++l)
-            jacobian[j][l] = h_ * resistance_ * A[j][l] + eddy_.gain()[j][l] + (j == l ? slope[j] : 0.0);
+            jacobian[j][l] = h_ * resistance_ * A[j][l] + coupling_[j] * eddy_.gain()[j][l] * coupling_[l] + (j == l ? slope[j] : 0.0);
     }
     const auto change = solve(jacobian, residual);
     for (int j = 0; j < 3; ++j)
@@ -187,11 +202,12 @@ void Simulator::suspensionForces()
 Triple Simulator::accelerations()
 {
     Triple a {};
+    const auto eddy = loopsMove_ ? times(eddy_.gain(), coupledCurrent()) : Triple {};
     for (int j = 0; j < 3; ++j) {
         double force = bl_[j] * i_[j] - damping_(v_[j]).value * v_[j] - suspension_[j] - frictionSum_[j];
         if (inductance_.present())
             force += inductance_(x_[j]).slope * coEnergyIntegral(saturation_, i_[j]);
-        force += box_[j];
+        force += box_[j] + couplingSlope_[j] * i_[j] * (eddyHistory_[j] + eddy[j]);
         a[j] = force / speaker_.m;
     }
     return a;
@@ -223,6 +239,7 @@ const Simulator::Sample& Simulator::step(const Triple& voltage)
             }
         }
         const auto iOld = i_;
+        coupleLoops();
         solveCurrents(voltage);
         frictionForces();
         suspensionForces();
@@ -256,7 +273,7 @@ void Simulator::finish(const Triple& voltage)
     }
     flux_ += h_ * emf;
     if (speaker_.eddyCurrents)
-        eddy_.advance(i_);
+        eddy_.advance(coupledCurrent());
     if (speaker_.creep)
         creep_.advance(speaker_.creep->family == Creep::Family::fractional ? v_ : suspension_);
     for (std::size_t n = 0; n < friction_.size(); ++n)

@@ -42,6 +42,8 @@ private:
 
     void predict();
     void solveCurrents(const Triple& voltage);
+    void coupleLoops();
+    Triple coupledCurrent() const;   ///< as the loops see it
     void frictionForces();
     void suspensionForces();
     Triple accelerations();
@@ -56,11 +58,13 @@ private:
     std::vector<double> frictionState_;
     std::vector<Mode> modes_;
     RelaxationBank eddy_, creep_;
+    bool loopsMove_ = false;
     double creepScale_ = 0;       // what multiplies the creep cells' output
 
     Triple i_ {}, a_ {}, port_ {}, leak_ {};                 // this step: current, acceleration, the port's, what leaks a second
     Triple iBefore_ {}, aBefore_ {}, portBefore_ {}, leakBefore_ {};   // the step before it
     Triple x_ {}, v_ {}, box_ {}, bl_ {}, suspension_ {}, frictionSum_ {}, eddyHistory_ {}, creepHistory_ {};
+    Triple coupling_ {1.0, 1.0, 1.0}, couplingSlope_ {};     // of coil and loops
     std::vector<Triple> friction_;
     double iLargest_ = 0, aLargest_ = 0;
 };

@@ -38,7 +38,8 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
     if (id == "damping-velocity")
         return curveJson(speaker.dampingVelocity);
     if (id == "eddy-currents") {
-        Json json {{"coefficient", speaker.eddyCurrents->coefficient}, {"exponent", speaker.eddyCurrents->exponent}};
+        Json json {{"coefficient", speaker.eddyCurrents->coefficient}, {"exponent", speaker.eddyCurrents->exponent},
+                   {"moves", speaker.eddyCurrents->moves}};
         for (const auto& cell : speaker.eddyCurrents->cells)
             json["cells"].push_back({{"resistance", cell.resistance}, {"rate", cell.rate}});
         return json;

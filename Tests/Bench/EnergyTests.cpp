@@ -74,8 +74,44 @@ TEST_CASE("lossy elements only lose energy", "[bench]")
 {
     Loudspeaker speaker;
     SECTION("eddy currents") { speaker.eddyCurrents = EddyCurrents {0.05, 0.6}; }
+    SECTION("moving eddy currents")
+    {
+        speaker.inductancePosition = Curve {Curve::Shape::arctanStep, 0.5e-3, 2e-3, 0.6, 0.0};
+        speaker.eddyCurrents = EddyCurrents {0.05, 0.6, {}, true};
+    }
     SECTION("creep") { speaker.creep = Creep {Creep::Family::logarithmic, 0.1, 3.0, 1000.0, 0.0}; }
     SECTION("friction") { speaker.friction = Friction {{{1000.0, 0.5}}}; }
     // What the balance lacks is what they have taken (their own stored part included).
     CHECK(imbalance(speaker) > 1e-4);
+}
+
+TEST_CASE("loops in the iron that move with the inductance add to it when they lose nothing", "[bench]")
+{
+    Loudspeaker whole, parts;
+    whole.Le = 3e-3;
+    whole.inductancePosition = Curve {Curve::Shape::arctanStep, 0.5e-3, 2e-3, 0.6, 0.0};
+    parts = whole;
+    parts.Le = 1e-3;
+    constexpr double rate = 1e9;   // beyond anything that is played: the loop's resistance carries nothing
+    parts.eddyCurrents = EddyCurrents {0.0, 0.6, {{2e-3 * rate, rate}}, true};
+
+    const double h = 5e-6;
+    const auto start = [h](const Loudspeaker& speaker) { return Simulator(speaker, h, 1.5e5, 6.0); };
+    auto one = start(whole), other = start(parts);
+    parts.eddyCurrents->moves = false;
+    auto fixed = start(parts);
+    double largest = 0.0, difference = 0.0, fixedDifference = 0.0;
+    for (int n = 0; n < 4000; ++n) {
+        Triple u {};
+        for (int j = 0; j < 3; ++j) {
+            const double t = h * (n + Radau::points()[j]);
+            u[j] = 14.0 * std::sin(2.0 * std::numbers::pi * 55.0 * t) + 6.0 * std::sin(2.0 * std::numbers::pi * 730.0 * t);
+        }
+        const double current = one.step(u).current;
+        largest = std::max(largest, std::abs(current));
+        difference = std::max(difference, std::abs(other.step(u).current - current));
+        fixedDifference = std::max(fixedDifference, std::abs(fixed.step(u).current - current));
+    }
+    CHECK(difference < 1e-4 * largest);
+    CHECK(fixedDifference > 1e-2 * largest);
 }

@@ -175,3 +175,31 @@ TEST_CASE("A law of the bench comes back as the law of the effect", "[fit][slow]
         }
     CHECK(inside == points);
 }
+
+TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][slow]")
+{
+    auto setup = smallSetup();
+    setup.excitation.period = 2048;
+    setup.excitation.levels = {1.0, 4.0};
+    bench::Loudspeaker truth;
+    truth.Le = 80e-6;
+    truth.eddyCurrents = bench::EddyCurrents {6e-3, 0.65, {}, true};
+    truth.inductancePosition = bench::Curve {bench::Curve::Shape::tanhStep, 0.0, 3e-3, 0.3, 0.0};
+    auto record = makeRecord(bench::measure(truth, setup));
+    auto model = startModel(record);
+    adapt(record, model);
+    const auto extent = visitedExtent(model, record, 4);
+    model = withEffect(withEffect(model, effectNamed("eddy-currents"), extent, 1), effectNamed("inductance-position"), extent);
+    const auto with = fit(model, record, estimationSections(record));
+    INFO(with.reason);
+    auto fixed = model;
+    for (auto& p : fixed.components.back().parameters)
+        if (!p.strength) {
+            p.value = 0.0;
+            p.free = false;
+        }
+    const auto without = fit(fixed, record, estimationSections(record));
+    INFO("with loops that move " << with.costPerResidual << ", with loops that stay " << without.costPerResidual);
+    // On the bench the loops see k(x) i, in the model c(x) multiplies what they make of i: alike where the cone is slow against them.
+    CHECK(without.costPerResidual > 50.0 * with.costPerResidual);
+}
