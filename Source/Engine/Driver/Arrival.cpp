@@ -8,17 +8,16 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 
 namespace excursion {
 namespace {
 
 constexpr int finer = 4;   // values a sample between which a polynomial goes: with eight points 1e-5 is left at 0.42 of the rate, less below
 
-/// A periodic record at `finer` times its rate, by zeros above its own lines.
-std::vector<double> refined(std::span<const double> samples)
+/// The periodic record of N samples that has this spectrum, at `finer` times its rate, by zeros above its own lines.
+std::vector<double> refined(std::vector<std::complex<double>> spectrum, std::size_t N)
 {
-    const std::size_t N = samples.size();
-    auto spectrum = fft(samples);
     if (N % 2 == 0)
         spectrum.back() *= 0.5;   // the Nyquist line stands for both its sides
     spectrum.resize(finer * N / 2 + 1, 0.0);
@@ -46,14 +45,21 @@ double between(const std::vector<double>& fine, double sample)
     const auto length = static_cast<std::ptrdiff_t>(fine.size());
     const double place = sample * finer, floor = std::floor(place), fraction = place - floor + (points / 2 - 1);
     const auto first = static_cast<std::ptrdiff_t>(floor) - (points / 2 - 1);
-    double sum = 0.0;
-    for (int k = 0; k < points; ++k) {
-        double weight = inverse[static_cast<std::size_t>(k)];
-        for (int j = 0; j < points; ++j)
-            if (j != k)
-                weight *= fraction - j;
-        const auto n = ((first + k) % length + length) % length;
-        sum += weight * fine[static_cast<std::size_t>(n)];
+    std::array<double, points> across;   // only where the period begins and ends
+    const double* values = fine.data() + first;
+    if (first < 0 || first + points > length) {
+        for (int k = 0; k < points; ++k)
+            across[static_cast<std::size_t>(k)] = fine[static_cast<std::size_t>(((first + k) % length + length) % length)];
+        values = across.data();
+    }
+    std::array<double, points> above;   // prod (fraction - j) over j > k
+    above[points - 1] = 1.0;
+    for (std::size_t k = points - 1; k > 0; --k)
+        above[k - 1] = above[k] * (fraction - static_cast<double>(k));
+    double sum = 0.0, below = 1.0;
+    for (std::size_t k = 0; k < points; ++k) {
+        sum += inverse[k] * below * above[k] * values[k];
+        below *= fraction - static_cast<double>(k);
     }
     return sum;
 }
@@ -73,21 +79,25 @@ std::vector<double> slopeOf(std::span<const double> samples, double sampleRate)
 
 Arrival::Arrival(std::span<const double> lateness, double sampleRate)
 {
-    drift_.assign(lateness.size(), 0.0);
     if (std::all_of(lateness.begin(), lateness.end(), [](double l) { return l == 0.0; }))
         return;
-    drift_ = slopeOf(lateness, sampleRate);
-    std::vector<double> samples(lateness.begin(), lateness.end());
-    for (auto& l : samples)
-        l *= sampleRate;
-    const auto late = refined(samples), drift = refined(drift_);
-    left_.resize(lateness.size());
-    for (std::size_t n = 0; n < left_.size(); ++n) {
+    const std::size_t N = lateness.size();
+    auto spectrum = fft(lateness);
+    for (auto& line : spectrum)
+        line *= sampleRate;
+    const auto late = refined(std::move(spectrum), N);
+    const auto length = static_cast<std::ptrdiff_t>(late.size());
+    left_.resize(N);
+    for (std::size_t n = 0; n < N; ++n) {
         const double t = static_cast<double>(n);
-        double s = t - samples[n];
-        constexpr int enough = 4;   // quadratic from a start that is right to the square of the Mach number
+        double s = t - late[finer * n];
+        constexpr int enough = 8;   // from a start that is right to the square of the Mach number
         for (int k = 0; k < enough; ++k) {
-            const double change = (s + between(late, s) - t) / (1.0 + between(drift, s));
+            // A rough slope will do: it steers the iteration, and what it is off by is small beside one.
+            auto nearest = static_cast<std::ptrdiff_t>(finer * s) % length;
+            nearest += nearest < 0 ? length : 0;
+            const auto from = static_cast<std::size_t>(std::min(nearest, length - 2));
+            const double change = (s + between(late, s) - t) / (1.0 + finer * (late[from + 1] - late[from]));
             s -= change;
             if (!(std::abs(change) > 1e-9))
                 break;
@@ -100,7 +110,7 @@ std::vector<double> Arrival::heard(std::span<const double> samples) const
 {
     if (left_.empty())
         return {samples.begin(), samples.end()};
-    const auto fine = refined(samples);
+    const auto fine = refined(fft(samples), samples.size());
     std::vector<double> result(samples.size());
     for (std::size_t n = 0; n < result.size(); ++n)
         result[n] = between(fine, left_[n]);

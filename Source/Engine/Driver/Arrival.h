@@ -27,12 +27,8 @@ public:
     /// A record of the same period, heard: x(s(t)). As it is when the lateness is zero throughout.
     std::vector<double> heard(std::span<const double> samples) const;
 
-    /// d(lateness)/dt at each instant of leaving.
-    const std::vector<double>& drift() const { return drift_; }
-
 private:
     std::vector<double> left_;    ///< samples; empty when nothing is late
-    std::vector<double> drift_;
 };
 
 } // namespace excursion

@@ -45,9 +45,9 @@ struct ValueAndSlope {
     T value, slope;   ///< slope with respect to q
 };
 
-/// Horner's scheme for the value and the slope at q.
+/// Horner's scheme for the value and the slope at q. Part of what calls it, so that it is compiled for the same processor.
 template <class T>
-ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
+[[gnu::always_inline]] inline ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
 {
     T s = q * (1.0 / range);
     const bool outside = s > T(1.0) || s < T(-1.0);
@@ -66,7 +66,7 @@ ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
 ///     max(0, c_1 (T_1(s) - T_1(+-1)) + c_2 (T_2(s) - T_2(1))),   1 < |s| <= 2,   s = q/Q,
 /// and from twice the range on it stays. A law that hardens goes on hardening; it never gives way where nothing was measured.
 template <class T>
-T beyond(const T& c1, const T& c2, const T& q, double range)
+[[gnu::always_inline]] inline T beyond(const T& c1, const T& c2, const T& q, double range)
 {
     T s = q * (1.0 / range);
     if (s > T(2.0) || s < T(-2.0))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Dispatch.h"
 #include "Engine/Driver/Number.h"
 #include "Engine/Measurement/Measurement.h"
 
@@ -179,17 +180,17 @@ public:
     void contribute(const Extent& e, const double* c, const Motion<double>& motion, const double* memory, double* rate,
                     Balance<double>& balance) const final
     {
-        self().addTo(e, c, motion, memory, rate, balance);
+        add(self(), e, c, motion, memory, rate, balance);
     }
     void contribute(const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet* memory, Jet* rate,
                     Balance<Jet>& balance) const final
     {
-        self().addTo(e, c, motion, memory, rate, balance);
+        add(self(), e, c, motion, memory, rate, balance);
     }
     void contribute(const Extent& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory, Tangent* rate,
                     Balance<Tangent>& balance) const final
     {
-        self().addTo(e, c, motion, memory, rate, balance);
+        add(self(), e, c, motion, memory, rate, balance);
     }
     bool emits() const final { return radiates<double>; }
     void emit(const Extent& e, const double* c, const Motion<double>& motion, const double& acceleration, const double* memory,
@@ -204,6 +205,23 @@ public:
     }
 
 private:
+    // What is asked all the time is compiled for the processor at hand, with all that it calls; a virtual function itself cannot be.
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const double* c, const Motion<double>& motion, const double* memory,
+                                       double* rate, Balance<double>& balance)
+    {
+        self.addTo(e, c, motion, memory, rate, balance);
+    }
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet* memory, Jet* rate,
+                                       Balance<Jet>& balance)
+    {
+        self.addTo(e, c, motion, memory, rate, balance);
+    }
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory,
+                                       Tangent* rate, Balance<Tangent>& balance)
+    {
+        self.addTo(e, c, motion, memory, rate, balance);
+    }
+
     template <class T, class Whose = Self>
     static constexpr bool radiates = requires(const Whose& effect, const Extent& e, const T* of, const Motion<T>& motion, Emission<T>& emission) {
         effect.radiate(e, of, motion, motion.i, of, of, emission);

@@ -55,7 +55,7 @@ public:
         fit.power.resize(channels);
         std::vector<Eigen::VectorXd> residual(channels, Eigen::VectorXd(2 * lines));
         std::vector<Spectrum> predicted(channels);
-        const Sensors sensors(model_, trajectory, record_.sampleRate);
+        Sensors sensors(model_, trajectory, record_.sampleRate);
         for (std::size_t c = 0; c < channels; ++c) {
             predicted[c] = sensors.seen(record_.channels[c]);
             residualOf(c, predicted[c], residual[c], fit.power[c]);
@@ -108,7 +108,7 @@ private:
         }
     }
 
-    bool sensitivities(const Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
+    bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
     {
         std::vector<Trace> traces;   // of all channels, each once
         for (const auto quantity : record_.channels)

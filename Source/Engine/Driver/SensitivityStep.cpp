@@ -31,7 +31,8 @@ std::vector<std::vector<Eigen::Index>> columnsByComponent(const Model& model, st
 SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const Eigen::Index> active)
     : motion_(model, h), count_(static_cast<Eigen::Index>(active.size()))
 {
-    const auto n = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();   // with the laws' memories
+    constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
+    const auto states = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();   // with the laws' memories
     dInductance_.setZero(count_);
     dMass_.setZero(count_);
     memoryFrom_ = padded(count_);
@@ -39,39 +40,36 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
     addLinear(model, columns);
     std::size_t law = 0;
     for (std::size_t n = 0; n < model.components.size(); ++n)
-        if (!model.components[n].effect->linear())
+        if (ExponentialStep::isLaw(model.components[n]))
             addLaw(law++, columns[n]);
 
-    // Rows of what ExponentialStep makes of a state: the linear part's states at the end, their motions now, halfway and at the end.
-    const auto& places = motion_.linearPlace_;
-    const auto linearStates = static_cast<Eigen::Index>(places.size());
-    constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
-    std::vector<Eigen::Index> reached(places);
-    for (Eigen::Index instant = 0; instant < 3; ++instant)
-        for (Eigen::Index q = 0; q < motions; ++q)
-            reached.push_back(n + instant * outputs + q);
-    carry_ = motion_.linear_(reached, places).transpose();
+    const auto& C = motion_.C_;
+    const Eigen::MatrixXd whole = motion_.whole_.leftCols(states), decay = motion_.halfway_.leftCols(states);
+    const auto moving = motion_.moving_, following = states - moving;
+    carryMoving_ = whole.topLeftCorner(moving, moving).transpose();
+    carryFollowing_ = whole.bottomRows(following).transpose();
+    const Eigen::MatrixXd accelerations = C.bottomRows(2), halfway = C * decay, atEnd = accelerations * whole;
+    carryMotions_.resize(moving, 4 + motions);
+    carryMotions_ << accelerations.leftCols(moving).transpose(), halfway.leftCols(moving).transpose(), atEnd.leftCols(moving).transpose();
     const auto memories = static_cast<Eigen::Index>(std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
     for (auto& weights : memoryQuadrature_)
-        weights.resize(memories, linearStates);
+        weights.resize(memories, states);
     memoryStage_.resize(memories, motions);
     memoryLater_.resize(memories, motions);
-    const Eigen::MatrixXd C = motion_.linear_.block(n, 0, motions, n), decay = motion_.halfway_.leftCols(n);
-    for (Eigen::Index state = 0; state < n; ++state)
+    for (Eigen::Index state = 0; state < states; ++state)
         if (const auto k = place_[static_cast<std::size_t>(state)]; k != none) {
-            const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, state);
+            const Eigen::VectorXd unit = Eigen::VectorXd::Unit(states, state);
             const auto weights = quadrature(motion_.A_, unit, h);
             for (Eigen::Index point = 0; point < 3; ++point)
-                memoryQuadrature_[static_cast<std::size_t>(point)].row(k) = weights.col(point)(places).transpose();
+                memoryQuadrature_[static_cast<std::size_t>(point)].row(k) = weights.col(point).transpose();
             const Eigen::VectorXd Q = exponential(motion_.A_, unit, 0.5 * h, 1).phi;
             memoryStage_.row(k) = (C * Q).transpose();
             memoryLater_.row(k) = (C * (decay * Q)).transpose();
         }
-    stageWeights_ = motion_.stage_.topLeftCorner(motions, rates).transpose();
-    laterWeights_ = motion_.last_.topLeftCorner(motions, rates).transpose();
-    quadratureWeights_.resize(3 * rates, linearStates);
-    for (Eigen::Index point = 0; point < 3; ++point)
-        quadratureWeights_.middleRows(point * rates, rates) = motion_.quadrature_.middleCols(point * laws, rates)(places, Eigen::all).transpose();
+    stageWeights_ = motion_.stage_.transpose();
+    laterWeights_ = motion_.last_.transpose();
+    quadratureWeights_ = motion_.quadrature_.transpose();
+    toHalfway_ = TiledProduct(motion_.arranged(motion_.halfway_));
     const auto rows = padded(count_);
     step_ = h;
     for (auto* instant : {&start_, &halfway_, &end_}) {
@@ -81,21 +79,29 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
     }
     for (auto& K : stage_)
         K.setZero(rows, laws);
-    middle_.setZero(n);
+    middle_.setZero(toHalfway_.rows());
+    remembered_.setZero(laws - rates);
     y_.setZero(outputs);
     accelerationSlopes_.setZero(count_);
     twice_.setZero(rows, memories);
-    run_.setZero(rows, carry_.cols());
+    run_.setZero(rows, states + 4 + motions);
+    now_.setZero(rows, motions);
+    later_.setZero(rows, motions);
     Y_.setZero(rows, outputs);
     K_.setZero(rows, 3 * ExponentialStep::rates);
-    begin(Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(count_, n));
+    S_.setZero(rows, motion_.z_.size());
 }
 
 void SensitivityStep::addLinear(const Model& model, const std::vector<std::vector<Eigen::Index>>& columnsByComponent)
 {
     const auto linear = linearize(linearPart(model), true);
     const auto n = linear.A.rows();
-    place_.assign(static_cast<std::size_t>(motion_.A_.rows()), none);
+    place_.assign(static_cast<std::size_t>(n), none);
+    // Their order there, by that here, which is the one of the components.
+    std::vector<Eigen::Index> sorted(motion_.linearPlace_), state(sorted.size());
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 0; k < sorted.size(); ++k)
+        state[k] = std::find(motion_.linearPlace_.begin(), motion_.linearPlace_.end(), sorted[k]) - motion_.linearPlace_.begin();
     Eigen::Index memories = 0;
     std::size_t k = 0;   // parameter of the linear part
     for (std::size_t place = 0; place < model.components.size(); ++place) {
@@ -110,12 +116,12 @@ void SensitivityStep::addLinear(const Model& model, const std::vector<std::vecto
             for (Eigen::Index row = 0; row < n; ++row)
                 for (Eigen::Index column = 0; column <= n; ++column)
                     if (const double value = column < n ? linear.dA[k](row, column) : linear.dB[k][row]; value != 0.0) {
-                        const auto state = motion_.linearPlace_[static_cast<std::size_t>(row)];
-                        entries_.push_back({c, state, column < n ? motion_.linearPlace_[static_cast<std::size_t>(column)] : motion_.A_.rows(), value});
+                        const auto to = state[static_cast<std::size_t>(row)];
+                        entries_.push_back({c, to, column < n ? state[static_cast<std::size_t>(column)] : n, value});
                         if (row < 3)
                             continue;
-                        if (place_[static_cast<std::size_t>(state)] == none)
-                            place_[static_cast<std::size_t>(state)] = memories++;
+                        if (place_[static_cast<std::size_t>(to)] == none)
+                            place_[static_cast<std::size_t>(to)] = memories++;
                         memoryFrom_ = std::min(memoryFrom_, c / tallBlock * tallBlock);
                         memoryTo_ = std::max(memoryTo_, padded(c + 1));
                     }
@@ -170,13 +176,11 @@ void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& c
 }
 
 /// The laws' derivatives at a state, and what the linear part's parameters change there.
-void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
+void SensitivityStep::look(const double* z, const double* memory, double u, Instant& at)
 {
-    y_.head(3) = z.head(3);
-    y_[3] = motion_.A_.row(0) * z;
-    y_[4] = motion_.A_.row(2) * z;
-    for (std::size_t k = 0; k < motion_.lawPlace_.size(); ++k)
-        y_[ExponentialStep::motions + static_cast<Eigen::Index>(k)] = z[motion_.lawPlace_[k]];
+    const auto states = motion_.A_.rows();
+    y_.head<ExponentialStep::motions>().noalias() = motion_.C_ * Eigen::Map<const Eigen::VectorXd>(z, states);
+    std::copy_n(memory, motion_.lawPlace_.size(), y_.data() + ExponentialStep::motions);
 
     Balance<double> sum;
     std::size_t counted = motion_.laws_.size();   // the law whose values have been added last
@@ -229,7 +233,7 @@ void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
 
     // By a parameter of the linear part: f_i = (L0 g_i - ...)/L, f_v = (m0 g_v + ...)/m.
     for (const auto& entry : entries_) {
-        const double rate = entry.value * (entry.column < z.size() ? z[entry.column] : u);
+        const double rate = entry.value * (entry.column < states ? z[entry.column] : u);
         if (entry.row == 0)
             at.Ntheta(entry.parameter, 0) += L0 / L * rate;
         else if (entry.row == 2)
@@ -245,7 +249,7 @@ void SensitivityStep::look(const Eigen::VectorXd& z, double u, Instant& at)
 
 void SensitivityStep::begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S)
 {
-    z_ = z;
+    motion_.begin(z);
     const auto& linear = motion_.linearPlace_;
     const auto& laws = motion_.lawPlace_;
     S_.setZero(padded(count_), z.size());
@@ -256,7 +260,7 @@ void SensitivityStep::begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S)
 
 void SensitivityStep::slopesByState(Eigen::MatrixXd& out) const
 {
-    out.resize(count_, z_.size());
+    out.resize(count_, order());
     Eigen::Index from = 0;
     for (const auto* places : {&motion_.linearPlace_, &motion_.lawPlace_})
         for (const auto place : *places)
@@ -266,24 +270,35 @@ void SensitivityStep::slopesByState(Eigen::MatrixXd& out) const
 void SensitivityStep::step(std::span<const double> u)
 {
     constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
-    const auto outputs = y_.size(), laws = motion_.N_[0].size(), lawMemories = laws - rates, n = z_.size() - lawMemories, memories = memoryStage_.rows();
+    const auto outputs = y_.size(), laws = motion_.N_[0].size(), lawMemories = laws - rates, n = motion_.A_.rows(), memories = memoryStage_.rows();
     const auto [middle, end] = ExponentialStep::later(u);
+    const double* const z = motion_.z_.data();
     if (fresh_)
-        look(z_, u[0], start_);
+        look(z, z + n, u[0], start_);
     fresh_ = false;
-    acceleration_ = motion_.step(z_.data(), u);
-    middle_.noalias() = motion_.halfway_ * motion_.from_;
-    middle_.noalias() += motion_.Q_ * motion_.N_[2];
-    look(middle_, middle, halfway_);
-    look(z_, end, end_);
+    remembered_ = motion_.z_.tail(lawMemories);
+    acceleration_ = motion_.step(u);
+    middle_.setZero();
+    toHalfway_.addTo(middle_.data(), motion_.from_.data());
+    middle_.head(n).noalias() += motion_.Q_ * motion_.N_[2].head<rates>();
+    remembered_ += 0.5 * step_ * motion_.N_[2].tail(lawMemories);
+    look(middle_.data(), remembered_.data(), middle, halfway_);
+    look(z, z + n, end, end_);
 
     const auto add = [this](const double* X, Eigen::Index inner, const Eigen::MatrixXd& W, double* Y) {
         addTallProduct(X, S_.rows(), inner, W.data(), W.cols(), Y, 0, S_.rows());
     };
     run_.setZero();
-    add(S_.data(), n, carry_, run_.data());
+    const auto moving = motion_.moving_;
+    const auto column = [this](Eigen::Index k) { return run_.data() + k * run_.rows(); };
+    add(S_.data(), moving, carryMoving_, run_.data());
+    add(S_.data(), n, carryFollowing_, column(moving));
+    add(S_.data(), moving, carryMotions_, column(n));
     const auto remembered = S_.rightCols(lawMemories);   // stands still but for the laws: no exponential is needed
-    auto atEnd = run_.leftCols(n), now = run_.middleCols(n, motions), half = run_.middleCols(n + motions, motions), later = run_.rightCols(motions);
+    auto atEnd = run_.leftCols(n), half = run_.middleCols(n + 2, motions);
+    // i, x and v are among the states.
+    now_ << S_.leftCols(3), run_.middleCols(n, 2);
+    later_ << run_.leftCols(3), run_.rightCols(2);
     if (memories > 0) {
         const auto addMemory = [&](const Eigen::MatrixXd& memory, const double* W, Eigen::Index columns, double* Y) {
             addTallProduct(memory.data(), S_.rows(), memories, W, columns, Y, memoryFrom_, memoryTo_);
@@ -293,9 +308,9 @@ void SensitivityStep::step(std::span<const double> u)
         addMemory(start_.memory, memoryQuadrature_[0].data(), n, atEnd.data());
         addMemory(twice_, memoryQuadrature_[1].data(), n, atEnd.data());
         addMemory(end_.memory, memoryQuadrature_[2].data(), n, atEnd.data());
-        addMemory(start_.memory, memoryLater_.data(), motions, later.data());
+        addMemory(start_.memory, memoryLater_.data(), motions, later_.data());
         twice_ -= start_.memory;
-        addMemory(twice_, memoryStage_.data(), motions, later.data());
+        addMemory(twice_, memoryStage_.data(), motions, later_.data());
     }
     // The stages of ExponentialStep, for the derivatives.
     auto& [K1, K2, K3, K4] = stage_;
@@ -311,8 +326,8 @@ void SensitivityStep::step(std::span<const double> u)
     };
     Y_.leftCols(motions).setZero();
     Y_.rightCols(lawMemories) = remembered;
-    drive(now, K1, start_);
-    accelerationSlopes_ = now.col(4).head(count_) + K1.col(1).head(count_);
+    drive(now_, K1, start_);
+    accelerationSlopes_ = now_.col(4).head(count_) + K1.col(1).head(count_);
     stageFrom(K1);
     drive(half, K2, halfway_);
     stageFrom(K2);
@@ -322,7 +337,7 @@ void SensitivityStep::step(std::span<const double> u)
     K_.leftCols(rates) = 2.0 * K3.leftCols(rates) - K1.leftCols(rates);
     add(K_.data(), rates, stageWeights_, Y_.data());
     Y_.rightCols(lawMemories) = remembered + step_ * K3.rightCols(lawMemories);
-    drive(later, K4, end_);
+    drive(later_, K4, end_);
     K_.leftCols(rates) = K1.leftCols(rates);
     K_.middleCols(rates, rates) = K2.leftCols(rates) + K3.leftCols(rates);
     K_.rightCols(rates) = K4.leftCols(rates);

@@ -25,7 +25,10 @@ public:
     /// One step; see ExponentialStep.
     void step(std::span<const double> u);
 
-    const Eigen::VectorXd& state() const { return z_; }   ///< at the latest step's end
+    double current() const { return motion_.current(); }             ///< A, at the latest step's end
+    double displacement() const { return motion_.displacement(); }   ///< m
+    double velocity() const { return motion_.velocity(); }           ///< m/s
+    void state(Eigen::VectorXd& z) const { motion_.state(z); }
     auto slopes() const { return S_.topRows(count_); }   ///< parameters x states (i, x, v first, the laws' memories last), at the latest step's end
     /// The same in the order of Dynamics.
     void slopesByState(Eigen::MatrixXd& out) const;
@@ -51,31 +54,35 @@ private:
     };
     /// dA or dB by an active parameter, where it is not zero.
     struct Entry {
-        Eigen::Index parameter, row, column;   ///< the column after A's last is B
+        Eigen::Index parameter, row, column;   ///< states in the order of ExponentialStep; the column after A's last is B
         double value;
     };
 
     /// @param columns  by parameter of a component: its column in S, or none
     void addLaw(std::size_t law, const std::vector<Eigen::Index>& columns);
     void addLinear(const Model&, const std::vector<std::vector<Eigen::Index>>& columnsByComponent);
-    void look(const Eigen::VectorXd& z, double u, Instant&);
+    void look(const double* z, const double* memory, double u, Instant&);
 
     ExponentialStep motion_;
     Eigen::Index count_;
     std::vector<Chunk> chunks_;
     std::vector<Entry> entries_;
-    std::vector<Eigen::Index> place_;                ///< by state: its column in Instant::memory, or none
+    std::vector<Eigen::Index> place_;                ///< by linear state: its column in Instant::memory, or none
     Eigen::VectorXd dInductance_, dMass_;            ///< of the linear part, by parameter
     std::vector<Eigen::Index> linearParameters_;     ///< columns of S whose parameters belong to the linear part
     double step_ = 0.0;
-    Eigen::MatrixXd carry_;                          ///< S -> (S at the end, its motions now, halfway and at the end) without drive
+    // Without drive S moves itself so, its columns in the order of ExponentialStep: what moves coil and cone knows nothing of what follows.
+    Eigen::MatrixXd carryMoving_, carryFollowing_;   ///< -> S at the end, its first and its last columns
+    Eigen::MatrixXd carryMotions_;                   ///< -> (A_i z, A_v z) now, motions halfway, (A_i z, A_v z) at the end
     Eigen::MatrixXd stageWeights_, laterWeights_, quadratureWeights_;   ///< those of ExponentialStep, transposed
     std::array<Eigen::MatrixXd, 3> memoryQuadrature_;
     Eigen::MatrixXd memoryStage_, memoryLater_;
     Eigen::Index memoryFrom_ = 0, memoryTo_ = 0;     ///< rows of S whose parameters act upon memories
     double acceleration_ = 0.0;
-    Eigen::VectorXd z_, middle_, y_, accelerationSlopes_;
-    Eigen::MatrixXd S_, run_, Y_, K_, twice_;   ///< rows, one a parameter, are padded; S: the linear part's states, then the laws' memories
+    TiledProduct toHalfway_;
+    Eigen::VectorXd middle_, remembered_;            ///< linear states and the laws' memories halfway
+    Eigen::VectorXd y_, accelerationSlopes_;
+    Eigen::MatrixXd S_, run_, now_, later_, Y_, K_, twice_;   ///< rows, one a parameter, are padded; S: the linear part's states, then the laws' memories
     std::array<Eigen::MatrixXd, 4> stage_;
     Instant start_, halfway_, end_;
     bool fresh_ = true;

@@ -3,7 +3,9 @@
 
 #include "Engine/Signal/Fft.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 
@@ -38,11 +40,8 @@ std::vector<double> beyond(const std::vector<double>& lateness, double rest)
 
 Sensors::Sensors(const Model& model, const Linearization& linear, const Trajectory& run, double sampleRate)
     : run_(run), sampleRate_(sampleRate), gain_(radiationPerArea() / model.microphoneDistance), restLateness_(linear.lateness),
-      spot_(linear.shiftsSpot()), arrival_(beyond(run[Trace::lateness], restLateness_), sampleRate),
-      flowByLeaving_(slopeOf(run[Trace::flow], sampleRate))
+      spot_(linear.shiftsSpot()), arrival_(beyond(run[Trace::lateness], restLateness_), sampleRate)
 {
-    for (std::size_t n = 0; n < flowByLeaving_.size(); ++n)
-        flowByLeaving_[n] /= 1.0 + arrival_.drift()[n];
 }
 
 std::vector<Trace> Sensors::tracesOf(Quantity quantity) const
@@ -85,7 +84,7 @@ Sensors::Spectrum Sensors::seen(Quantity quantity) const
     return spectrum;
 }
 
-Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slopes) const
+Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slopes)
 {
     const auto row = [&](Eigen::Index r) {
         const Eigen::VectorXd values = slopes.row(r).transpose();
@@ -93,6 +92,12 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
     };
     if (quantity == Quantity::pressure) {
         // What arrives at t has left at s, so d(flow) there is that of the flow and that of s: ds = -d(lateness)/(1 + lateness').
+        if (flowByLeaving_.empty()) {
+            flowByLeaving_ = slopeOf(run_[Trace::flow], sampleRate_);
+            const auto drift = slopeOf(run_[Trace::lateness], sampleRate_);
+            for (std::size_t n = 0; n < flowByLeaving_.size(); ++n)
+                flowByLeaving_[n] /= 1.0 + drift[n];
+        }
         auto change = row(0);
         for (std::size_t n = 0; n < change.size(); ++n)
             change[n] -= flowByLeaving_[n] * slopes(1, static_cast<Eigen::Index>(n));
@@ -108,13 +113,31 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
 
 std::vector<double> Sensors::record(Quantity quantity) const
 {
-    if (quantity != Quantity::pressure && !spot_)
-        return run_[tracesOf(quantity).front()];
-    auto spectrum = seen(quantity);
-    const auto length = run_[Trace::current].size();
-    if (length % 2 == 0)
-        spectrum.back() = spectrum.back().real();   // the Nyquist line of a real record is real
-    return inverseFft(spectrum, length);
+    const auto inTime = [this](Spectrum& spectrum) {
+        const auto length = run_[Trace::current].size();
+        if (length % 2 == 0)
+            spectrum.back() = spectrum.back().real();   // the Nyquist line of a real record is real
+        return inverseFft(spectrum, length);
+    };
+    if (quantity == Quantity::pressure) {
+        if (restLateness_ == 0.0) {
+            auto samples = arrival_.heard(run_[Trace::flow]);
+            std::transform(samples.begin(), samples.end(), samples.begin(), [this](double flow) { return gain_ * flow; });
+            return samples;
+        }
+        auto spectrum = seen(quantity);
+        return inTime(spectrum);
+    }
+    auto samples = run_[tracesOf(quantity).front()];
+    if (const auto motion = motionOf(quantity); motion && spot_) {
+        const auto& spot = run_[Trace::spot];
+        Spectrum shift(spot.size() / 2 + 1);
+        if (motion->order > 0)
+            addSpot(shift, spot, motion->order);
+        const auto ahead = motion->order > 0 ? inTime(shift) : spot;
+        std::transform(samples.begin(), samples.end(), ahead.begin(), samples.begin(), std::plus<> {});
+    }
+    return samples;
 }
 
 } // namespace excursion

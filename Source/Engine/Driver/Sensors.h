@@ -30,7 +30,7 @@ public:
 
     /// Derivative of seen() by one parameter.
     /// @param slopes  derivatives of the traces of tracesOf(quantity), one row a trace
-    Spectrum slope(Quantity, const Eigen::MatrixXd& slopes) const;
+    Spectrum slope(Quantity, const Eigen::MatrixXd& slopes);
 
     /// The channel in time, one value a sample.
     std::vector<double> record(Quantity) const;
@@ -44,7 +44,7 @@ private:
     double sampleRate_, gain_, restLateness_;
     bool spot_;
     Arrival arrival_;   ///< of what the lateness is more than at rest
-    std::vector<double> flowByLeaving_;   ///< d(flow)/dt over 1 + d(lateness)/dt
+    std::vector<double> flowByLeaving_;   ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope asks for it
 };
 
 } // namespace excursion

@@ -62,7 +62,7 @@ public:
         most_ = (reach > 0.0).select(far * reach, std::numeric_limits<double>::infinity());
     }
 
-    bool holds(const Eigen::VectorXd& z) const { return (z.head(3).array().abs() < most_).all(); }   // never of what is not finite
+    bool holds(double i, double x, double v) const { return (Eigen::Array3d(i, x, v).abs() < most_).all(); }   // never of what is not finite
 
 private:
     Eigen::Array3d most_;
@@ -81,7 +81,9 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
     ExponentialStep motion(model, drive.step());
     Radiator radiator(model);
     const Plausible plausible(model);
-    Eigen::VectorXd z = start.size() > 0 ? start : Eigen::VectorXd::Zero(motion.order()), before = z;
+    if (start.size() > 0)
+        motion.begin(start);
+    Eigen::VectorXd before;
     for (auto* trace : {&out.current, &out.displacement, &out.velocity, &out.acceleration, &out.flow, &out.lateness, &out.spot}) {
         trace->clear();
         trace->reserve(drive.length() - first);
@@ -90,13 +92,13 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
     for (std::size_t n = 0; n < drive.length(); ++n) {
         const bool kept = n >= first;
         if (kept) {
-            out.current.push_back(z[0]);
-            out.displacement.push_back(z[1]);
-            out.velocity.push_back(z[2]);
-            before = z;
+            out.current.push_back(motion.current());
+            out.displacement.push_back(motion.displacement());
+            out.velocity.push_back(motion.velocity());
+            motion.state(before);
         }
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
-            const double acceleration = motion.step(z.data(), drive.polynomial(half));
+            const double acceleration = motion.step(drive.polynomial(half));
             if (s > 0 || !kept)
                 continue;
             const auto sound = radiator.at(before.data(), acceleration);
@@ -105,7 +107,7 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
             out.lateness.push_back(sound.lateness);
             out.spot.push_back(sound.spot);
         }
-        if (!plausible.holds(z))
+        if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
             return false;
     }
     return true;
@@ -138,7 +140,7 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
                     out[q].col(column) = motion.slopes().col(static_cast<Eigen::Index>(observed[q]));
             if (radiates) {
                 motion.slopesByState(before);
-                from = motion.state();
+                motion.state(from);
             }
         }
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
@@ -153,7 +155,7 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
                 else if (observed[q] > Trace::acceleration)
                     out[q].col(column) = emitted.col(static_cast<Eigen::Index>(observed[q]) - static_cast<Eigen::Index>(Trace::flow));
         }
-        if (!plausible.holds(motion.state()))
+        if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
             return false;
     }
     return true;

@@ -16,7 +16,9 @@ constexpr double shareTime = 0.003;        // s, see Glide
 } // namespace
 
 Cone::Cone(const Model& model, double sampleRate)
-    : substeps_(stableSubsteps(model, sampleRate, ExponentialAdams::stable)), motion_(model, 1.0 / (sampleRate * substeps_)),
+    : corrected_(stableSubsteps(model, sampleRate, ExponentialAdams::stable) > 1),
+      substeps_(corrected_ ? stableSubsteps(model, sampleRate, ExponentialAdams::stableCorrected) : 1),
+      motion_(model, 1.0 / (sampleRate * substeps_), corrected_),
       reference_(model, sampleRate), radiator_(model), area_(radiator_.area()), share_(shareTime, sampleRate)
 {
     const auto linear = linearize(linearPart(model));   // as in Reference
@@ -51,12 +53,11 @@ bool Cone::step(double& sample)
     for (int s = 0; s < substeps_; ++s)
         acceleration = motion_.step(drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
     past_ = {u, past_[0], past_[1]};
-    const double* const z = motion_.state();
     reference_.step(u);
     const double linear = linear_.dot(reference_.state()) + linearInput_ * u, share = share_.step();
-    sample = radiator_.at(z, acceleration).flow / area_ - share * linear;
-    if (std::abs(z[0]) < implausibleState && std::abs(z[1]) < implausibleState && std::abs(z[2]) < implausibleState && std::isfinite(acceleration)
-        && std::isfinite(linear))
+    sample = radiator_.at(motion_.state().data(), acceleration).flow / area_ - share * linear;
+    if (std::abs(motion_.current()) < implausibleState && std::abs(motion_.displacement()) < implausibleState
+        && std::abs(motion_.velocity()) < implausibleState && std::isfinite(acceleration) && std::isfinite(linear))
         return true;
     rest();
     sample = 0.0;

@@ -33,10 +33,11 @@ public:
     /// @returns false when the motion is not finite or beyond any loudspeaker: then the cone is at rest and the sample 0
     bool step(double& sample);
 
-    double displacement() const { return motion_.state()[1]; }   ///< m
-    double current() const { return motion_.state()[0]; }        ///< A
+    double displacement() const { return motion_.displacement(); }   ///< m
+    double current() const { return motion_.current(); }             ///< A
 
 private:
+    bool corrected_;              ///< the laws are so fast that they are asked twice a step; see ExponentialAdams
     int substeps_;
     ExponentialAdams motion_;
     Reference reference_;

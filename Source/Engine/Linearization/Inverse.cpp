@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Inverse.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace excursion {
 namespace {
@@ -19,7 +20,8 @@ Tangent carrying(double value, double byTime, double byCurrent)
 /// sum_k weights_k values_k
 double sumOf(const std::vector<double>& weights, const double* values)
 {
-    return std::inner_product(weights.begin(), weights.end(), values, 0.0);
+    const auto size = static_cast<Eigen::Index>(weights.size());
+    return Eigen::Map<const Eigen::VectorXd>(weights.data(), size).dot(Eigen::Map<const Eigen::VectorXd>(values, size));
 }
 
 /// Down to what share of its value at rest the force per current is believed.

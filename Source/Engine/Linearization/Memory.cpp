@@ -1,12 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Memory.h"
 
+#include "Engine/Dispatch.h"
+
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include <algorithm>
 #include <cmath>
 
 namespace excursion {
+namespace {
+
+EXCURSION_DISPATCH void decay(std::size_t size, const double* rates, const double* value, double* __restrict next)
+{
+    for (std::size_t k = 0; k < size; ++k)
+        next[k] = rates[k] * value[k];
+}
+
+/// By the cubic c.
+EXCURSION_DISPATCH void drive(std::size_t size, const double* w0, const double* w1, const double* w2, const double* w3, const double* c,
+                              double* __restrict next)
+{
+    const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3];
+    for (std::size_t k = 0; k < size; ++k)
+        next[k] += w0[k] * c0 + w1[k] * c1 + w2[k] * c2 + w3[k] * c3;
+}
+
+} // namespace
 
 Memory::Memory(const Effect& effect, const Extent& extent, std::vector<double> coefficients, double sampleRate)
     : effect_(&effect), extent_(extent), coefficients_(std::move(coefficients)), period_(1.0 / sampleRate),
@@ -124,8 +144,7 @@ void Memory::step(const MotionCubic& motion)
     }
 
     if (diagonal_) {
-        for (std::size_t k = 0; k < size_; ++k)
-            next_[k] = decay_[k] * value_[k];
+        decay(size_, decay_.data(), value_.data(), next_.data());
     } else {
         std::fill(next_.begin(), next_.end(), 0.0);
         for (std::size_t column = 0; column < size_; ++column)
@@ -133,11 +152,8 @@ void Memory::step(const MotionCubic& motion)
                 next_[row] += decay_[column * size_ + row] * value_[column];
     }
     for (std::size_t q = 0; q < 3; ++q)
-        if (const auto& drive = drives_[q]; drive.present) {
-            const auto& c = cubics[q]->c;
-            for (std::size_t k = 0; k < size_; ++k)
-                next_[k] += drive.weight[0][k] * c[0] + drive.weight[1][k] * c[1] + drive.weight[2][k] * c[2] + drive.weight[3][k] * c[3];
-        }
+        if (const auto& [weight, present] = drives_[q]; present)
+            drive(size_, weight[0].data(), weight[1].data(), weight[2].data(), weight[3].data(), cubics[q]->c.data(), next_.data());
     std::swap(value_, next_);
 }
 

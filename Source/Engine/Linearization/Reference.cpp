@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Reference.h"
 
+#include "Engine/Dispatch.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Linearization/Cubic.h"
 
@@ -68,6 +69,27 @@ std::vector<double> padded(const Eigen::VectorXd& values, std::size_t rows)
     return result;
 }
 
+/// What is laid out for four states: the diagonal of the transition, what each takes of its neighbour in a block of two, g_0 .. g_3 and the five outputs.
+constexpr std::size_t laidRows = 2 + 4 + 5;
+
+/// One step of the state, and the five sums of what is read from it.
+EXCURSION_DISPATCH void advance(std::size_t rows, const double* laid, const double* past, double* state, double* motion)
+{
+    Four sums[5] = {};
+    for (std::size_t row = 0; row < rows; row += 4) {
+        const auto* const four = reinterpret_cast<const Four*>(laid + laidRows * row);
+        auto& here = *reinterpret_cast<Four*>(state + row);
+        Four next = four[0] * here + four[1] * __builtin_shufflevector(here, here, 1, 0, 3, 2);
+        for (int k = 0; k < 4; ++k)
+            next += past[k] * four[2 + k];
+        here = next;
+        for (int k = 0; k < 5; ++k)
+            sums[k] += next * four[6 + k];
+    }
+    for (int k = 0; k < 5; ++k)
+        motion[k] = (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
+}
+
 } // namespace
 
 Reference::Reference(const Model& model, double sampleRate) : electrical_(model.electrical())
@@ -117,14 +139,26 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
         transition = solver.solve(transition * vectors).eval();
         inputs = solver.solve(inputs).eval();
         outputs = (outputs * vectors).eval();
-        transition_ = padded(transition.diagonal(), rows_);
-        for (Eigen::Index k = 0; k < pairs_; ++k)
-            turn_.push_back(0.5 * (transition(2 * k, 2 * k + 1) - transition(2 * k + 1, 2 * k)));
     }
-    for (std::size_t k = 0; k < inputs_.size(); ++k)
-        inputs_[k] = padded(inputs.col(static_cast<Eigen::Index>(k)), rows_);
-    for (std::size_t k = 0; k < outputs_.size(); ++k)
-        outputs_[k] = padded(outputs.row(static_cast<Eigen::Index>(k)).transpose(), rows_);
+    // A dense transition is made by itself, and leaves what is laid out with a diagonal of ones.
+    Rows diagonal(rows_, dense_ ? 1.0 : 0.0), turn(rows_, 0.0);
+    if (!dense_) {
+        diagonal = padded(transition.diagonal(), rows_);
+        for (std::size_t k = 0; k < 2 * static_cast<std::size_t>(pairs_); k += 2) {
+            const auto first = static_cast<Eigen::Index>(k);
+            turn[k] = 0.5 * (transition(first, first + 1) - transition(first + 1, first));
+            turn[k + 1] = -turn[k];
+        }
+    }
+    std::vector<Rows> laid {diagonal, turn};
+    for (Eigen::Index k = 0; k < inputs.cols(); ++k)
+        laid.push_back(padded(inputs.col(k), rows_));
+    for (Eigen::Index k = 0; k < outputs.rows(); ++k)
+        laid.push_back(padded(outputs.row(k).transpose(), rows_));
+    for (std::size_t row = 0; row < rows_; row += lanes)
+        for (const auto& values : laid)
+            laid_.insert(laid_.end(), values.begin() + static_cast<std::ptrdiff_t>(row), values.begin() + static_cast<std::ptrdiff_t>(row + lanes));
+    byNow_ = laid[2];
     const Eigen::VectorXd direct = outputs * inputs.col(0);
     byInput_ = {direct[0], direct[1], direct[2] + accelerationInput_, electrical_ ? direct[3] + jerkInput_ : 0.0, direct[4]};
     state_.assign(rows_, 0.0);
@@ -141,32 +175,16 @@ void Reference::reset()
 const MotionPoint& Reference::step(double u)
 {
     past_ = {u, past_[0], past_[1], past_[2]};
-    const auto lanesOf = [](const Rows& rows, std::size_t row) { return Eigen::Map<const Lanes>(rows.data() + row); };
-    std::array<Lanes, 5> sums;
-    sums.fill(Lanes::Zero());
-    for (std::size_t row = 0; row < rows_; row += lanes) {
-        Lanes next;
-        if (dense_) {
-            next.setZero();
-            for (std::size_t k = 0; k < order_; ++k)
-                next += state_[k] * lanesOf(transition_, k * rows_ + row);
-        } else {
-            next = lanesOf(transition_, row) * lanesOf(state_, row);
-            for (std::size_t k = row / 2; k < turn_.size() && k < row / 2 + lanes / 2; ++k) {
-                const auto first = static_cast<Eigen::Index>(2 * k - row);
-                next[first] += turn_[k] * state_[2 * k + 1];
-                next[first + 1] -= turn_[k] * state_[2 * k];
-            }
-        }
-        for (std::size_t k = 0; k < 4; ++k)
-            next += past_[k] * lanesOf(inputs_[k], row);
-        Eigen::Map<Lanes>(next_.data() + row) = next;
-        for (std::size_t k = 0; k < 5; ++k)
-            sums[k] += next * lanesOf(outputs_[k], row);
+    std::array<double, 5> motion {};
+    if (dense_) {
+        std::fill(next_.begin(), next_.end(), 0.0);
+        for (std::size_t k = 0; k < order_; ++k)
+            for (std::size_t row = 0; row < rows_; ++row)
+                next_[row] += state_[k] * transition_[k * rows_ + row];
+        state_.swap(next_);
     }
-    std::swap(state_, next_);
-    point_ = {sums[0].sum(), sums[1].sum(), sums[2].sum() + accelerationInput_ * u,
-              electrical_ ? sums[3].sum() + jerkInput_ * u : 0.0, sums[4].sum()};
+    advance(rows_, laid_.data(), past_.data(), state_.data(), motion.data());
+    point_ = {motion[0], motion[1], motion[2] + accelerationInput_ * u, electrical_ ? motion[3] + jerkInput_ * u : 0.0, motion[4]};
     return point_;
 }
 
@@ -174,7 +192,7 @@ const MotionPoint& Reference::correct(double difference)
 {
     past_[0] += difference;
     for (std::size_t row = 0; row < rows_; ++row)
-        state_[row] += difference * inputs_[0][row];
+        state_[row] += difference * byNow_[row];
     const auto add = [difference](double& value, double byInput) { value += difference * byInput; };
     add(point_.x, byInput_.x);
     add(point_.v, byInput_.v);

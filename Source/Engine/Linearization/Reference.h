@@ -46,17 +46,15 @@ public:
 
 private:
     static constexpr int lanes = 4;   ///< states at a time
-    using Lanes = Eigen::Array<double, lanes, 1>;
     using Rows = std::vector<double>;
 
     std::size_t order_, rows_;        ///< rows_: the order, padded to a multiple of lanes
     bool electrical_;
     Eigen::Index pairs_ = 0;          ///< how many blocks of two there are, at the state's beginning
     bool dense_ = false;
-    Rows transition_;                 ///< its diagonal, or if dense all of it by columns
-    Rows turn_;                       ///< of each block of two the upper right element; the lower left is its negative
-    std::array<Rows, 4> inputs_;      ///< g_0 .. g_3
-    std::array<Rows, 5> outputs_;     ///< of x, v, a, j and i
+    Rows transition_;                 ///< if dense, by columns
+    Rows laid_;                       ///< all else of a step, four states at a time
+    Rows byNow_;                      ///< g_0
     double accelerationInput_ = 0.0, jerkInput_ = 0.0;
     Eigen::MatrixXd basis_;
     MotionPoint byInput_;             ///< of the motion, by u(n)

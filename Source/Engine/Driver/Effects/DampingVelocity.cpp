@@ -54,15 +54,16 @@ public:
     std::optional<LawInfo> law() const override { return LawInfo {"Rms(v)", "N s/m", "v", "m/s", "Rms"}; }
     double lawAt(const Extent& e, const double* p, double v) const override
     {
-        std::array<double, curve::maximumDegree + 4> c {};
+        std::array<double, curve::maximumDegree + 5> c {};
         prepareFor(e, p, c.data());
         return at(e, c.data(), v);
     }
-    int coefficientCount(const Extent& e) const override { return e.degree + 4; }
+    int coefficientCount(const Extent& e) const override { return e.degree + 5; }
 
     template <class T>
     void prepareFor(const Extent& e, const T* p, T* c) const
     {
+        using std::sqrt;
         // Powers of s: with y = 2 s - 1 Horner's rule is applied to whole polynomials, p <- p (2 s - 1) + b_j.
         const int n = e.degree;
         std::array<T, curve::maximumDegree + 1> b;
@@ -78,6 +79,7 @@ public:
         c[n + 1] = p[n];
         c[n + 2] = p[n + 1];
         c[n + 3] = p[n + 2];
+        c[n + 4] = sqrt(p[n + 2] * p[n + 2] + rounding * rounding);
     }
 
     template <class T>
@@ -87,11 +89,12 @@ public:
     }
 
 private:
+    static constexpr double rounding = 0.02;
+
     template <class T>
-    static T at(const Extent& e, const T* c, const T& v)
+    [[gnu::always_inline]] static T at(const Extent& e, const T* c, const T& v)
     {
         using std::sqrt;
-        constexpr double rounding = 0.02;
         T w = v * (1.0 / e.velocity);
         T reach = T(1.0);
         if (w > T(1.0) || w < T(-1.0)) {
@@ -101,8 +104,8 @@ private:
             w = w > T(0.0) ? T(1.0) : T(-1.0);
         }
         const int n = e.degree;
-        const T square = w * w, centre = c[n + 3], off = w - centre;
-        const T s = sqrt(off * off + rounding * rounding) - sqrt(centre * centre + rounding * rounding);
+        const T square = w * w, off = w - c[n + 3];
+        const T s = sqrt(off * off + rounding * rounding) - c[n + 4];
         T value = c[n];
         for (int k = n - 1; k >= 0; --k)
             value = value * s + c[k];
