@@ -34,6 +34,28 @@ TEST_CASE("Every effect has words, a name of its own and starts of zero strength
     CHECK_THROWS_AS(effectNamed("gravity"), Error);
 }
 
+TEST_CASE("Parts of an effect share no parameter and start at zero strength", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        INFO(effect->id());
+        const Extent extent;
+        const auto parameters = effect->parameters(extent);
+        std::size_t next = 0;
+        for (const auto& part : effect->parts(extent)) {
+            CHECK(effect->linear());
+            CHECK(part.first >= next);
+            next = part.first + part.count;
+            REQUIRE(next <= parameters.size());
+            CHECK_FALSE(part.starts.empty());
+            for (const auto& start : part.starts) {
+                REQUIRE(start.size() == part.count);
+                for (std::size_t k = 0; k < part.count; ++k)
+                    CHECK((!parameters[part.first + k].strength || start[k] == 0.0));
+            }
+        }
+    }
+}
+
 TEST_CASE("An effect of zero strength adds nothing", "[effects]")
 {
     for (const auto* effect : catalogue()) {

@@ -90,10 +90,10 @@ bool feasible(const Model& model, std::size_t k, const Eigen::VectorXd& d, const
 }
 
 /// Its newest effect, which is linear, in the shape that fits the responses best, at zero strength.
-Model shapedByResponse(Model model, const std::vector<ResponseTarget>& responses)
+Model shapedByResponse(Model model, const Record& record)
 {
     auto shaped = model;
-    if (!fitNewestByResponse(shaped, responses).usable)
+    if (!fitNewestByResponse(shaped, record).usable)
         return model;
     auto& parameters = model.components.back().parameters;
     for (std::size_t k = 0; k < parameters.size(); ++k)
@@ -113,18 +113,15 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         std::size_t component;
     };
     std::vector<Entry> entries;
-    std::vector<ResponseTarget> responses;
     const auto seen = seenIn(record);
     for (const auto* effect : catalogue()) {
         if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
             continue;
         const auto starts = effect->starts(extent).size();
         std::vector<Model> candidates;
-        if (effect->linear() && starts > 1) {
+        if (effect->linear() && (starts > 1 || !effect->parts(extent).empty())) {
             // The responses tell its shape at once; every start would carry a memory of its own through the simulation.
-            if (responses.empty())
-                responses = linearResponsesOf(record);
-            candidates.push_back(shapedByResponse(withEffect(model, *effect, extent), responses));
+            candidates.push_back(shapedByResponse(withEffect(model, *effect, extent), record));
         } else {
             for (std::size_t start = 0; start < starts; ++start)
                 candidates.push_back(withEffect(model, *effect, extent, start));

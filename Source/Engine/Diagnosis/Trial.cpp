@@ -70,7 +70,7 @@ FitSummary tryFit(Model& model, const Record& record, const std::vector<std::siz
     }
     // A linear effect shows in the frequency response alone, and a search there costs next to nothing; in time it would creep along
     // the curved valley in which relaxations trade off against the stiffness.
-    if (Model candidate = model; candidate.components.back().effect->linear() && fitNewestByResponse(candidate, linearResponsesOf(record)).usable)
+    if (Model candidate = model; candidate.components.back().effect->linear() && fitNewestByResponse(candidate, record).usable)
         if (const double cost = costOf(candidate, record, sections, chosen); cost < lowest)
             best = std::move(candidate);
     model = std::move(best);

@@ -11,6 +11,8 @@ std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
     return {values};
 }
 
+std::vector<Part> Effect::parts(const Extent&) const { return {}; }
+
 std::vector<double> Effect::restarts(const Extent&, const std::vector<double>&) const { return {}; }
 
 bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::vector<Parameter>&) const { return true; }

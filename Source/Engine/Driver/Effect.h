@@ -96,6 +96,12 @@ struct LawInfo {
     std::string base;       ///< name of the base parameter it adds to
 };
 
+/// One of the like parts that an effect is the sum of, such as a mode of the cone.
+struct Part {
+    std::size_t first = 0, count = 0;           ///< its parameters; with its strengths at zero it does nothing
+    std::vector<std::vector<double>> starts;    ///< values of these from which a search may begin, strengths zero, like beside like
+};
+
 /// One physical effect. A subclass is the whole of it: its words, its parameters, its memory, what it adds to the driver's two
 /// equations and what to the sound that leaves it, written once through EffectOf for any number type.
 class Effect {
@@ -117,6 +123,10 @@ public:
 
     /// Shapes to try when nothing is known yet: parameter vectors with every strength at zero.
     virtual std::vector<std::vector<double>> starts(const Extent&) const;
+
+    /// For a linear effect that is a sum of parts, which may be narrow: a search on finely resolved frequency responses takes them up one
+    /// after the other, each where it explains most of what is left, for as long as another one pays. None: the effect is searched as a whole.
+    virtual std::vector<Part> parts(const Extent&) const;
 
     /// Resonances of the base in Hz from which a search on a frequency response begins together with a start, besides the one that the base
     /// has: a base that was fitted without the effect may sit on a part of what the effect does.

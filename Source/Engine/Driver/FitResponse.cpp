@@ -3,13 +3,10 @@
 
 #include "Engine/Driver/Linearize.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <utility>
+#include <numeric>
 
 namespace excursion {
 namespace {
@@ -21,6 +18,24 @@ constexpr double reach = 1e3;   // a search does not leave its start by more tha
 
 bool positive(const Parameter& p) { return p.lower >= 0.0 && p.value > 0.0 && !p.strength; }
 
+/// The parameters that a search on responses moves: free ones of what is linear, and of the path.
+std::vector<Eigen::Index> movedIn(const Model& model)
+{
+    std::vector<Eigen::Index> moved;
+    Eigen::Index index = 0;
+    const auto visit = [&](const Component& component) {
+        for (const auto& p : component.parameters) {
+            if (p.free && component.effect->linear())
+                moved.push_back(index);
+            ++index;
+        }
+    };
+    for (const auto& component : model.components)
+        visit(component);
+    visit(model.path);
+    return moved;
+}
+
 /// Residuals of one target at the model's present parameters, added to the normal equations in the scale of the search.
 void add(const ResponseTarget& target, const Response& response, const std::vector<Eigen::Index>& active,
          const Eigen::VectorXd& chain, bool gradient, NormalEquations& sum)
@@ -30,20 +45,27 @@ void add(const ResponseTarget& target, const Response& response, const std::vect
         sum.N = Eigen::MatrixXd::Zero(P, P);
         sum.g = Eigen::VectorXd::Zero(P);
     }
-    Eigen::VectorXcd row(P);
-    for (std::size_t f = 0; f < target.frequency.size(); ++f) {
-        const Complex model = target.impedance ? 1.0 / response.value[f] : response.value[f];
-        const Complex residual = (model - target.value[f]) / target.deviation[f];
-        sum.cost += std::norm(residual);
-        sum.rows += 2.0;
-        if (!gradient)
-            continue;
-        const Complex outer = (target.impedance ? -model * model : Complex(1.0)) / target.deviation[f];
-        for (Eigen::Index k = 0; k < P; ++k)
-            row[k] = outer * response.gradient(static_cast<Eigen::Index>(f), active[static_cast<std::size_t>(k)]) * chain[k];
-        sum.N += (row.conjugate() * row.transpose()).real();
-        sum.g += (row.conjugate() * residual).real();
+    const auto F = static_cast<Eigen::Index>(target.frequency.size());
+    Eigen::VectorXcd residual(F), outer(F);
+    for (Eigen::Index f = 0; f < F; ++f) {
+        const auto k = static_cast<std::size_t>(f);
+        const Complex model = target.impedance ? 1.0 / response.value[k] : response.value[k];
+        residual[f] = (model - target.value[k]) / target.deviation[k];
+        outer[f] = (target.impedance ? -model * model : Complex(1.0)) / target.deviation[k];
     }
+    sum.cost += residual.squaredNorm();
+    sum.rows += 2.0 * static_cast<double>(F);
+    if (!gradient)
+        return;
+    Eigen::MatrixXd J(2 * F, P);   // real parts over imaginary ones
+    for (Eigen::Index k = 0; k < P; ++k) {
+        const Eigen::VectorXcd slope = chain[k] * outer.cwiseProduct(response.gradient.col(active[static_cast<std::size_t>(k)]));
+        J.col(k) << slope.real(), slope.imag();
+    }
+    Eigen::VectorXd r(2 * F);
+    r << residual.real(), residual.imag();
+    sum.N.noalias() += J.transpose() * J;
+    sum.g.noalias() += J.transpose() * r;
 }
 
 /// What is plausible beforehand, against residuals of this variance.
@@ -92,35 +114,37 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
     }
 }
 
-/// The model with a base that resonates at that frequency, neither sharply nor dully.
-Model withResonance(Model model, double frequency)
-{
-    constexpr double quality = 4.0;
-    const double omega = 2.0 * std::numbers::pi * frequency, mass = model.baseParameter("m").value;
-    model.baseParameter("K").value = mass * omega * omega;
-    model.baseParameter("Rms").value = mass * omega / quality;
-    return model;
-}
-
 } // namespace
+
+double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
+{
+    const auto active = movedIn(model);
+    const auto P = static_cast<Eigen::Index>(active.size());
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(P);
+    NormalEquations sum;
+    for (const auto& target : targets)
+        add(target, respond(model, {target.quantity}, target.frequency, true).front(), active, ones, true, sum);
+    addPriors(model, active, ones, sum.cost / std::max(1.0, sum.rows), true, sum);
+    std::vector<Eigen::Index> every(active.size());
+    std::iota(every.begin(), every.end(), Eigen::Index {0});
+    const auto d = gaussNewtonStep(sum, every);
+    const auto all = parametersOf(model);
+    const auto newest = model.components.back().parameters.data();
+    for (Eigen::Index k = 0; k < P; ++k) {
+        auto* p = all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
+        if (p->strength && p >= newest && p < newest + model.components.back().parameters.size())
+            p->value = std::clamp(p->value + d[k], p->lower, p->upper);
+    }
+    return sum.cost + 2.0 * sum.g.dot(d) + d.dot(sum.N * d);
+}
 
 LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets, const LeastSquaresOptions& options)
 {
-    std::vector<Eigen::Index> active;
+    const auto active = movedIn(model);
     const auto all = parametersOf(model);
     std::vector<bool> logarithmic;
-    for (std::size_t k = 0, component = 0, inside = 0; k < all.size(); ++k) {
-        while (component < model.components.size() && inside == model.components[component].parameters.size()) {
-            ++component;
-            inside = 0;
-        }
-        const bool isPath = component == model.components.size();
-        if (all[k]->free && (isPath || model.components[component].effect->linear())) {
-            active.push_back(static_cast<Eigen::Index>(k));
-            logarithmic.push_back(positive(*all[k]));
-        }
-        ++inside;
-    }
+    for (const auto k : active)
+        logarithmic.push_back(positive(*all[static_cast<std::size_t>(k)]));
     const auto P = static_cast<Eigen::Index>(active.size());
     Eigen::VectorXd x(P), lower(P), upper(P);
     for (Eigen::Index k = 0; k < P; ++k) {
@@ -171,97 +195,6 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
     if (summary.usable)
         keepErrors(model, targets, active);
     return summary;
-}
-
-LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
-{
-    Extent extent;
-    extent.lowFrequency = targets.front().frequency.front();
-    extent.highFrequency = targets.front().frequency.back();
-    Model best = withEffect(model, effect, extent);
-    const auto summary = fitNewestByResponse(best, targets);
-    if (summary.usable)
-        model = std::move(best);
-    return summary;
-}
-
-LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
-{
-    struct Way {
-        Model model;
-        double cost;
-    };
-    std::vector<Way> ways;
-    const auto& newest = model.components.back();
-    const auto from = [&](Model trial, const std::vector<ResponseTarget>& at, const LeastSquaresOptions& search) {
-        const auto run = fitResponse(trial, at, search);
-        if (run.usable)
-            ways.push_back({std::move(trial), run.finalCost});
-    };
-    // A few steps on few points tell which starts lead somewhere.
-    constexpr int fewPoints = 10, enoughPoints = 16;   // an octave
-    constexpr std::size_t most = 3;
-    const auto few = thinned(targets, fewPoints), enough = thinned(targets, enoughPoints);
-    const auto cheaper = [](const Way& a, const Way& b) { return a.cost < b.cost; };
-    for (const auto& start : newest.effect->starts(newest.extent)) {
-        auto trial = model;
-        for (std::size_t k = 0; k < start.size(); ++k)
-            trial.components.back().parameters[k].value = start[k];
-        for (const double resonance : newest.effect->restarts(newest.extent, start))
-            from(withResonance(trial, resonance), few, {10, 1e-3});
-        from(std::move(trial), few, {10, 1e-3});
-    }
-    std::stable_sort(ways.begin(), ways.end(), cheaper);
-    ways.resize(std::min(ways.size(), most));
-    for (auto& way : std::exchange(ways, {}))
-        from(std::move(way.model), enough, {40, 1e-5});
-    if (ways.empty())
-        return {};
-    auto best = std::move(std::min_element(ways.begin(), ways.end(), cheaper)->model);
-    // More than once: priors and the reach of the search are relative to where a fit starts.
-    fitResponse(best, targets, {40, 1e-6});
-    auto summary = fitResponse(best, targets, {80, 1e-8});
-    constexpr int mostRounds = 5;
-    for (int n = 0; n < mostRounds && summary.usable && summary.finalCost < 0.9 * summary.initialCost; ++n)
-        summary = fitResponse(best, targets, {80, 1e-8});
-    if (summary.usable)
-        model = std::move(best);
-    return summary;
-}
-
-bool isSeen(const Model& model, std::size_t component)
-{
-    constexpr double sure = 4.0;        // standard errors, which take neighbouring points for independent
-    constexpr double atBound = 0.002;   // of the range
-    Eigen::Index first = 0;
-    for (std::size_t k = 0; k < component; ++k)
-        first += static_cast<Eigen::Index>(model.components[k].parameters.size());
-    const auto& parameters = model.components[component].parameters;
-    std::vector<Eigen::Index> shapes, strengths;
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-        const auto& p = parameters[k];
-        const auto index = first + static_cast<Eigen::Index>(k);
-        if (p.strength)
-            strengths.push_back(index);
-        else if (const double range = p.upper - p.lower; std::isfinite(range) && std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
-            return false;
-        else if (model.covariance.size() > 0 && model.covariance(index, index) > 0.0)
-            shapes.push_back(index);
-    }
-    const auto& newest = model.components[component];
-    if (model.covariance.size() == 0 || !newest.effect->plausible(newest.extent, parameters, model.base().parameters))
-        return false;
-    const Eigen::LDLT<Eigen::MatrixXd> known(Eigen::MatrixXd(model.covariance(shapes, shapes)));
-    for (const auto index : strengths) {
-        double variance = model.covariance(index, index);   // NaN where it is not known
-        if (!shapes.empty()) {
-            const Eigen::VectorXd shared = model.covariance(shapes, index);
-            variance -= shared.dot(known.solve(shared));
-        }
-        if (std::abs(parameters[static_cast<std::size_t>(index - first)].value) > sure * std::sqrt(std::max(variance, 0.0)) && std::isfinite(variance))
-            return true;
-    }
-    return false;
 }
 
 } // namespace excursion

@@ -27,7 +27,7 @@ struct ResponseTarget {
 std::vector<ResponseTarget> responsesOf(const Record&, int level, int pointsPerOctave = 12);
 
 /// Those that come nearest to a linear driver's: of the quietest level, or of all levels where that one is drowned in noise.
-std::vector<ResponseTarget> linearResponsesOf(const Record&);
+std::vector<ResponseTarget> linearResponsesOf(const Record&, int pointsPerOctave = 12);
 
 /// Targets of a take that is a frequency response only: the impedance from voltage and current, the other quantities per unit of
 /// input, on a logarithmic grid. The deviation of an impedance is its magnitude, that of any other response the curve's rms, four times
@@ -51,12 +51,18 @@ double responseErrorDb(const Model&, const ResponseTarget&);
 /// misfit at the start. Leaves standard errors and the covariance in the model, scaled by the misfit that is left.
 LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
 
-/// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points. The model is left as it was
-/// when the fit is not usable.
+/// What one Gauss-Newton step of the parameters that fitResponse() moves would leave of its cost, predicted. The strengths of the newest effect
+/// make the step, all else stays: from a strength of zero that is a linear least-squares fit, in which the rest of the model may follow.
+double stepOnResponses(Model&, const std::vector<ResponseTarget>&);
+
+/// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points; one with parts part by part, on
+/// all points. The model is left as it was when the fit is not usable.
 LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTarget>&);
 
 /// The same for a linear effect that the model has already, as its newest: its present values do not count.
 LeastSquaresSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
+/// On the responses of a record, as finely as the effect asks for.
+LeastSquaresSummary fitNewestByResponse(Model&, const Record&);
 
 /// Whether a fit is sure that a component is there: one of its strengths exceeds four standard errors, and no parameter of its shape was
 /// driven to a bound, or all of them to implausible values, where they would stand for something else. The errors are those for the shape that was found: data that shows that there is a spectrum need

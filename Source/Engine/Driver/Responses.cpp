@@ -172,11 +172,11 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
     return targets;
 }
 
-std::vector<ResponseTarget> linearResponsesOf(const Record& record)
+std::vector<ResponseTarget> linearResponsesOf(const Record& record, int pointsPerOctave)
 {
-    auto targets = responsesOf(record, record.levels.empty() ? -1 : 0);
+    auto targets = responsesOf(record, record.levels.empty() ? -1 : 0, pointsPerOctave);
     if (targets.size() < record.channels.size())
-        targets = responsesOf(record, -1);
+        targets = responsesOf(record, -1, pointsPerOctave);
     return targets;
 }
 

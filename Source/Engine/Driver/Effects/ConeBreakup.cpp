@@ -55,12 +55,19 @@ public:
         }
         return result;
     }
-    std::vector<std::vector<double>> starts(const Extent& e) const override
+    /// Broader and narrower modes are found from one of this quality, which is too narrow to stand for two at once. They lie so close that
+    /// the next one is always within the width of a mode.
+    std::vector<Part> parts(const Extent&) const override
     {
-        std::vector<double> here(parameters(e).size(), 0.0), between = here;
-        for (std::size_t k = 0; k < modes; ++k)
-            between[each * k] = 0.5 * spacing;
-        return {here, between};
+        constexpr double quality = 12.0, step = 0.75 / quality, aboveBand = 0.1;   // octaves
+        std::vector<Part> parts;
+        for (int k = 0; k < modes; ++k) {
+            Part part {static_cast<std::size_t>(each * k), each, {}};
+            for (double octave = -octavesSearched; octave < aboveBand; octave += step)
+                part.starts.push_back({octave - octaveOf(k), std::log2(quality / middlingQuality), 0.0, 0.0});
+            parts.push_back(std::move(part));
+        }
+        return parts;
     }
 
     int memorySize(const Extent&) const override { return 2 * modes; }
@@ -71,9 +78,8 @@ public:
     void prepareFor(const Extent& e, const T* p, T* c) const
     {
         using std::exp;
-        constexpr double middlingQuality = 5.0;
         for (int k = 0; k < modes; ++k, p += each, c += each) {
-            const double place = 2.0 * std::numbers::pi * e.highFrequency * std::exp2(spacing * (k + 0.5 - modes));
+            const double place = 2.0 * std::numbers::pi * e.highFrequency * std::exp2(octaveOf(k));
             const T w = place * exp(std::numbers::ln2 * p[0]);
             c[0] = w * w;
             c[1] = w * exp(-std::numbers::ln2 * p[1]) / middlingQuality;
@@ -103,6 +109,10 @@ public:
 private:
     static constexpr int modes = 4, each = 4;
     static constexpr double spacing = 0.75;   // octaves from one place to the next
+    static constexpr double octavesSearched = modes * spacing, middlingQuality = 5.0;
+
+    /// A mode's own place, from the upper end of the band.
+    static double octaveOf(int mode) { return spacing * (mode + 0.5 - modes); }
 };
 
 } // namespace
