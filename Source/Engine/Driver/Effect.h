@@ -121,6 +121,10 @@ public:
     /// has: a base that was fitted without the effect may sit on a part of what the effect does.
     virtual std::vector<double> restarts(const Extent&, const std::vector<double>& start) const;
 
+    /// Of how many parts alike it consists, whose parameters follow one another. A search on a frequency response adds them one by one, each from
+    /// the starts of the first, and leaves out those that bring nothing.
+    virtual int parts() const { return 1; }
+
     /// Whether such values can be the effect's own, beside a base with those parameters. If not, its shape has been bent to stand for something
     /// else, and it is not named.
     virtual bool plausible(const Extent&, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const;

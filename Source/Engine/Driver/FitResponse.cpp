@@ -102,6 +102,92 @@ Model withResonance(Model model, double frequency)
     return model;
 }
 
+/// A model and what a fit on its way leaves.
+struct Way {
+    Model model;
+    double cost = std::numeric_limits<double>::infinity();
+};
+
+/// What can be the effect comes before what has been bent to stand for something else, and then what leaves less.
+bool better(const Way& a, const Way& b)
+{
+    const auto plausible = [](const Model& model) {
+        const auto& newest = model.components.back();
+        return newest.effect->plausible(newest.extent, newest.parameters, model.base().parameters);
+    };
+    const bool first = plausible(a.model), second = plausible(b.model);
+    return first != second ? first : a.cost < b.cost;
+}
+
+/// The best of the first ways after more steps on more points.
+Way lookedAt(std::vector<Way> ways, const std::vector<ResponseTarget>& targets, const LeastSquaresOptions& search)
+{
+    constexpr std::size_t most = 3;
+    constexpr int points = 16;   // an octave
+    const auto thin = thinned(targets, points);
+    ways.resize(std::min(ways.size(), most));
+    for (auto& way : ways)
+        if (const auto run = fitResponse(way.model, thin, search); run.usable)
+            way.cost = run.finalCost;
+        else
+            way.cost = std::numeric_limits<double>::infinity();
+    ways.erase(std::remove_if(ways.begin(), ways.end(), [](const Way& way) { return !std::isfinite(way.cost); }), ways.end());
+    return ways.empty() ? Way {} : std::move(*std::min_element(ways.begin(), ways.end(), better));
+}
+
+constexpr double worthwhile = 0.93;   // of the squared error: parts that lower it by less are not kept
+constexpr int glancePoints = 10;   // an octave: a few steps on them tell which starts lead somewhere
+
+/// The newest component from each of its starts.
+Way fromStarts(const Model& model, const std::vector<std::vector<double>>& starts, const std::vector<ResponseTarget>& targets)
+{
+    std::vector<Way> ways;
+    const auto& newest = model.components.back();
+    const auto few = thinned(targets, glancePoints);
+    const auto from = [&](Model trial) {
+        const auto run = fitResponse(trial, few, {10, 1e-3});
+        if (run.usable)
+            ways.push_back({std::move(trial), run.finalCost});
+    };
+    for (const auto& start : starts) {
+        auto trial = model;
+        for (std::size_t k = 0; k < start.size(); ++k)
+            trial.components.back().parameters[k].value = start[k];
+        for (const double resonance : newest.effect->restarts(newest.extent, start))
+            from(withResonance(trial, resonance));
+        from(std::move(trial));
+    }
+    std::stable_sort(ways.begin(), ways.end(), better);
+    return lookedAt(std::move(ways), targets, {40, 1e-5});
+}
+
+/// The newest component with one part more, whose parameters begin at `first`.
+Way withPart(const Model& model, const std::vector<std::vector<double>>& starts, std::size_t first, std::size_t each,
+             const std::vector<ResponseTarget>& targets)
+{
+    std::vector<Way> ways;
+    const auto few = thinned(targets, glancePoints);
+    for (const auto& start : starts) {
+        Way way {model};
+        for (std::size_t k = 0; k < each; ++k) {
+            auto& p = way.model.components.back().parameters[first + k];
+            p.value = start[k];
+            p.free = true;
+        }
+        if (const auto run = fitResponse(way.model, few, {3, 1e-3}); run.usable)
+            way.cost = run.finalCost;
+        ways.push_back(std::move(way));
+    }
+    // Starts beside one another lead to the same place; the best of them stands for it.
+    std::vector<Way> places;
+    for (std::size_t n = 0; n < ways.size(); ++n)
+        if (std::isfinite(ways[n].cost) && (n == 0 || ways[n].cost <= ways[n - 1].cost) && (n + 1 == ways.size() || ways[n].cost < ways[n + 1].cost))
+            places.push_back(ways[n]);
+    // Three steps do not tell what will be plausible.
+    std::stable_sort(places.begin(), places.end(), [](const Way& a, const Way& b) { return a.cost < b.cost; });
+    return lookedAt(std::move(places), targets, {25, 1e-4});
+}
+
 } // namespace
 
 LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets, const LeastSquaresOptions& options)
@@ -187,45 +273,58 @@ LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std:
 
 LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
-    struct Way {
-        Model model;
-        double cost;
-    };
-    std::vector<Way> ways;
     const auto& newest = model.components.back();
-    const auto from = [&](Model trial, const std::vector<ResponseTarget>& at, const LeastSquaresOptions& search) {
-        const auto run = fitResponse(trial, at, search);
-        if (run.usable)
-            ways.push_back({std::move(trial), run.finalCost});
-    };
-    // A few steps on few points tell which starts lead somewhere.
-    constexpr int fewPoints = 10, enoughPoints = 16;   // an octave
-    constexpr std::size_t most = 3;
-    const auto few = thinned(targets, fewPoints), enough = thinned(targets, enoughPoints);
-    const auto cheaper = [](const Way& a, const Way& b) { return a.cost < b.cost; };
-    for (const auto& start : newest.effect->starts(newest.extent)) {
-        auto trial = model;
-        for (std::size_t k = 0; k < start.size(); ++k)
-            trial.components.back().parameters[k].value = start[k];
-        for (const double resonance : newest.effect->restarts(newest.extent, start))
-            from(withResonance(trial, resonance), few, {10, 1e-3});
-        from(std::move(trial), few, {10, 1e-3});
+    const auto starts = newest.effect->starts(newest.extent);
+    const auto parts = static_cast<std::size_t>(newest.effect->parts()), each = newest.parameters.size() / parts;
+    Way best;
+    if (parts == 1)
+        best = fromStarts(model, starts, targets);
+    else {
+        Model bare = model;
+        for (std::size_t k = 0; k < each * parts; ++k) {
+            bare.components.back().parameters[k].value = starts.front()[k];
+            bare.components.back().parameters[k].free = false;
+        }
+        for (std::size_t part = 0; part < parts; ++part) {
+            auto more = withPart(part == 0 ? bare : best.model, starts, part * each, each, targets);
+            if (!(more.cost < worthwhile * best.cost))
+                break;
+            best = std::move(more);
+        }
     }
-    std::stable_sort(ways.begin(), ways.end(), cheaper);
-    ways.resize(std::min(ways.size(), most));
-    for (auto& way : std::exchange(ways, {}))
-        from(std::move(way.model), enough, {40, 1e-5});
-    if (ways.empty())
+    if (!std::isfinite(best.cost))
         return {};
-    auto best = std::move(std::min_element(ways.begin(), ways.end(), cheaper)->model);
     // More than once: priors and the reach of the search are relative to where a fit starts.
-    fitResponse(best, targets, {40, 1e-6});
-    auto summary = fitResponse(best, targets, {80, 1e-8});
+    fitResponse(best.model, targets, {40, 1e-6});
+    auto summary = fitResponse(best.model, targets, {80, 1e-8});
     constexpr int mostRounds = 5;
     for (int n = 0; n < mostRounds && summary.usable && summary.finalCost < 0.9 * summary.initialCost; ++n)
-        summary = fitResponse(best, targets, {80, 1e-8});
+        summary = fitResponse(best.model, targets, {80, 1e-8});
     if (summary.usable)
-        model = std::move(best);
+        model = std::move(best.model);
+    return summary;
+}
+
+LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
+{
+    const LeastSquaresOptions thoroughly {80, 1e-9};
+    auto summary = fitResponse(model, targets, thoroughly);
+    for (std::size_t k = 1; k + 1 < model.components.size(); ++k) {
+        if (!model.components[k].effect->linear() || model.components[k].effect->parts() == 1)
+            continue;
+        auto trial = model;
+        const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
+        std::rotate(place, place + 1, trial.components.end());   // as its newest
+        if (!fitNewestByResponse(trial, targets).usable)
+            continue;
+        const auto back = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
+        std::rotate(back, trial.components.end() - 1, trial.components.end());
+        const auto run = fitResponse(trial, targets, thoroughly);
+        if (run.usable && run.finalCost < worthwhile * summary.finalCost && isSeen(trial, k)) {
+            model = std::move(trial);
+            summary = run;
+        }
+    }
     return summary;
 }
 

@@ -58,6 +58,10 @@ LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<Respo
 /// The same for a linear effect that the model has already, as its newest: its present values do not count.
 LeastSquaresSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 
+/// Fits a model that has got a new effect. Those of the others that have several parts are found anew as well, as the new one may have uncovered
+/// more of them; the parts stay as they were where that brings little.
+LeastSquaresSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
+
 /// Whether a fit is sure that a component is there: one of its strengths exceeds four standard errors, and no parameter of its shape was
 /// driven to a bound, or all of them to implausible values, where they would stand for something else. The errors are those for the shape that was found: data that shows that there is a spectrum need
 /// not show how it is distributed, nor what it comes to far beyond the band.
