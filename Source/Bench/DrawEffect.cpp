@@ -182,6 +182,18 @@ std::vector<ConeMode> drawBreakup(double strength, double highEdge, Random& rand
     return modes;
 }
 
+std::vector<HungPart> drawParts(double strength, const Loudspeaker& speaker, double f0, double highEdge, Random& random)
+{
+    constexpr double heaviest = 0.3;   // of the cone's mass
+    std::vector<HungPart> parts(static_cast<std::size_t>(1 + random.index(2)));
+    for (auto& part : parts) {
+        part.frequency = random.logUniform(2.0 * f0, std::min(10.0 * f0, 0.7 * highEdge));
+        part.quality = random.logUniform(3.0, 12.0);
+        part.mass = heaviest * strength * speaker.m;
+    }
+    return parts;
+}
+
 } // namespace
 
 double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited& visited, const BenchSetup& setup, Random& random)
@@ -237,6 +249,8 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
         return visited.velocity / 343.0;
     } else if (effect.id == "cone-breakup")   // strength: change of the pressure at the resonance
         speaker.coneBreakup = drawBreakup(strength, plan.bandHigh, random);
+    else if (effect.id == "side-resonance")
+        speaker.sideResonance = drawParts(strength, speaker, f0, plan.bandHigh, random);
     else {
         std::string known;
         for (const auto& id : effectIds())

@@ -75,6 +75,11 @@ Loudspeaker::Response Loudspeaker::small(double frequency) const
         port = -1.0 / (give * portStiffness);
         mechanical += 1.0 / (give * s);
     }
+    for (const auto& part : sideResonance) {
+        const double w = 2.0 * std::numbers::pi * part.frequency;
+        const auto follow = s * w / part.quality + w * w;   // y/x = follow/(s^2 + follow)
+        mechanical += s * part.mass * follow / (s * s + follow);
+    }
     const auto impedance = Re + s * Le + eddyImpedance(s) + Bl * Bl / mechanical;
     Response response;
     response.current = 1.0 / impedance;
@@ -88,7 +93,8 @@ std::vector<std::string> Loudspeaker::effects() const
     const bool present[] {forceFactor.has_value(),       stiffness.has_value(),   inductancePosition.has_value(),
                           inductanceCurrent.has_value(), eddyCurrents.has_value(), dampingVelocity.has_value(),
                           creep.has_value(),             friction.has_value(),    coilHeating.has_value(),
-                          ventedBox.has_value(),         doppler,                 !coneBreakup.empty()};
+                          ventedBox.has_value(),         doppler,                 !coneBreakup.empty(),
+                          !sideResonance.empty()};
     std::vector<std::string> ids;
     for (std::size_t n = 0; n < effectIds().size(); ++n)
         if (present[n])
@@ -115,7 +121,8 @@ const std::vector<std::string>& effectIds()
 {
     static const std::vector<std::string> ids {"force-factor",      "stiffness",        "inductance-position", "inductance-current",
                                                "eddy-currents",     "damping-velocity", "creep",               "friction",
-                                               "coil-heating",      "vented-box",       "doppler",             "cone-breakup"};
+                                               "coil-heating",      "vented-box",       "doppler",             "cone-breakup",
+                                               "side-resonance"};
     return ids;
 }
 

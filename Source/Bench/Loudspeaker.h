@@ -86,9 +86,17 @@ struct ConeMode {
     double gain = 0.2;           ///< participation, either sign
 };
 
+/// A surround or a dust cap that hangs on the cone by a spring and a damper of its own, y'' = -(w/Q) (y' - x') - w^2 (y - x), and pulls back
+/// with mass y''. The base's m is without it.
+struct HungPart {
+    double mass = 0.001;        ///< kg
+    double frequency = 500.0;   ///< Hz
+    double quality = 8.0;
+};
+
 /// A loudspeaker in free air, or in a vented box, as the bench knows it:
 ///     u = Re(T) i + d/dt [ lambda(x, i) + lambda_eddy ] + Bl(x) v,     lambda = Le(x, i) i,     lambda_eddy = k(x) G(s) k(x) i
-///     m x'' = Bl(x) i - Rms(v) v - F_suspension - F_friction - F_box + d/dx (integral of lambda di)
+///     m x'' = Bl(x) i - Rms(v) v - F_suspension - F_friction - F_box - F_parts + d/dx (integral of lambda di)
 /// where the last term is the reluctance force, 1/2 i^2 dLe/dx when Le does not depend on i, and with k'(x) i times the loops' flux G(s) k(x) i
 /// where the loops' coupling k moves.
 /// Signs: positive current moves the cone to positive x, towards the microphone.
@@ -115,6 +123,7 @@ struct Loudspeaker {
     std::optional<VentedBox> ventedBox;
     bool doppler = false;
     std::vector<ConeMode> coneBreakup;
+    std::vector<HungPart> sideResonance;
 
     double forceFactorAt(double x) const;                ///< N/A
     double stiffnessAt(double x) const;                  ///< N/m

@@ -98,6 +98,10 @@ Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, do
             cell.take[l] = step * parabola[2][l];
         modes_.push_back(cell);
     }
+    for (const auto& part : speaker.sideResonance) {
+        parts_.emplace_back();
+        parts_.back().part = part;
+    }
 }
 
 void Simulator::predict()
@@ -118,6 +122,8 @@ void Simulator::predict()
         extrapolate(port_, portBefore_);
         extrapolate(leak_, leakBefore_);
     }
+    for (auto& part : parts_)
+        extrapolate(part.acceleration, part.before);
 }
 
 void Simulator::coupleLoops()
@@ -208,6 +214,8 @@ Triple Simulator::accelerations()
         if (inductance_.present())
             force += inductance_(x_[j]).slope * coEnergyIntegral(saturation_, i_[j]);
         force += box_[j] + couplingSlope_[j] * i_[j] * (eddyHistory_[j] + eddy[j]);
+        for (const auto& part : parts_)
+            force -= part.part.mass * part.acceleration[j];
         a[j] = force / speaker_.m;
     }
     return a;
@@ -236,6 +244,15 @@ const Simulator::Sample& Simulator::step(const Triple& voltage)
                 box_[j] = -box->stiffness * (x_[j] + way + leaked_ + h_ * leaked[j]) - box->absorption * (v_[j] + speed + leak_[j]);
                 port_[j] = (box_[j] - box->resistance * speed - box->spring * way) / box->mass;
                 leak_[j] = box_[j] / box->leak;
+            }
+        }
+        for (auto& part : parts_) {
+            const auto speed = times(A, part.acceleration), way = times(B, part.acceleration);
+            const double w = 2.0 * std::numbers::pi * part.part.frequency;
+            for (int j = 0; j < 3; ++j) {
+                const double velocity = part.velocity + h_ * speed[j];
+                const double position = part.position + h_ * (Radau::points()[j] * part.velocity + h_ * way[j]);
+                part.acceleration[j] = w / part.part.quality * (v_[j] - velocity) + w * w * (x_[j] - position);
             }
         }
         const auto iOld = i_;
@@ -284,6 +301,10 @@ void Simulator::finish(const Triple& voltage)
         portVelocity_ += h_ * times(A, port_)[2];
         leaked_ += h_ * times(A, leak_)[2];
         sample_.radiated += port_[2];
+    }
+    for (auto& part : parts_) {
+        part.position += h_ * (part.velocity + h_ * times(B, part.acceleration)[2]);
+        part.velocity += h_ * times(A, part.acceleration)[2];
     }
     for (auto& mode : modes_) {
         mode.state = mode.decay * mode.state + mode.take[0] * a_[0] + mode.take[1] * a_[1] + mode.take[2] * a_[2];

@@ -40,6 +40,12 @@ private:
         double direct = 0;
     };
 
+    struct Part {
+        HungPart part;
+        double position = 0, velocity = 0;
+        Triple acceleration {}, before {};
+    };
+
     void predict();
     void solveCurrents(const Triple& voltage);
     void coupleLoops();
@@ -57,6 +63,7 @@ private:
     double portPosition_ = 0, portVelocity_ = 0, leaked_ = 0;
     std::vector<double> frictionState_;
     std::vector<Mode> modes_;
+    std::vector<Part> parts_;
     RelaxationBank eddy_, creep_;
     bool loopsMove_ = false;
     double creepScale_ = 0;       // what multiplies the creep cells' output

@@ -73,6 +73,12 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
             modes.push_back({{"frequency", mode.frequency}, {"quality", mode.quality}, {"gain", mode.gain}});
         return {{"modes", modes}};
     }
+    if (id == "side-resonance") {
+        Json parts = Json::array();
+        for (const auto& part : speaker.sideResonance)
+            parts.push_back({{"mass", part.mass}, {"frequency", part.frequency}, {"quality", part.quality}});
+        return {{"parts", parts}};
+    }
     return Json::object();
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("an effect shows in the channels it should", "[bench][slow]")
         for (const auto quantity : {current, displacement})
             CHECK(std::max(distortion(take, quantity, true), distortion(take, quantity, false)) > -75.0);
     }
-    for (const std::string id : {"eddy-currents", "creep", "vented-box"}) {
+    for (const std::string id : {"eddy-currents", "creep", "vented-box", "side-resonance"}) {
         INFO(id);
         const auto take = measure(with(id, 0.5, setup), setup);
         CHECK(difference(take, linear, current).band > -45.0);

@@ -93,6 +93,11 @@ TEST_CASE("linear effects are their closed forms", "[bench][slow]")
         speaker.ventedBox = VentedBox {2500.0, 0.02, 0.7, 60.0, 0.3, 700.0};
         CHECK(againstClosedForm(speaker, setup) < -100.0);
     }
+    SECTION("parts that hang on the cone")
+    {
+        speaker.sideResonance = {{0.002, 310.0, 8.0}, {0.0007, 1200.0, 4.0}};
+        CHECK(againstClosedForm(speaker, setup) < -100.0);
+    }
 }
 
 TEST_CASE("a cone mode leaves its resonance in the pressure alone", "[bench]")

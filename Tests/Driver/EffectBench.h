@@ -31,13 +31,13 @@ inline double someScale(const Effect& effect)
     const auto base = effect.sizedBy();
     if (base.empty())
         return effect.electrical() || !effect.felt() ? 0.02 : 1800.0;
-    return base == "Re" ? 3.3 : base == "Bl" ? 5.0 : base == "K" ? 1800.0 : base == "Le" ? 3e-4 : 0.8;
+    return base == "Re" ? 3.3 : base == "Bl" ? 5.0 : base == "K" ? 1800.0 : base == "Le" ? 3e-4 : base == "m" ? 0.014 : 0.8;
 }
 
 /// What makes a strength strong: a share of what is plausible, where the effect says what that is, else of its scale.
 inline double strengthOf(const Effect& effect, const Parameter& p, const Extent& extent, double share)
 {
-    return share * (effect.law() || !std::isfinite(p.prior) ? extent.scale : p.prior);
+    return share * std::min(effect.law() || !std::isfinite(p.prior) ? extent.scale : p.prior, p.upper);
 }
 
 /// One effect on its own, with parameters that make it strong, asked at any state.

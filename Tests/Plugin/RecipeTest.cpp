@@ -122,5 +122,5 @@ TEST_CASE("Parameters keep their places when later versions have more of them", 
         ids.add(dynamic_cast<juce::AudioProcessorParameterWithID&>(*parameter).paramID);
     CHECK(ids.joinIntoString(" ") == "mode fullScale amount displacementLimit voltageLimit trim effect-force-factor effect-stiffness effect-inductance-position "
                                      "effect-eddy-currents effect-creep effect-damping-velocity powerLimit margin effect-inductance-current effect-friction "
-                                     "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup");
+                                     "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance");
 }

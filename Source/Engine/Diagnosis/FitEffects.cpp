@@ -64,7 +64,7 @@ Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects
         if (!addByResponse(model, effect, targets).usable)
             throw Error(Error::Kind::numerical, "The effect \"" + id + "\" could not be fitted to the frequency response.");
     }
-    const auto run = fitResponse(model, targets, {80, 1e-9});
+    const auto run = refineByResponse(model, targets);
     if (summary)
         static_cast<LeastSquaresSummary&>(*summary) = run;
     return model;

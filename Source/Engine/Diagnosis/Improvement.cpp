@@ -43,7 +43,7 @@ FitSummary settle(Model& model, const Record& record, const FitOptions& options,
 FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const Progress&)
 {
     FitSummary summary;
-    static_cast<LeastSquaresSummary&>(summary) = fitResponse(model, responsesOf(spectra), {80, 1e-9});
+    static_cast<LeastSquaresSummary&>(summary) = refineByResponse(model, responsesOf(spectra));
     return summary;
 }
 

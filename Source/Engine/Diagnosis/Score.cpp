@@ -96,9 +96,12 @@ Model shapedByResponse(Model model, const Record& record)
     if (!fitNewestByResponse(shaped, record).usable)
         return model;
     auto& parameters = model.components.back().parameters;
-    for (std::size_t k = 0; k < parameters.size(); ++k)
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+        const auto& found = shaped.components.back().parameters[k];
+        parameters[k].free = found.free;
         if (!parameters[k].strength)
-            parameters[k].value = shaped.components.back().parameters[k].value;
+            parameters[k].value = found.value;
+    }
     return model;
 }
 

@@ -10,7 +10,7 @@ const std::vector<const Effect*>& catalogue()
 {
     static const std::vector<const Effect*> effects {&forceFactor(),       &stiffness(), &inductancePosition(), &eddyCurrents(),
                                                      &creep(),             &dampingVelocity(), &inductanceCurrent(), &friction(),
-                                                     &coilHeating(),       &ventedBox(), &doppler(), &coneBreakup()};
+                                                     &coilHeating(),       &ventedBox(), &doppler(), &coneBreakup(), &sideResonance()};
     return effects;
 }
 

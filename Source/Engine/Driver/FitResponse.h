@@ -52,7 +52,8 @@ double responseErrorDb(const Model&, const ResponseTarget&);
 LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
 
 /// What one Gauss-Newton step of the parameters that fitResponse() moves would leave of its cost, predicted. The strengths of the newest effect
-/// make the step, all else stays: from a strength of zero that is a linear least-squares fit, in which the rest of the model may follow.
+/// make the step, all else stays: from a strength of zero that is a linear least-squares fit, in which the rest of the model may follow. Where they
+/// would pass a bound nothing is promised: what is left is the cost as it is.
 double stepOnResponses(Model&, const std::vector<ResponseTarget>&);
 
 /// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points; one with parts part by part, on
@@ -63,6 +64,10 @@ LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<Respo
 LeastSquaresSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 /// On the responses of a record, as finely as the effect asks for.
 LeastSquaresSummary fitNewestByResponse(Model&, const Record&);
+
+/// Fits a model that has got a new effect. Those of the others that have several parts are found anew as well, as the new one may have uncovered
+/// more of them; the parts stay as they were where that brings little.
+LeastSquaresSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
 
 /// Whether a fit is sure that a component is there: one of its strengths exceeds four standard errors, and no parameter of its shape was
 /// driven to a bound, or all of them to implausible values, where they would stand for something else. The errors are those for the shape that was found: data that shows that there is a spectrum need

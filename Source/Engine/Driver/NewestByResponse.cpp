@@ -20,6 +20,17 @@ struct Way {
 
 bool cheaper(const Way& a, const Way& b) { return a.cost < b.cost; }
 
+/// What can be the effect comes before what has been bent to stand for something else, and then what leaves less.
+bool better(const Way& a, const Way& b)
+{
+    const auto plausible = [](const Model& model) {
+        const auto& newest = model.components.back();
+        return newest.effect->plausible(newest.extent, newest.parameters, model.base().parameters);
+    };
+    const bool first = plausible(a.model), second = plausible(b.model);
+    return first != second ? first : a.cost < b.cost;
+}
+
 /// The model with a base that resonates at that frequency, neither sharply nor dully.
 Model withResonance(Model model, double frequency)
 {
@@ -64,43 +75,53 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
         const auto run = fitResponse(way.model, targets, {8, 1e-4});
         way.cost = run.usable ? run.finalCost : std::numeric_limits<double>::infinity();
     }
-    const auto best = std::min_element(ways.begin(), ways.end(), cheaper);
+    const auto best = std::min_element(ways.begin(), ways.end(), better);
     return best == ways.end() ? Way {model, std::numeric_limits<double>::infinity()} : *best;
 }
 
-/// The newest effect taken up part by part, see Effect::parts(). Those that do not pay keep a strength of zero.
+/// How much of its cost a part must take away: far more than chance does at the best of a hundred places.
+double worthwhile(double left, const std::vector<ResponseTarget>& targets)
+{
+    constexpr double pays = 40.0;   // times the mean square of what is left
+    return pays * left / rowsOf(targets);
+}
+
+/// The newest effect taken up part by part, see Effect::parts(). Those that do not pay are at rest, and not free where others do.
 LeastSquaresSummary fitParts(Model& model, const std::vector<Part>& parts, const std::vector<ResponseTarget>& targets)
 {
-    // How often the mean square of what is left a part must take away: far more than chance does at the best of a hundred places.
-    constexpr double pays = 40.0;
     constexpr int enoughPoints = 24;   // an octave, to tell where a part may begin
     const auto enough = thinned(targets, enoughPoints);
     auto best = model;
+    auto& component = best.components.back();
+    component.parameters = component.effect->parameters(component.extent);
     std::vector<bool> free;
-    for (auto& p : best.components.back().parameters) {
-        free.push_back(std::exchange(p.free, false));
+    const bool listens = best.path.parameters[1].free;   // the delay is, where a pressure was measured
+    for (auto& p : component.parameters) {
+        free.push_back(p.free && (listens || !p.heard));
+        p.free = false;
         if (p.strength)
             p.value = 0.0;
     }
     auto summary = fitResponse(best, targets, {40, 1e-5});
+    bool found = false;
     for (const auto& part : parts) {
         auto way = withPart(best, part, free, enough);
         if (!std::isfinite(way.cost))
             break;
         const auto run = fitResponse(way.model, targets, {40, 1e-5});
-        if (!run.usable || !(summary.finalCost - run.finalCost > pays * run.finalCost / rowsOf(targets)))
+        if (!run.usable || !(summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets)))
             break;
         summary = run;
         best = std::move(way.model);
+        found = true;
     }
     // More than once: priors and the reach of the search are relative to where a fit starts.
     if (summary.usable)
         summary = fitResponse(best, targets, {80, 1e-8});
-    if (!summary.usable)
-        return summary;
-    for (std::size_t k = 0; k < free.size(); ++k)
+    for (std::size_t k = 0; !found && k < free.size(); ++k)
         best.components.back().parameters[k].free = free[k];
-    model = std::move(best);
+    if (summary.usable)
+        model = std::move(best);
     return summary;
 }
 
@@ -141,13 +162,13 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
             from(withResonance(trial, resonance), few, {10, 1e-3});
         from(std::move(trial), few, {10, 1e-3});
     }
-    std::stable_sort(ways.begin(), ways.end(), cheaper);
+    std::stable_sort(ways.begin(), ways.end(), better);
     ways.resize(std::min(ways.size(), most));
     for (auto& way : std::exchange(ways, {}))
         from(std::move(way.model), enough, {40, 1e-5});
     if (ways.empty())
         return {};
-    auto best = std::move(std::min_element(ways.begin(), ways.end(), cheaper)->model);
+    auto best = std::move(std::min_element(ways.begin(), ways.end(), better)->model);
     // More than once: priors and the reach of the search are relative to where a fit starts.
     fitResponse(best, targets, {40, 1e-6});
     auto summary = fitResponse(best, targets, {80, 1e-8});
@@ -164,6 +185,30 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const Record& record)
     constexpr int usual = 12, fine = 48;   // points an octave
     const auto& newest = model.components.back();
     return fitNewestByResponse(model, linearResponsesOf(record, newest.effect->parts(newest.extent).empty() ? usual : fine));
+}
+
+LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
+{
+    const LeastSquaresOptions thoroughly {80, 1e-9};
+    auto summary = fitResponse(model, targets, thoroughly);
+    for (std::size_t k = 1; k + 1 < model.components.size(); ++k) {
+        const auto& older = model.components[k];
+        if (!older.effect->linear() || older.effect->parts(older.extent).empty())
+            continue;
+        auto trial = model;
+        const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
+        std::rotate(place, place + 1, trial.components.end());   // as its newest
+        if (!fitNewestByResponse(trial, targets).usable)
+            continue;
+        const auto back = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
+        std::rotate(back, trial.components.end() - 1, trial.components.end());
+        const auto run = fitResponse(trial, targets, thoroughly);
+        if (run.usable && summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets) && isSeen(trial, k)) {
+            model = std::move(trial);
+            summary = run;
+        }
+    }
+    return summary;
 }
 
 bool isSeen(const Model& model, std::size_t component)

@@ -30,6 +30,8 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
             return c.effect->summary(c.extent, at.data());
         };
         const auto above = moved(step), below = moved(-step);
+        if (above.size() != figures.size() || below.size() != figures.size())
+            continue;   // at the brink of being there at all
         for (std::size_t n = 0; n < figures.size(); ++n)
             gradient(static_cast<Eigen::Index>(n), j) = (above[n].value - below[n].value) / (2.0 * step);
     }

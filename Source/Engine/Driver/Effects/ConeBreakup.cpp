@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -47,7 +48,7 @@ public:
                 p.strength = strength;
                 result.push_back(p);
             };
-            constexpr double octavesAround = 1.0, octavesOfQuality = 1.5, plausibleGain = 3.0;
+            constexpr double octavesAround = 1.0, octavesOfQuality = 1.5;
             add("shift", "octaves", octavesAround, false);
             add("sharpness", "octaves", octavesOfQuality, false);
             add("g", "1", plausibleGain, true);
@@ -68,6 +69,24 @@ public:
             parts.push_back(std::move(part));
         }
         return parts;
+    }
+
+    /// A mode rings, above the band in which the cone moves as one piece, and what swings is a part of the cone.
+    bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
+    {
+        constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 2.0;
+        const auto of = [&](const char* name) {
+            return std::find_if(base.begin(), base.end(), [&](const Parameter& p) { return p.name == name; })->value;
+        };
+        const double resonance = std::sqrt(of("K") / of("m")) / (2.0 * std::numbers::pi);
+        for (int k = 0; k < modes; ++k) {
+            const auto* p = own.data() + each * k;
+            const double frequency = e.highFrequency * std::exp2(octaveOf(k) + p[0].value), quality = middlingQuality * std::exp2(p[1].value);
+            if ((p[2].value != 0.0 || p[3].value != 0.0)
+                && (frequency < lowest * resonance || quality < leastQuality || std::abs(p[2].value) > mostGain || std::abs(p[3].value) > mostGain))
+                return false;
+        }
+        return true;
     }
 
     int memorySize(const Extent&) const override { return 2 * modes; }
@@ -109,6 +128,7 @@ public:
 private:
     static constexpr int modes = 4, each = 4;
     static constexpr double spacing = 0.75;   // octaves from one place to the next
+    static constexpr double plausibleGain = 3.0;
     static constexpr double octavesSearched = modes * spacing, middlingQuality = 5.0;
 
     /// A mode's own place, from the upper end of the band.

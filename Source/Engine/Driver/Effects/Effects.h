@@ -18,5 +18,6 @@ const Effect& coilHeating();
 const Effect& ventedBox();
 const Effect& doppler();
 const Effect& coneBreakup();
+const Effect& sideResonance();
 
 } // namespace excursion
