@@ -18,7 +18,9 @@ inline Model allEffects()
         if (!effect->law())
             for (auto& parameter : model.components.back().parameters)
                 if (parameter.strength)
-                    parameter.value = std::isfinite(parameter.prior) ? 0.1 * parameter.prior : plausible(parameter);
+                    parameter.value = std::isfinite(parameter.prior)   ? 0.1 * parameter.prior
+                                      : std::isfinite(parameter.upper) ? 0.1 * parameter.upper
+                                                                       : plausible(parameter);
     }
     return model;
 }

@@ -45,7 +45,8 @@ inline Model withStrong(const Model& plain, const Effect& effect)
     } else {
         for (auto& parameter : added.parameters)
             if (parameter.strength && !parameter.heard)
-                parameter.value = std::isfinite(parameter.prior) ? 0.1 * parameter.prior : effect.electrical() ? 0.02 : 300.0;
+                parameter.value = std::isfinite(parameter.prior) ? 0.1 * parameter.prior
+                                  : std::isfinite(parameter.upper) ? 0.1 * parameter.upper : effect.electrical() ? 0.02 : 300.0;
     }
     return model;
 }

@@ -61,7 +61,11 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
             p.value = start[k];
             p.free = free[part.first + k];
         }
-        const double left = stepOnResponses(trial, targets);
+        const auto begin = trial.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
+        const bool oneWay = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(part.count),
+                                        [](const Parameter& p) { return p.strength && std::isfinite(p.lower); });
+        // A step that leads out of bounds promises nothing; a short search bends round them.
+        const double left = oneWay ? fitResponse(trial, targets, {3, 1e-3}).finalCost : stepOnResponses(trial, targets);
         starts.push_back({std::move(trial), std::isfinite(left) ? left : std::numeric_limits<double>::infinity()});
     }
     std::vector<Way> ways;
@@ -79,11 +83,12 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
     return best == ways.end() ? Way {model, std::numeric_limits<double>::infinity()} : *best;
 }
 
-/// How much of its cost a part must take away: far more than chance does at the best of a hundred places.
+/// How much of its cost a part must take away: more than chance does at the best of a hundred places.
 double worthwhile(double left, const std::vector<ResponseTarget>& targets)
 {
     constexpr double pays = 40.0;   // times the mean square of what is left
-    return pays * left / rowsOf(targets);
+    constexpr double enough = 0.07;   // of what is left, where there are few points
+    return std::min(pays / rowsOf(targets), enough) * left;
 }
 
 /// The newest effect taken up part by part, see Effect::parts(). Those that do not pay are at rest, and not free where others do.

@@ -45,7 +45,7 @@ public:
     {
         auto result = curve::parameters(e, "H");
         for (int k = 1; k <= loops; ++k)
-            result.push_back({.name = "w" + std::to_string(k), .unit = "1", .lower = 0.0, .upper = 1e3});
+            result.push_back({.name = "w" + std::to_string(k), .unit = "1", .lower = 0.0, .upper = 1e3, .prior = plausibleWeight});
         return result;
     }
     int memorySize(const Extent&) const override { return loops; }
@@ -84,6 +84,7 @@ public:
 
 private:
     static constexpr int loops = 3;
+    static constexpr double plausibleWeight = 30.0;   // that of the slowest loop beside a coil that is nothing but a semi-inductance
     static constexpr double spacing = 6.0;   // from one rate to the next
 };
 
