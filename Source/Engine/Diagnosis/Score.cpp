@@ -79,14 +79,30 @@ std::vector<Eigen::Index> strengthPositions(const Model& model, std::size_t k, c
     return positions;
 }
 
-/// A strength that the step would push below its lower bound stays there: the effect is absent.
-bool feasible(const Model& model, std::size_t k, const Eigen::VectorXd& d, const std::vector<Eigen::Index>& positions)
+/// The step of the model's own parameters and of the strengths of component k. A strength that it would push below its lower bound stays there;
+/// when all of them do the effect is absent, and the step is none.
+Eigen::VectorXd feasibleStep(const NormalEquations& normal, const Model& model, std::size_t k, const std::vector<Eigen::Index>& own,
+                             std::vector<Eigen::Index> positions)
 {
-    std::size_t n = 0;
+    std::vector<const Parameter*> strengths;
     for (const auto& p : model.components[k].parameters)
-        if (p.strength && p.free && p.value + d[positions[n++]] <= p.lower)
-            return false;
-    return true;
+        if (p.strength && p.free)
+            strengths.push_back(&p);
+    while (!positions.empty()) {
+        auto use = own;
+        use.insert(use.end(), positions.begin(), positions.end());
+        const auto d = gaussNewtonStep(normal, use);
+        bool all = true;
+        for (std::size_t n = positions.size(); n-- > 0;)
+            if (strengths[n]->value + d[positions[n]] <= strengths[n]->lower) {
+                positions.erase(positions.begin() + static_cast<std::ptrdiff_t>(n));
+                strengths.erase(strengths.begin() + static_cast<std::ptrdiff_t>(n));
+                all = false;
+            }
+        if (all)
+            return d;
+    }
+    return Eigen::VectorXd::Zero(normal.g.size());
 }
 
 /// Its newest effect, which is linear, in the shape that fits the responses best, at zero strength.
@@ -166,12 +182,8 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     std::vector<Eigen::Index> together = own;
     for (const auto& entry : entries) {
         const auto positions = strengthPositions(augmented, entry.component, active);
-        auto use = own;
-        use.insert(use.end(), positions.begin(), positions.end());
         together.insert(together.end(), positions.begin(), positions.end());
-        auto d = gaussNewtonStep(sums.estimation, use);
-        if (!feasible(augmented, entry.component, d, positions))
-            d.setZero();
+        const auto d = feasibleStep(sums.estimation, augmented, entry.component, own, positions);
         Score score;
         score.effect = entry.model.components.back().effect;
         score.chi = predictedCost(sums.validation, d) / rows;

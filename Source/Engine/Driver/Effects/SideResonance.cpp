@@ -90,15 +90,18 @@ public:
     int memorySize(const Extent&) const override { return 2 * resonators; }
     int coefficientCount(const Extent&) const override { return each * resonators; }
 
-    /// Coefficients of a resonator: mu, w^2, w/Q.
+    /// Coefficients of a resonator: mu, w^2, w/Q. Frequency and loss stay at the end of what can be simulated where a search that finds nothing
+    /// runs away with them.
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const Extent& e, const T* p, T* c) const
     {
+        const double highest = 1.25 * e.highFrequency;
+        constexpr double mostLoss = 2.0;
         for (int k = 0; k < resonators; ++k, p += each, c += each) {
-            const T w = 2.0 * std::numbers::pi * p[1];
+            const T w = 2.0 * std::numbers::pi * (p[1] < highest ? p[1] : T(highest));
             c[0] = p[0];
             c[1] = w * w;
-            c[2] = w * p[2];
+            c[2] = w * (p[2] < mostLoss ? p[2] : T(mostLoss));
         }
     }
 
