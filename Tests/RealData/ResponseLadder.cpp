@@ -108,7 +108,7 @@ TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its 
         CHECK(percent(ladder.rungs[0]) == Approx(21.0).margin(3.0));
         CHECK(percent(ladder.rungs[1]) <= 2.8);
         CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 20001.0) <= 2.8);
-        CHECK(percent(ladder.rungs.back()) <= 1.0);   // with creep and the modes of the cone, which follow
+        CHECK(percent(ladder.rungs.back()) <= 1.2);   // with creep and the modes of the cone, which follow
         CHECK_FALSE(ladder.model().has("vented-box"));
         const auto& model = ladder.rungs[1].model;
         checkParameters(model);
@@ -137,7 +137,7 @@ TEST_CASE("A designer's impedance files end in a sane verdict", "[slow]")
     // The last has three humps, an octave between the dips, as two chambers with a port each make them: the heavier port is the box, the lighter one a
     // side resonance. The curve itself is so rough that a state-space model of order 12 leaves 3.3 % of it.
     for (const auto& [file, onePeak, left, last] :
-         {Expected {"Morel_CAW938_caw938.zma", true, 1.95, 1.2}, Expected {"Morel_CAW938_sb26adc.zma", true, 0.95, 0.3},
+         {Expected {"Morel_CAW938_caw938.zma", true, 1.95, 1.3}, Expected {"Morel_CAW938_sb26adc.zma", true, 0.95, 0.3},
           Expected {"Sealed_SIG120_DX25TG59_Woofer.zma", true, 1.9, 1.9}, Expected {"SB15NRX2C30-4_SB26STCN-4_Woofer.zma", false, 100.0, 4.3}}) {
         INFO(file);
         const auto ladder = improve(readTake(folder / file));
@@ -169,7 +169,7 @@ TEST_CASE("Woofers in vented boxes are told from tweeters, mids and closed boxes
                                              Expected {"Morel_638_378_bigger_Woofer.zma", 31.9, 2.3},
                                              Expected {"SB12PFCR25-4_and_SB21RDCN-4_woofer.zma", 48.8, 2.5},
                                              Expected {"SB12PFCR25-4_and_SB21RDCN-4_tweeter.zma", 0.0, 0.4},
-                                             Expected {"Morel_638_378_bigger_Tweeter.zma", 0.0, 1.4}, Expected {"koan-3way_mid.zma", 0.0, 1.6}}) {
+                                             Expected {"Morel_638_378_bigger_Tweeter.zma", 0.0, 1.5}, Expected {"koan-3way_mid.zma", 0.0, 1.9}}) {
         INFO(file);
         const auto ladder = improve(readTake(folder / file));
         const auto* box = ladder.model().find("vented-box");

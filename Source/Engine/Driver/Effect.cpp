@@ -1,7 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effect.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
 namespace excursion {
+
+const Parameter& parameterNamed(const std::vector<Parameter>& parameters, std::string_view name)
+{
+    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return p.name == name; });
+    if (found == parameters.end())
+        throw std::out_of_range("no parameter " + std::string(name));
+    return *found;
+}
+
+double resonanceOf(const std::vector<Parameter>& base)
+{
+    return std::sqrt(parameterNamed(base, "K").value / parameterNamed(base, "m").value) / (2.0 * std::numbers::pi);
+}
 
 std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
 {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -77,6 +78,12 @@ inline Parameter positiveParameter(std::string name, std::string unit, double va
 {
     return {.name = std::move(name), .unit = std::move(unit), .value = value, .lower = 0.0};
 }
+
+/// The parameter of that name; throws std::out_of_range.
+const Parameter& parameterNamed(const std::vector<Parameter>&, std::string_view name);
+
+/// Resonance in Hz of a base with these parameters, sqrt(K/m)/(2 pi).
+double resonanceOf(const std::vector<Parameter>& base);
 
 /// A number that a person knows an effect by, where its parameters are too many to be told.
 struct Figure {

@@ -31,15 +31,20 @@ double measuredPeak(const Record& record, const Section& section, std::size_t ch
 }
 
 /// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of relaxations that
-/// has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others.
+/// has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others. Of an effect that is not at work yet nothing
+/// can be said: its shapes are kept.
 std::vector<Eigen::Index> telling(const Model& model, const Record& record, const std::vector<std::size_t>& sections, int substeps,
                                   unsigned threads)
 {
     const auto active = freeParameters(model);
     const auto all = parametersOf(model);
+    std::vector<bool> atWork;
+    for (const auto& component : model.components)
+        atWork.insert(atWork.end(), component.parameters.size(), isAtWork(component));
+    atWork.resize(all.size(), true);   // the path
     const auto isShape = [&](Eigen::Index k) {
         const auto& p = *all[static_cast<std::size_t>(k)];
-        return !p.strength && std::isfinite(p.prior);
+        return !p.strength && std::isfinite(p.prior) && atWork[static_cast<std::size_t>(k)];
     };
     if (std::none_of(active.begin(), active.end(), isShape))
         return active;

@@ -130,16 +130,12 @@ double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
     const auto d = gaussNewtonStep(sum, every);
     const auto all = parametersOf(model);
     const auto newest = model.components.back().parameters.data();
-    bool allowed = true;
     for (Eigen::Index k = 0; k < P; ++k) {
         auto* p = all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
-        if (p->strength && p >= newest && p < newest + model.components.back().parameters.size()) {
-            const double to = std::clamp(p->value + d[k], p->lower, p->upper);
-            allowed = allowed && to == p->value + d[k];
-            p->value = to;
-        }
+        if (p->strength && p >= newest && p < newest + model.components.back().parameters.size())
+            p->value += d[k];
     }
-    return allowed ? sum.cost + 2.0 * sum.g.dot(d) + d.dot(sum.N * d) : sum.cost;
+    return sum.cost + 2.0 * sum.g.dot(d) + d.dot(sum.N * d);
 }
 
 LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets, const LeastSquaresOptions& options)

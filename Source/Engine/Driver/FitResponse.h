@@ -52,8 +52,8 @@ double responseErrorDb(const Model&, const ResponseTarget&);
 LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
 
 /// What one Gauss-Newton step of the parameters that fitResponse() moves would leave of its cost, predicted. The strengths of the newest effect
-/// make the step, all else stays: from a strength of zero that is a linear least-squares fit, in which the rest of the model may follow. Where they
-/// would pass a bound nothing is promised: what is left is the cost as it is.
+/// make the step, all else stays: from a strength of zero that is a linear least-squares fit, in which the rest of the model may follow. Bounds are
+/// not asked.
 double stepOnResponses(Model&, const std::vector<ResponseTarget>&);
 
 /// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points; one with parts part by part, on

@@ -6,19 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
+#include <utility>
 
 namespace excursion {
 namespace {
-
-template <class ModelType>
-auto& baseParameterOf(ModelType& model, std::string_view name)
-{
-    for (auto& parameter : model.components.front().parameters)
-        if (parameter.name == name)
-            return parameter;
-    throw std::out_of_range("no base parameter " + std::string(name));
-}
 
 template <class Pointer, class ModelType>
 std::vector<Pointer> collect(ModelType& model)
@@ -39,6 +30,13 @@ double lawValue(const Component& component, const std::vector<double>& values, d
 }
 
 } // namespace
+
+bool isAtWork(const Component& component)
+{
+    const auto& parameters = component.parameters;
+    return std::any_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength && p.value != 0.0; })
+           || std::none_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength; });
+}
 
 double radiationPerArea()
 {
@@ -63,8 +61,8 @@ std::vector<std::string> Model::effectIds() const
     return ids;
 }
 
-Parameter& Model::baseParameter(std::string_view name) { return baseParameterOf(*this, name); }
-const Parameter& Model::baseParameter(std::string_view name) const { return baseParameterOf(*this, name); }
+const Parameter& Model::baseParameter(std::string_view name) const { return parameterNamed(base().parameters, name); }
+Parameter& Model::baseParameter(std::string_view name) { return const_cast<Parameter&>(std::as_const(*this).baseParameter(name)); }
 
 Model makeModel(std::string_view baseId)
 {
@@ -78,6 +76,12 @@ Model makeModel(std::string_view baseId)
     return model;
 }
 
+bool movable(const Model& model, const Parameter& p)
+{
+    const bool listens = model.path.parameters[1].free;   // the delay is, where a pressure was measured
+    return p.free && (listens || !p.heard);
+}
+
 Model withEffect(Model model, const Effect& effect, const Extent& visited, std::size_t start)
 {
     Extent extent = visited;
@@ -88,9 +92,8 @@ Model withEffect(Model model, const Effect& effect, const Extent& visited, std::
     const auto& values = starts.at(start);
     for (std::size_t k = 0; k < values.size(); ++k)
         component.parameters[k].value = values[k];
-    const bool listens = model.path.parameters[1].free;   // the delay is, where a pressure was measured
     for (auto& p : component.parameters)
-        p.free = p.free && (listens || !p.heard);
+        p.free = movable(model, p);
     model.components.push_back(std::move(component));
     model.covariance.resize(0, 0);
     return model;
@@ -170,8 +173,7 @@ std::vector<LawCurve> laws(const Model& model, int points)
             curve.effectId = component.effect->id();
             const auto values = valuesOf(component);
             const auto& baseParameters = model.base().parameters;
-            const auto base = std::find_if(baseParameters.begin(), baseParameters.end(),
-                                           [&](const Parameter& p) { return p.name == info->base; });
+            const auto* base = &parameterNamed(baseParameters, info->base);
             const auto& e = component.extent;
             const double range = info->argument == "x" ? e.displacement : info->argument == "v" ? e.velocity : e.current;
             for (int n = 0; n < points; ++n) {
@@ -184,7 +186,7 @@ std::vector<LawCurve> laws(const Model& model, int points)
                     // Differences over a small share of each standard error: exact where a law is linear in its coefficients, as most are.
                     constexpr double share = 1e-3;
                     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.covariance.rows());
-                    gradient[base - baseParameters.begin()] = 1.0;
+                    gradient[base - baseParameters.data()] = 1.0;
                     for (Eigen::Index j = 0; j < count; ++j) {
                         const double deviation = std::sqrt(model.covariance(offset + j, offset + j));
                         const double step = deviation > 0.0 ? share * deviation : 1.0;

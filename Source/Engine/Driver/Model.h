@@ -28,6 +28,9 @@ std::vector<T> valuesOf(const Component& component)
     return values;
 }
 
+/// Whether any of its strengths is not zero; a component without strengths always is.
+bool isAtWork(const Component&);
+
 /// The coefficients that its effect makes of such parameters (Effect::prepare).
 template <class T>
 std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& parameters)
@@ -63,6 +66,8 @@ double radiationPerArea();
 /// A model of the base alone (baseId "electrodynamic" or "mechanical") with default parameters.
 Model makeModel(std::string_view baseId);
 
+/// Whether a fit of the model may move that parameter of an effect as it comes: one that is only heard not where nothing listens.
+bool movable(const Model&, const Parameter&);
 /// The model with that effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
 /// Extent::scale of every effect as its base parameter is now.

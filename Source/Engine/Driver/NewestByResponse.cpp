@@ -53,6 +53,14 @@ double rowsOf(const std::vector<ResponseTarget>& targets)
 /// beside them, and several of these, as parts that lie close together first show as one.
 Way withPart(const Model& model, const Part& part, const std::vector<bool>& free, const std::vector<ResponseTarget>& targets)
 {
+    const auto own = model.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
+    const bool oneWay = std::any_of(own, own + static_cast<std::ptrdiff_t>(part.count),
+                                    [](const Parameter& p) { return p.strength && std::isfinite(p.lower); });
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const auto search = [&](Model& trial, const LeastSquaresOptions& options) {
+        const auto run = fitResponse(trial, targets, options);
+        return run.usable && std::isfinite(run.finalCost) ? run.finalCost : never;
+    };
     std::vector<Way> starts;
     for (const auto& start : part.starts) {
         auto trial = model;
@@ -61,12 +69,9 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
             p.value = start[k];
             p.free = free[part.first + k];
         }
-        const auto begin = trial.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
-        const bool oneWay = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(part.count),
-                                        [](const Parameter& p) { return p.strength && std::isfinite(p.lower); });
-        // A step that leads out of bounds promises nothing; a short search bends round them.
-        const double left = oneWay ? fitResponse(trial, targets, {3, 1e-3}).finalCost : stepOnResponses(trial, targets);
-        starts.push_back({std::move(trial), std::isfinite(left) ? left : std::numeric_limits<double>::infinity()});
+        // One step tells what a strength without bounds promises; beside a bound a short search bends round it.
+        const double left = oneWay ? search(trial, {3, 1e-3}) : stepOnResponses(trial, targets);
+        starts.push_back({std::move(trial), std::isfinite(left) ? left : never});
     }
     std::vector<Way> ways;
     for (std::size_t k = 0; k < starts.size(); ++k)
@@ -75,12 +80,10 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
     std::stable_sort(ways.begin(), ways.end(), cheaper);
     constexpr std::size_t most = 3;
     ways.resize(std::min(ways.size(), most));
-    for (auto& way : ways) {
-        const auto run = fitResponse(way.model, targets, {8, 1e-4});
-        way.cost = run.usable ? run.finalCost : std::numeric_limits<double>::infinity();
-    }
+    for (auto& way : ways)
+        way.cost = search(way.model, {8, 1e-4});
     const auto best = std::min_element(ways.begin(), ways.end(), better);
-    return best == ways.end() ? Way {model, std::numeric_limits<double>::infinity()} : *best;
+    return best == ways.end() ? Way {model, never} : *best;
 }
 
 /// How much of its cost a part must take away: more than chance does at the best of a hundred places.
@@ -100,9 +103,8 @@ LeastSquaresSummary fitParts(Model& model, const std::vector<Part>& parts, const
     auto& component = best.components.back();
     component.parameters = component.effect->parameters(component.extent);
     std::vector<bool> free;
-    const bool listens = best.path.parameters[1].free;   // the delay is, where a pressure was measured
     for (auto& p : component.parameters) {
-        free.push_back(p.free && (listens || !p.heard));
+        free.push_back(movable(best, p));
         p.free = false;
         if (p.strength)
             p.value = 0.0;

@@ -201,7 +201,7 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
         throw Error(Error::Kind::numerical, "No linear driver could be fitted to the frequency response of the take; run the check of the take first.");
     Model best = contest.best();
     if (!sight.mass) {
-        const double f0 = std::sqrt(best.baseParameter("K").value / best.baseParameter("m").value) / (2.0 * std::numbers::pi);
+        const double f0 = resonanceOf(best.base().parameters);
         rescale(best, typicalMass(f0, driver.coneArea));
         matchSizes(best, sight);
     }

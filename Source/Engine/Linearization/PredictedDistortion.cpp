@@ -35,7 +35,7 @@ PredictedDistortion predictDistortion(const Model& model, const LinearizationCon
     if (!(volts > 0.0))
         throw Error(Error::Kind::usage, "A prediction of distortion needs a voltage above zero.");
     requireRunnable(model, options);
-    const double resonance = std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / (2.0 * std::numbers::pi);
+    const double resonance = resonanceOf(model.base().parameters);
     MultisineOptions tones;
     tones.sampleRate = options.sampleRate;
     tones.period = 16384;

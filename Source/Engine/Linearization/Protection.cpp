@@ -22,10 +22,7 @@ constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;   // s
 constexpr double settlingTime = 0.5;                       // s, in which a driver forgets
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;  // s
 
-double resonance(const Model& model)
-{
-    return std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / (2.0 * std::numbers::pi);
-}
+double resonance(const Model& model) { return resonanceOf(model.base().parameters); }
 
 double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -75,10 +74,7 @@ public:
     bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 2.0;
-        const auto of = [&](const char* name) {
-            return std::find_if(base.begin(), base.end(), [&](const Parameter& p) { return p.name == name; })->value;
-        };
-        const double resonance = std::sqrt(of("K") / of("m")) / (2.0 * std::numbers::pi);
+        const double resonance = resonanceOf(base);
         for (int k = 0; k < modes; ++k) {
             const auto* p = own.data() + each * k;
             const double frequency = e.highFrequency * std::exp2(octaveOf(k) + p[0].value), quality = middlingQuality * std::exp2(p[1].value);

@@ -64,10 +64,7 @@ public:
     bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 0.7, lowest = 0.5;
-        const auto of = [&](const char* name) {
-            return std::find_if(base.begin(), base.end(), [&](const Parameter& p) { return p.name == name; })->value;
-        };
-        const double from = std::max(e.lowFrequency, lowest * std::sqrt(of("K") / of("m")) / (2.0 * std::numbers::pi));
+        const double from = std::max(e.lowFrequency, lowest * resonanceOf(base));
         for (std::size_t k = 0; k < own.size(); k += each)
             if (own[k].value > leastMass * e.scale
                 && (own[k + 1].value < from || own[k + 1].value > e.highFrequency || own[k + 2].value > 1.0 / leastQuality))

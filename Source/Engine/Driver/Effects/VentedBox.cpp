@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,18 +62,16 @@ public:
     {
         return {start[1], 1.5 * start[1]};
     }
-    /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance, its air or the radiator is not much lighter than the cone, and the air in the box is not much
-    /// softer than the suspension: what is found in real boxes lies well inside. Something lighter is a part that swings by itself.
+    /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air or the radiator is not much
+    /// lighter than the cone, and the air in the box not much softer than the suspension: what is found in real boxes lies well inside. Something
+    /// lighter is a part that swings by itself.
     bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.16, highestTuning = 4.0;
-        const auto of = [&](const char* name) {
-            return std::find_if(base.begin(), base.end(), [&](const Parameter& p) { return p.name == name; })->value;
-        };
         const double mass = own[0].value * std::pow((1.0 + own[5].value) / (2.0 * std::numbers::pi * own[1].value), 2);
-        const double resonance = std::sqrt(of("K") / of("m")) / (2.0 * std::numbers::pi);
-        return own[1].value < highestTuning * resonance && own[2].value + own[3].value + own[4].value < 1.0 / leastQuality && own[0].value > leastStiffness * of("K")
-               && mass > leastMass * of("m") && own[1].value > e.lowFrequency && own[1].value < e.highFrequency;
+        return own[1].value < highestTuning * resonanceOf(base) && own[2].value + own[3].value + own[4].value < 1.0 / leastQuality
+               && own[0].value > leastStiffness * parameterNamed(base, "K").value && mass > leastMass * parameterNamed(base, "m").value
+               && own[1].value > e.lowFrequency && own[1].value < e.highFrequency;
     }
 
     int memorySize(const Extent&) const override { return 3; }
