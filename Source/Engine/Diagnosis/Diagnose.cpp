@@ -152,6 +152,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     FitOptions quick = options.fit;
     quick.substeps = substepsFor(model, record, options.fit.simulationTolerance);
     quick.search = {10, 3e-3};
+    quick.fed = true;
     const auto before = compare(model, record, {quick.substeps, true}, progress.part(0.0, 0.1));
     diagnosis.error = errorOf(before);
 
@@ -167,6 +168,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         entry.effect = candidate.effect->id();
         entry.predictedChi = candidate.chi;
         entry.predictedErrorDb = candidate.errorDb;
+        entry.uniqueDb = candidate.uniqueDb;
         entry.model = candidate.model;
         auto errorAfter = candidate.errorDb;
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
@@ -175,8 +177,8 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
                             && excess(candidate.chi, before.noiseKnown) < 20.0 * bestLeft;
         if (promising && tried < options.trials) {
             progress.at(0.3 + 0.7 * tried / options.trials, "trying " + entry.effect);
-            auto trial = candidate.model;
-            const auto summary = tryFit(trial, record, sections, quick, progress.part(0.3 + 0.7 * tried / options.trials, 0.3 + 0.7 * (tried + 1) / options.trials));
+            Model trial;
+            const auto summary = tryFit(trial, candidate, record, sections, quick, progress.part(0.3 + 0.7 * tried / options.trials, 0.3 + 0.7 * (tried + 1) / options.trials));
             ++tried;
             if (summary.usable) {
                 const auto after = compare(trial, record, {quick.substeps, false});
@@ -199,11 +201,13 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     judge(diagnosis.ranking, before.chi, before.noiseKnown, diagnosis);
     constexpr double smallestShare = 0.15;   // of what is not noise; less is a symptom of something else
     constexpr double mostLeft = 0.15;        // by all effects together
+    constexpr double alone = 2.0;            // dB that no other effect explains
     diagnosis.verdict = verdictOf(diagnosis.ranking, before, smallestShare);
-    // An effect that explains a part, while all the others together cannot explain the rest, shares a symptom with something unknown.
+    // An effect that explains a part which others would explain as well, while all of them together cannot explain the rest, may share a symptom
+    // with something unknown.
     if (diagnosis.verdict == Verdict::missingEffect && before.noiseKnown) {
         const auto& first = diagnosis.ranking.front();
-        if (excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
+        if (first.uniqueDb < alone && excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
             const auto beyond = score(first.model, record, test, {});
             if (leastLeft(scores.chiByChannel, beyond.togetherChi) > mostLeft)
                 diagnosis.verdict = Verdict::unknownEffect;

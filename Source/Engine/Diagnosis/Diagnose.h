@@ -31,6 +31,7 @@ struct RankedEffect {
     std::map<Quantity, double> confirmedErrorDb;   ///< after a refit, on validation data; empty when not tried
     double predictedChi = 0.0;
     double confirmedChi = 0.0;                ///< 0 when not tried
+    double uniqueDb = 0.0;                    ///< by how much the catalogue as a whole would leave more without it
     bool significant = false;                 ///< it pays for its parameters
     std::string reason;                       ///< one sentence that a person can check on a plot
     Model model;                              ///< with the effect, as refitted; without components when not tried

@@ -36,6 +36,7 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
     const double step = 0.8 / (static_cast<double>(effects.size()) + 1.0);
     FitOptions quick = options;
     quick.search = {12, 1e-3};
+    quick.fed = true;
     auto last = fit(model, record, effects.empty() ? estimationSections(record) : trialSections(record, 2),
                     effects.empty() ? options : quick, progress.part(0.0, step));
     double done = step;

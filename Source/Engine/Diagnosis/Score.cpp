@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Curve.h"
+#include "Engine/Driver/FeedbackError.h"
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Seen.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace excursion {
 namespace {
@@ -36,7 +38,8 @@ Sums sum(const Model& model, const Record& record, std::vector<std::size_t> sect
     for (const auto n : held)
         if (std::find(sections.begin(), sections.end(), n) == sections.end())
             sections.push_back(n);
-    const auto fits = outputError(model, record, sections, active, run, progress);
+    const auto fits = hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections), active, run, progress)
+                                         : outputError(model, record, sections, active, run, progress);
     for (std::size_t k = 0; k < fits.size(); ++k) {
         const auto n = sections[k];
         if (!fits[k].finite) {
@@ -105,12 +108,9 @@ Eigen::VectorXd feasibleStep(const NormalEquations& normal, const Model& model, 
     return Eigen::VectorXd::Zero(normal.g.size());
 }
 
-/// Its newest effect, which is linear, in the shape that fits the responses best, at zero strength.
-Model shapedByResponse(Model model, const Record& record)
+/// The model with its newest effect, which is linear, in the shape that was found, at zero strength.
+Model shapedAs(const Model& shaped, Model model)
 {
-    auto shaped = model;
-    if (!fitNewestByResponse(shaped, record).usable)
-        return model;
     auto& parameters = model.components.back().parameters;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
         const auto& found = shaped.components.back().parameters[k];
@@ -129,6 +129,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     const Extent extent = visitedExtent(model, record, options.degree);
     struct Entry {
         Model model;   ///< with the effect at zero strength
+        Model byResponse;
         std::size_t component;
     };
     std::vector<Entry> entries;
@@ -137,17 +138,20 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
             continue;
         const auto starts = effect->starts(extent).size();
-        std::vector<Model> candidates;
-        if (effect->linear() && (starts > 1 || !effect->parts(extent).empty())) {
+        const auto consider = [&](Model candidate, Model byResponse) {
+            augmented.components.push_back(candidate.components.back());
+            entries.push_back({std::move(candidate), std::move(byResponse), augmented.components.size() - 1});
+        };
+        if (effect->linear()) {
             // The responses tell its shape at once; every start would carry a memory of its own through the simulation.
-            candidates.push_back(shapedByResponse(withEffect(model, *effect, extent), record));
+            const auto plain = withEffect(model, *effect, extent);
+            if (auto shaped = plain; fitNewestByResponse(shaped, record).usable)
+                consider(shapedAs(shaped, plain), shaped);
+            else
+                consider(plain, {});
         } else {
             for (std::size_t start = 0; start < starts; ++start)
-                candidates.push_back(withEffect(model, *effect, extent, start));
-        }
-        for (auto& candidate : candidates) {
-            augmented.components.push_back(candidate.components.back());
-            entries.push_back({std::move(candidate), augmented.components.size() - 1});
+                consider(withEffect(model, *effect, extent, start), {});
         }
     }
     // Shapes do not matter at zero strength: only the model's own parameters and the strengths have a sensitivity.
@@ -199,6 +203,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
             continue;
         // The model at the end of the step; the trial shortens the step should it be too long.
         score.model = entry.model;
+        score.byResponse = entry.byResponse;
         auto& parameters = score.model.components.back().parameters;
         std::size_t n = 0;
         for (auto& p : parameters)
@@ -211,6 +216,18 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     }
     std::sort(together.begin(), together.end());
     const auto all = gaussNewtonStep(sums.estimation, together);
+    const double noise = record.noiseKnown ? rows : 0.0, least = std::max({predictedCost(sums.validation, all), noise, 1e-300});
+    for (auto& s : result.scores) {
+        std::vector<Eigen::Index> strengths, rest;
+        for (const auto& entry : entries)
+            if (entry.model.components.back().effect == s.effect) {
+                const auto positions = strengthPositions(augmented, entry.component, active);
+                strengths.insert(strengths.end(), positions.begin(), positions.end());
+            }
+        std::sort(strengths.begin(), strengths.end());
+        std::set_difference(together.begin(), together.end(), strengths.begin(), strengths.end(), std::back_inserter(rest));
+        s.uniqueDb = 10.0 * std::log10(std::max({predictedCost(sums.validation, gaussNewtonStep(sums.estimation, rest)), noise, 1e-300}) / least);
+    }
     for (const auto& channel : sums.byChannel) {
         const double channelRows = std::max(1.0, channel.rows);
         result.chiByChannel.push_back(channel.cost / channelRows);

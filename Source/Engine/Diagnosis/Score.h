@@ -15,7 +15,9 @@ namespace excursion {
 struct Score {
     const Effect* effect = nullptr;
     Model model;
+    Model byResponse;                          ///< of a linear effect: as a search on the frequency responses found it; without components when none was made
     double chi = 0.0;                          ///< predicted, all channels
+    double uniqueDb = 0.0;                     ///< by how much all candidates together would leave more without this one: what it alone explains
     std::map<Quantity, double> errorDb;        ///< predicted, by channel
 };
 

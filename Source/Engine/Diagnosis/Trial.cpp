@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Trial.h"
 
+#include "Engine/Driver/FeedbackError.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/OutputError.h"
 
@@ -17,7 +18,9 @@ double costOf(const Model& model, const Record& record, const std::vector<std::s
     run.substeps = options.substeps;
     run.threads = options.threads;
     NormalEquations sum;
-    for (const auto& section : outputError(model, record, sections, {}, run)) {
+    const auto fits = options.fed && hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections), {}, run)
+                                                        : outputError(model, record, sections, {}, run);
+    for (const auto& section : fits) {
         if (!section.finite)
             return std::numeric_limits<double>::infinity();
         for (const auto& channel : section.channels)
@@ -51,9 +54,10 @@ std::vector<std::size_t> trialSections(const Record& record, int realizations)
     return sections;
 }
 
-FitSummary tryFit(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
+FitSummary tryFit(Model& model, const Score& proposed, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
                   const Progress& progress)
 {
+    model = proposed.model;
     FitOptions chosen = options;
     if (chosen.substeps == 0)
         chosen.substeps = substepsFor(model, record, options.simulationTolerance);
@@ -68,11 +72,11 @@ FitSummary tryFit(Model& model, const Record& record, const std::vector<std::siz
             break;
         }
     }
-    // A linear effect shows in the frequency response alone, and a search there costs next to nothing; in time it would creep along
-    // the curved valley in which relaxations trade off against the stiffness.
-    if (Model candidate = model; candidate.components.back().effect->linear() && fitNewestByResponse(candidate, record).usable)
-        if (const double cost = costOf(candidate, record, sections, chosen); cost < lowest)
-            best = std::move(candidate);
+    // A linear effect shows in the frequency response alone; in time it would creep along the curved valley in which relaxations trade off
+    // against the stiffness.
+    if (!proposed.byResponse.components.empty())
+        if (const double cost = costOf(proposed.byResponse, record, sections, chosen); cost < lowest)
+            best = proposed.byResponse;
     model = std::move(best);
     return fit(model, record, sections, chosen, progress);
 }
@@ -89,8 +93,8 @@ void tryEffect(Model& model, const Record& record, const Effect& effect, const F
     FitOptions quick = options;
     quick.substeps = test.substeps;
     quick.search = {10, 3e-3};
-    model = start->model;
-    tryFit(model, record, trialSections(record, 2), quick, progress.part(0.4, 1.0));
+    quick.fed = true;
+    tryFit(model, *start, record, trialSections(record, 2), quick, progress.part(0.4, 1.0));
 }
 
 FitSummary refine(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
@@ -104,10 +108,19 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     score.threads = chosen.threads;
     FitOptions quick = chosen;
     quick.search = {8, 1e-3};
+    quick.fed = true;
     auto summary = fit(model, record, sections, quick, progress.part(0.0, 0.3));
     constexpr int mostRaises = 3;
     for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
         summary = fit(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
+    if (hasPeriods(record)) {
+        quick.search = {15, 1e-4};
+        summary = fit(model, record, sections, quick, progress.part(0.6, 0.75));
+        // A simulation tells more than laws that are fed only where both come near the noise.
+        constexpr double nearNoise = 4.0;
+        if (record.noiseKnown && summary.costPerResidual > nearNoise)
+            return summary;
+    }
     return fit(model, record, sections, chosen, progress.part(0.75, 1.0));
 }
 

@@ -12,8 +12,9 @@ namespace excursion {
 std::vector<std::size_t> trialSections(const Record&, int realizations);
 
 /// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it so
-/// far. `model` is left as proposed, with zero strength, when nothing helps.
-FitSummary tryFit(Model& model, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
+/// far.
+/// @param model  the result: as proposed, with zero strength, when nothing helps
+FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
                   const Progress& = {});
 
 /// Puts an effect into the model where the score test says that it starts, and fits that quickly. Throws Error (data) when the

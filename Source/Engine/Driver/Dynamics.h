@@ -38,8 +38,8 @@ public:
 
     int order() const { return order_; }
 
-    /// dz/dt at state z under input u.
-    void rates(const T* z, const T& u, T* dz) const
+    /// dz/dt at state z under input u, and a force on the cone.
+    void rates(const T* z, const T& u, T* dz, const T& push = T(0.0)) const
     {
         const Motion<T> at {z[0], z[1], z[2]};
         Balance<T> sum;
@@ -49,10 +49,10 @@ public:
         dz[1] = at.v;
         if (electrical_) {
             dz[0] = (u - sum.drop - sum.fluxSlope * at.v) / sum.inductance;
-            dz[2] = sum.force / sum.mass;
+            dz[2] = (sum.force + push) / sum.mass;
         } else {
             dz[0] = T(0.0);
-            dz[2] = (sum.force + u) / sum.mass;
+            dz[2] = (sum.force + push + u) / sum.mass;
         }
     }
 

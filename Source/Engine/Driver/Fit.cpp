@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Fit.h"
 
+#include "Engine/Driver/FeedbackError.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/OutputError.h"
@@ -11,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
 
 namespace excursion {
@@ -30,11 +33,13 @@ double measuredPeak(const Record& record, const Section& section, std::size_t ch
     return peakOf(inverseFft(spectrum, section.window));
 }
 
+/// What the model leaves of the sections to fit, with normal equations of the active parameters when asked for.
+using ErrorOf = std::function<std::vector<SectionFit>(const std::vector<Eigen::Index>& active, bool gradient)>;
+
 /// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of relaxations that
 /// has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others. Of an effect that is not at work yet nothing
 /// can be said: its shapes are kept.
-std::vector<Eigen::Index> telling(const Model& model, const Record& record, const std::vector<std::size_t>& sections, int substeps,
-                                  unsigned threads)
+std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf)
 {
     const auto active = freeParameters(model);
     const auto all = parametersOf(model);
@@ -48,11 +53,8 @@ std::vector<Eigen::Index> telling(const Model& model, const Record& record, cons
     };
     if (std::none_of(active.begin(), active.end(), isShape))
         return active;
-    OutputErrorOptions run;
-    run.substeps = substeps;
-    run.threads = threads;
     NormalEquations sum;
-    for (const auto& section : outputError(model, record, sections, active, run))
+    for (const auto& section : errorOf(active, true))
         for (const auto& channel : section.channels)
             if (section.finite)
                 sum.add(channel);
@@ -68,6 +70,55 @@ std::vector<Eigen::Index> telling(const Model& model, const Record& record, cons
             kept.push_back(active[j]);
     }
     return kept;
+}
+
+/// The search of the model's parameters for the least error.
+FitSummary search(Model& model, const ErrorOf& errorOf, const FitOptions& options, const Progress& progress)
+{
+    FitSummary summary;
+    const auto active = telling(model, errorOf);
+    const auto all = parametersOf(model);
+    const auto P = static_cast<Eigen::Index>(active.size());
+    Eigen::VectorXd theta(P), lower(P), upper(P);
+    for (Eigen::Index k = 0; k < P; ++k) {
+        const auto& p = *all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
+        theta[k] = p.value;
+        // Mass, inductance and their like stay away from zero, where the equations of motion are singular.
+        lower[k] = p.lower == 0.0 && !p.strength ? 1e-3 * p.value : p.lower;
+        upper[k] = p.upper;
+    }
+    const auto place = [&](const Eigen::VectorXd& at) {
+        for (Eigen::Index k = 0; k < P; ++k)
+            all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
+    };
+    NormalEquations last;   // at the last accepted gradient
+    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        place(at);
+        for (const auto& section : errorOf(active, gradient)) {
+            if (!section.finite)
+                return false;
+            for (const auto& channel : section.channels)
+                sum.add(channel);
+        }
+        addPrior(model, active, sum);
+        if (gradient)
+            last = sum;
+        return true;
+    };
+    static_cast<LeastSquaresSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
+    place(theta);
+    if (!summary.usable)
+        return summary;
+    summary.costPerResidual = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
+    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.costPerResidual));
+    model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()), static_cast<Eigen::Index>(all.size()));
+    for (Eigen::Index r = 0; r < P; ++r) {
+        const auto row = active[static_cast<std::size_t>(r)];
+        for (Eigen::Index c = 0; c < P; ++c)
+            model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
+        all[static_cast<std::size_t>(row)]->standardError = std::sqrt(covariance(r, r));
+    }
+    return summary;
 }
 
 } // namespace
@@ -191,55 +242,38 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
     followBase(model);
-    FitSummary summary;
-    summary.substeps = std::max(stableSubsteps(model, record.sampleRate),
-                                options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));
-    const auto active = telling(model, record, sections, summary.substeps, options.threads);
-    const auto all = parametersOf(model);
-    const auto P = static_cast<Eigen::Index>(active.size());
-    Eigen::VectorXd theta(P), lower(P), upper(P);
-    for (Eigen::Index k = 0; k < P; ++k) {
-        const auto& p = *all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
-        theta[k] = p.value;
-        // Mass, inductance and their like stay away from zero, where the equations of motion are singular.
-        lower[k] = p.lower == 0.0 && !p.strength ? 1e-3 * p.value : p.lower;
-        upper[k] = p.upper;
-    }
     OutputErrorOptions run;
-    run.substeps = summary.substeps;
     run.threads = options.threads;
-    const auto place = [&](const Eigen::VectorXd& at) {
-        for (Eigen::Index k = 0; k < P; ++k)
-            all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
-    };
-    NormalEquations last;   // at the last accepted gradient
-    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
-        place(at);
-        run.gradient = gradient;
-        for (const auto& section : outputError(model, record, sections, active, run, progress)) {
-            if (!section.finite)
-                return false;
-            for (const auto& channel : section.channels)
-                sum.add(channel);
+    if (options.fed && hasPeriods(record)) {
+        FitSummary summary;
+        auto motions = settledMotions(model, record, sections);
+        const ErrorOf errorOf = [&](const std::vector<Eigen::Index>& active, bool gradient) {
+            run.gradient = gradient;
+            return feedbackError(model, record, sections, motions, active, run, progress);
+        };
+        // What the take does not show is expected better from the model that has been found.
+        constexpr int mostRounds = 4;
+        constexpr double settled = 0.95;
+        double before = std::numeric_limits<double>::infinity();
+        for (int n = 0; n < mostRounds; ++n) {
+            const auto round = search(model, errorOf, options, progress);
+            if (!round.usable)
+                break;
+            summary = round;
+            if (n > 0 && !(summary.finalCost < settled * before))
+                break;
+            before = summary.finalCost;
+            motions = shownMotions(model, record, sections, motions);
         }
-        addPrior(model, active, sum);
-        if (gradient)
-            last = sum;
-        return true;
-    };
-    static_cast<LeastSquaresSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
-    place(theta);
-    if (!summary.usable)
         return summary;
-    summary.costPerResidual = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
-    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.costPerResidual));
-    model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()), static_cast<Eigen::Index>(all.size()));
-    for (Eigen::Index r = 0; r < P; ++r) {
-        const auto row = active[static_cast<std::size_t>(r)];
-        for (Eigen::Index c = 0; c < P; ++c)
-            model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
-        all[static_cast<std::size_t>(row)]->standardError = std::sqrt(covariance(r, r));
     }
+    run.substeps = std::max(stableSubsteps(model, record.sampleRate),
+                            options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));
+    auto summary = search(model, [&](const std::vector<Eigen::Index>& active, bool gradient) {
+        run.gradient = gradient;
+        return outputError(model, record, sections, active, run, progress);
+    }, options, progress);
+    summary.substeps = run.substeps;
     return summary;
 }
 

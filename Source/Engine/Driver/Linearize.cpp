@@ -2,28 +2,29 @@
 #include "Engine/Driver/Linearize.h"
 
 #include "Engine/Driver/Dynamics.h"
-#include "Engine/Driver/Resolvent.h"
+#include "Engine/Driver/BalancedResolvent.h"
 #include "Engine/Error.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numbers>
 
 namespace excursion {
 namespace {
 
-/// Of a linear model, column by column: dz/dt and what leaves the driver, for a unit of each state and of the input.
+/// Of a linear model, column by column: dz/dt and what leaves the driver, for a unit of each state and of what drives.
 template <class T>
 struct Columns {
-    std::vector<std::vector<T>> rates;   ///< by state, and of the input
+    std::vector<std::vector<T>> rates;   ///< by state, and of what drives
     std::vector<std::array<T, 2>> outputs;
     T lateness;
 };
 
 template <class T>
-Columns<T> columns(const Model& model, const std::vector<T>& parameters)
+Columns<T> columns(const Model& model, const std::vector<T>& parameters, Drives drives)
 {
     const Dynamics<T> dynamics(model, parameters);
     const auto n = static_cast<std::size_t>(dynamics.order());
@@ -34,7 +35,8 @@ Columns<T> columns(const Model& model, const std::vector<T>& parameters)
         if (j < n)
             z[j] = T(1.0);
         auto& rates = result.rates[j];
-        dynamics.rates(z.data(), T(j < n ? 0.0 : 1.0), rates.data());
+        const double voltage = j == n && drives == Drives::terminals ? 1.0 : 0.0, push = j == n && drives == Drives::cone ? 1.0 : 0.0;
+        dynamics.rates(z.data(), T(voltage), rates.data(), T(push));
         const auto emission = dynamics.emission(z.data(), rates.data());
         result.outputs.push_back({emission.area * emission.acceleration, emission.spot});
     }
@@ -45,21 +47,28 @@ Columns<T> columns(const Model& model, const std::vector<T>& parameters)
     return result;
 }
 
-/// One entry of [dA dB; dC dD] that is not zero. A parameter acts in a few places only.
-struct Entry {
-    Eigen::Index parameter, row, column;
-    double value;
+/// A place of [A B] or [C D] in which parameters act, and how: a parameter does so in a few places only, and many share one.
+struct Place {
+    Eigen::Index row, column;
+    std::vector<std::pair<Eigen::Index, double>> slopes;   ///< parameter, derivative
 };
 
-std::vector<Entry> nonzero(const std::vector<Eigen::MatrixXd>& dM, const std::vector<Eigen::VectorXd>& dv)
+std::vector<Place> placesOf(const std::vector<Eigen::MatrixXd>& dM, const std::vector<Eigen::VectorXd>& dv)
 {
-    std::vector<Entry> entries;
+    std::map<std::pair<Eigen::Index, Eigen::Index>, Place> places;
     for (std::size_t k = 0; k < dM.size(); ++k)
         for (Eigen::Index row = 0; row < dM[k].rows(); ++row)
             for (Eigen::Index column = 0; column <= dM[k].cols(); ++column)
-                if (const double value = column < dM[k].cols() ? dM[k](row, column) : dv[k][row]; value != 0.0)
-                    entries.push_back({static_cast<Eigen::Index>(k), row, column, value});
-    return entries;
+                if (const double value = column < dM[k].cols() ? dM[k](row, column) : dv[k][row]; value != 0.0) {
+                    auto& place = places[{row, column}];
+                    place.row = row;
+                    place.column = column;
+                    place.slopes.emplace_back(static_cast<Eigen::Index>(k), value);
+                }
+    std::vector<Place> result;
+    for (auto& [where, place] : places)
+        result.push_back(std::move(place));
+    return result;
 }
 
 /// A quantity as output of the linear part: s^order (row z + direct u), that of the pressure times a gain and delayed.
@@ -100,10 +109,10 @@ Observed observe(const Model& model, const Linearization& linear, Quantity quant
 }
 
 /// Of a model that is linear.
-Linearization linearForm(const Model& model, bool withGradient)
+Linearization linearForm(const Model& model, bool withGradient, Drives drives)
 {
     const auto theta = parameterVector(model);
-    const auto plain = columns(model, std::vector<double>(theta.begin(), theta.end()));
+    const auto plain = columns(model, std::vector<double>(theta.begin(), theta.end()), drives);
     const auto n = static_cast<Eigen::Index>(plain.rates.size()) - 1;
     Linearization result;
     result.A.resize(n, n);
@@ -130,7 +139,7 @@ Linearization linearForm(const Model& model, bool withGradient)
             parameters[static_cast<std::size_t>(k)] = k >= first && k < first + jetWidth
                                                           ? Jet(theta[k], static_cast<int>(k - first))
                                                           : Jet(theta[k]);
-        const auto jets = columns(model, parameters);
+        const auto jets = columns(model, parameters, drives);
         for (Eigen::Index k = first; k < std::min<Eigen::Index>(count, first + jetWidth); ++k) {
             const auto own = static_cast<std::size_t>(k);
             for (std::size_t column = 0; column < jets.rates.size(); ++column) {
@@ -149,7 +158,7 @@ Linearization linearForm(const Model& model, bool withGradient)
 
 } // namespace
 
-Linearization linearize(const Model& model, bool withGradient)
+Linearization linearize(const Model& model, bool withGradient, Drives drives)
 {
     // Places of the linear part's states and parameters among those of the whole.
     std::vector<Eigen::Index> states {0, 1, 2}, parameters;
@@ -165,7 +174,7 @@ Linearization linearize(const Model& model, bool withGradient)
     }
     for (std::size_t k = 0; k < model.path.parameters.size(); ++k)
         parameters.push_back(count++);
-    const auto part = linearForm(linearPart(model), withGradient);
+    const auto part = linearForm(linearPart(model), withGradient, drives);
     if (static_cast<Eigen::Index>(states.size()) == n && static_cast<Eigen::Index>(parameters.size()) == count)
         return part;
 
@@ -224,10 +233,10 @@ bool isStable(const Model& model)
 }
 
 std::vector<Response> respond(const Model& model, const std::vector<Quantity>& quantities,
-                              const std::vector<double>& frequency, bool withGradient)
+                              const std::vector<double>& frequency, bool withGradient, Drives drives)
 {
     using Complex = std::complex<double>;
-    const auto linear = linearize(model, withGradient);
+    const auto linear = linearize(model, withGradient, drives);
     const auto n = linear.A.rows();
     const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
     const Eigen::VectorXcd B = linear.B.cast<Complex>();
@@ -239,13 +248,13 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
         if (withGradient)
             responses[q].gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
     }
-    const auto inside = nonzero(linear.dA, linear.dB), outside = nonzero(linear.dC, linear.dD);
-    Resolvent resolvent(linear.A);
+    const auto inside = placesOf(linear.dA, linear.dB), outside = placesOf(linear.dC, linear.dD);
+    BalancedResolvent resolvent(linear.A);
     for (std::size_t f = 0; f < frequency.size(); ++f) {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
         resolvent.moveTo(s);
         const Eigen::VectorXcd z = resolvent.times(B);
-        const auto driven = [&](const Entry& entry) { return entry.value * (entry.column < n ? z[entry.column] : Complex(1.0)); };
+        const auto driven = [&](const Place& place) { return place.column < n ? z[place.column] : Complex(1.0); };
         for (std::size_t q = 0; q < quantities.size(); ++q) {
             const auto& of = observed[q];
             Complex factor = of.gain;
@@ -260,11 +269,15 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
             // d(C R B + D) = C R (dA R B + dB) + dC R B + dD with R = (sI - A)^-1.
             const Eigen::VectorXcd left = resolvent.row(of.row);
             auto row = responses[q].gradient.row(static_cast<Eigen::Index>(f));
-            for (const auto& entry : inside)
-                row[entry.parameter] += factor * left[entry.row] * driven(entry);
-            for (const auto& entry : outside)
-                if (entry.row == of.source)
-                    row[entry.parameter] += factor * driven(entry);
+            const auto act = [&row](const Place& place, Complex through) {
+                for (const auto& [parameter, slope] : place.slopes)
+                    row[parameter] += slope * through;
+            };
+            for (const auto& place : inside)
+                act(place, factor * left[place.row] * driven(place));
+            for (const auto& place : outside)
+                if (place.row == of.source)
+                    act(place, factor * driven(place));
             if (of.delayed)
                 for (Eigen::Index k = 0; k < count; ++k)
                     row[k] -= s * linear.dLateness[static_cast<std::size_t>(k)] * value;

@@ -10,6 +10,9 @@
 
 namespace excursion {
 
+/// Where a linear part is driven: at its terminals by the voltage (a mechanical-only driver by the force), or at the cone by a force.
+enum class Drives { terminals, cone };
+
 /// The model's linear part, dz/dt = A z + B u, with z as in Dynamics (seed 2.3, extended by the memories), and what leaves it,
 ///     (area acceleration, spot) = C z + D u     (Emission).
 /// Laws are zero at rest and have no part in it. Neither have their memories, which stand still here: friction is a spring for motions that
@@ -28,7 +31,7 @@ struct Linearization {
     bool shiftsSpot() const { return !C.row(spot).isZero(0.0) || D[spot] != 0.0; }
 };
 
-Linearization linearize(const Model&, bool withGradient = false);
+Linearization linearize(const Model&, bool withGradient = false, Drives = Drives::terminals);
 
 /// Eigenvalues of A, 1/s.
 Eigen::VectorXcd poles(const Linearization&);
@@ -37,7 +40,7 @@ Eigen::VectorXcd poles(const Linearization&);
 /// stands there, and a memory that only integrates.
 bool isStable(const Model&);
 
-/// Frequency response of a quantity (current, displacement, velocity, acceleration, pressure) per unit of input.
+/// Frequency response of a quantity (current, displacement, velocity, acceleration, pressure) per unit of what drives.
 struct Response {
     std::vector<std::complex<double>> value;   ///< one a frequency
     Eigen::MatrixXcd gradient;                 ///< frequencies x parameters; empty unless asked for
@@ -45,6 +48,6 @@ struct Response {
 
 /// G(j w) = C (j w I - A)^-1 B + D of several quantities at once; one factorization a frequency serves them all.
 std::vector<Response> respond(const Model&, const std::vector<Quantity>& quantities,
-                              const std::vector<double>& frequency, bool withGradient = false);
+                              const std::vector<double>& frequency, bool withGradient = false, Drives = Drives::terminals);
 
 } // namespace excursion

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/OutputError.h"
 
+#include "Engine/Driver/EachSection.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Sensors.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Driver/StartState.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <mutex>
 #include <numbers>
-#include <thread>
 
 namespace excursion {
 namespace {
@@ -196,35 +194,10 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
     const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
     std::vector<SectionFit> fits(sections.size());
-    std::atomic<std::size_t> next {0};
-    std::atomic<bool> failed {false};
-    std::exception_ptr failure;
-    std::mutex failureMutex;
-    const auto work = [&] {
-        for (std::size_t n = next++; n < sections.size() && !failed; n = next++) {
-            try {
-                if (progress.stop.stop_requested())
-                    break;
-                fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
-                if (!fits[n].finite)
-                    failed = true;
-            } catch (...) {
-                const std::lock_guard lock(failureMutex);
-                failure = std::current_exception();
-                failed = true;
-            }
-        }
-    };
-    {
-        std::vector<std::jthread> threads;
-        for (unsigned t = 1; t < std::min<std::size_t>(options.threads, sections.size()); ++t)
-            threads.emplace_back(work);
-        work();
-    }
-    if (failure)
-        std::rethrow_exception(failure);
-    if (progress.stop.stop_requested())
-        progress.at(0.0, "");
+    forEachSection(sections.size(), options.threads, progress, [&](std::size_t n) {
+        fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
+        return fits[n].finite;
+    });
     return fits;
 }
 

@@ -3,7 +3,7 @@
 
 #include "Engine/Driver/LawMemory.h"
 #include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Resolvent.h"
+#include "Engine/Driver/BalancedResolvent.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -138,7 +138,7 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
                 spectra[s].fill(std::vector<Complex>(section.window / 2 + 1, 0.0));
     const Eigen::VectorXcd B = linear.B.cast<Complex>();
     Eigen::MatrixXcd drives(n, P), gradient;
-    Resolvent resolvent(linear.A);
+    BalancedResolvent resolvent(linear.A);
     for (const auto& [frequency, shares] : linesOf(record, heard, leadIn)) {
         resolvent.moveTo(Complex(0.0, 2.0 * std::numbers::pi * frequency));
         const Eigen::VectorXcd z = resolvent.times(B);

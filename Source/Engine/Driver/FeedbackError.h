@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/OutputError.h"
+#include "Engine/Driver/ShownMotion.h"
+
+#include <vector>
+
+namespace excursion {
+
+/// The motions of some sections of a record, one each.
+using ShownMotions = std::vector<ShownMotion>;
+
+/// Whether the sections of a record are periods, which the following needs.
+bool hasPeriods(const Record&);
+
+/// Motions of the sections as the take shows them, and where it shows nothing as the model expects them from the motions `before`; without these
+/// from its linear part.
+ShownMotions shownMotions(const Model&, const Record&, const std::vector<std::size_t>& sections, const ShownMotions& before = {});
+/// The same, from the linear part and once more from there.
+ShownMotions settledMotions(const Model&, const Record&, const std::vector<std::size_t>& sections);
+
+/// What outputError() tells, where the laws do not follow the simulation but are fed the motion that the take shows (nonlinear identification
+/// through feedback of the outputs, Adams & Allemang 2000, Mech. Syst. Signal Process. 14). The model's linear part is exact,
+///     Y = G_u (U - sum U_laws) + G_F sum F_laws,
+/// G_u and G_F from the terminals and from a force on the cone, U_laws and F_laws what the laws make of the shown motion, as voltage and force.
+/// Nothing is integrated but the memories of laws; residuals are linear in the strengths of all laws at once and know no runaway. For a model
+/// that is true the error is the noise, as far as that of the shown motion is small; a model that is not is told by what its equations lack, not
+/// by where its simulation goes. `options` count as far as they are not about steps.
+/// @param motions  one a section of `sections`
+std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::vector<std::size_t>& sections, const ShownMotions& motions,
+                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& = {});
+
+} // namespace excursion
