@@ -25,11 +25,14 @@ ErrorByChannel errorOf(const Comparison& comparison)
     return error;
 }
 
-/// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that can.
+/// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that can. Of these the ones
+/// come first that the catalogue as a whole speaks for: others only borrow what belongs to one that is not in yet.
 bool better(const RankedEffect& a, const RankedEffect& b)
 {
     if (a.significant != b.significant)
         return a.significant;
+    if (a.significant && a.isBacked() != b.isBacked())
+        return a.isBacked();
     const bool triedA = a.confirmedChi > 0.0, triedB = b.confirmedChi > 0.0;
     if (triedA != triedB)
         return triedA;
@@ -57,7 +60,7 @@ void judge(std::vector<RankedEffect>& ranking, double chi, bool noiseKnown, Diag
     // Two effects that each explain most of the same residual, and leave about as much, cannot be told apart.
     for (std::size_t k = 1; k < ranking.size() && ranking[k].significant; ++k) {
         const double first = excess(ranking[0].confirmedChi, noiseKnown), other = excess(ranking[k].confirmedChi, noiseKnown);
-        if (other < 1.25 * first && other < 0.4 * before)
+        if (other < 1.25 * first && other < 0.4 * before && ranking[k].isBacked() == ranking[0].isBacked())
             diagnosis.indistinguishable.push_back(ranking[k].effect);
     }
     if (!diagnosis.indistinguishable.empty())
@@ -110,7 +113,7 @@ Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& co
 {
     const double before = excess(comparison.chi, comparison.noiseKnown);
     if (!ranking.empty() && ranking.front().significant && !outdone(ranking, comparison.noiseKnown)
-        && 1.0 - excess(ranking.front().confirmedChi, comparison.noiseKnown) / before >= smallestShare)
+        && (ranking.front().standsAlone() || 1.0 - excess(ranking.front().confirmedChi, comparison.noiseKnown) / before >= smallestShare))
         return Verdict::missingEffect;
     constexpr double onlyNoise = 1.6;   // mean squared error over the noise's, 2 dB
     bool clean = comparison.noiseKnown;
@@ -169,6 +172,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         entry.predictedChi = candidate.chi;
         entry.predictedErrorDb = candidate.errorDb;
         entry.uniqueDb = candidate.uniqueDb;
+        entry.inconsistency = candidate.inconsistency;
         entry.model = candidate.model;
         auto errorAfter = candidate.errorDb;
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
@@ -201,13 +205,12 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     judge(diagnosis.ranking, before.chi, before.noiseKnown, diagnosis);
     constexpr double smallestShare = 0.15;   // of what is not noise; less is a symptom of something else
     constexpr double mostLeft = 0.15;        // by all effects together
-    constexpr double alone = 2.0;            // dB that no other effect explains
     diagnosis.verdict = verdictOf(diagnosis.ranking, before, smallestShare);
     // An effect that explains a part which others would explain as well, while all of them together cannot explain the rest, may share a symptom
     // with something unknown.
     if (diagnosis.verdict == Verdict::missingEffect && before.noiseKnown) {
         const auto& first = diagnosis.ranking.front();
-        if (first.uniqueDb < alone && excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
+        if (!first.standsAlone() && excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
             const auto beyond = score(first.model, record, test, {});
             if (leastLeft(scores.chiByChannel, beyond.togetherChi) > mostLeft)
                 diagnosis.verdict = Verdict::unknownEffect;

@@ -32,9 +32,15 @@ struct RankedEffect {
     double predictedChi = 0.0;
     double confirmedChi = 0.0;                ///< 0 when not tried
     double uniqueDb = 0.0;                    ///< by how much the catalogue as a whole would leave more without it
+    double inconsistency = 0.0;               ///< see Score
     bool significant = false;                 ///< it pays for its parameters
     std::string reason;                       ///< one sentence that a person can check on a plot
     Model model;                              ///< with the effect, as refitted; without components when not tried
+
+    /// Whether the catalogue as a whole speaks for it: the others explain clearly less without it, and it is about the same at all levels.
+    bool isBacked() const { return uniqueDb >= 0.5 && inconsistency < 0.5; }
+    /// Whether it explains what nothing else does, whatever else is missing.
+    bool standsAlone() const { return uniqueDb >= 3.0 && inconsistency < 0.2; }
 };
 
 struct Diagnosis {

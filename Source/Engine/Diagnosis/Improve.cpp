@@ -23,7 +23,14 @@ double worth(const Comparison& before, const Comparison& after, const Comparison
     return best;
 }
 
-/// When something unknown is left in the end, effects that removed little more than that have explained a symptom of it: they are
+/// Whether the diagnosis that proposed a rung's effect said that it explains what nothing else does.
+bool stoodAlone(const Rung& before, const Rung& rung)
+{
+    const auto& ranking = before.diagnosis.ranking;
+    return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == rung.added && r.standsAlone(); });
+}
+
+/// When something unknown is left in the end, effects that removed little more than that may have explained a symptom of it: they are
 /// taken back.
 void withdrawDoubtful(Ladder& ladder)
 {
@@ -31,7 +38,7 @@ void withdrawDoubtful(Ladder& ladder)
         return;
     constexpr double convincing = 3.0;
     const Comparison last = ladder.rungs.back().comparison;
-    while (ladder.rungs.size() > 1
+    while (ladder.rungs.size() > 1 && !stoodAlone(ladder.rungs[ladder.rungs.size() - 2], ladder.rungs.back())
            && worth(ladder.rungs[ladder.rungs.size() - 2].comparison, ladder.rungs.back().comparison, last) < convincing) {
         ladder.withdrawn.push_back(ladder.rungs.back().added);
         ladder.rungs.pop_back();

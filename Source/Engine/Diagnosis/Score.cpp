@@ -21,6 +21,7 @@ namespace {
 struct Sums {
     NormalEquations estimation, validation;
     std::vector<NormalEquations> byChannel;     // of the validation sections
+    std::map<int, NormalEquations> byLevel;     // of the estimation sections
     std::vector<ErrorPower> power;              // of the validation sections
     bool finite = true;
 };
@@ -48,8 +49,10 @@ Sums sum(const Model& model, const Record& record, std::vector<std::size_t> sect
         }
         const bool validates = std::find(held.begin(), held.end(), n) != held.end();
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
-            if (!record.sections[n].validation)
+            if (!record.sections[n].validation) {
                 sums.estimation.add(fits[k].channels[c]);
+                sums.byLevel[record.sections[n].level].add(fits[k].channels[c]);
+            }
             if (validates) {
                 sums.validation.add(fits[k].channels[c]);
                 sums.byChannel[c].add(fits[k].channels[c]);
@@ -65,6 +68,19 @@ Sums sum(const Model& model, const Record& record, std::vector<std::size_t> sect
 double predictedCost(const NormalEquations& e, const Eigen::VectorXd& d)
 {
     return std::max(0.0, e.cost + 2.0 * e.g.dot(d) + d.dot(e.N * d));
+}
+
+/// How much more of each level would be explained if these strengths, which a step d has set for all levels, had values of their own there.
+double gainByLevel(const Sums& sums, const Eigen::VectorXd& d, const std::vector<Eigen::Index>& strengths)
+{
+    double gain = 0.0;
+    for (const auto& [level, whole] : sums.byLevel) {
+        auto own = whole;
+        own.g += own.N * d;
+        const auto e = gaussNewtonStep(own, strengths);
+        gain -= 2.0 * own.g.dot(e) + e.dot(own.N * e);
+    }
+    return gain;
 }
 
 /// Indices of the strengths of component k, as positions in `active`.
@@ -197,6 +213,14 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
             score.errorDb[record.channels[c]]
                 = 10.0 * std::log10(std::max(ratio * sums.power[c].error / std::max(sums.power[c].measured, 1e-300), 1e-30));
         }
+        // A base that has settled on a part of what the effect does leaves no small step to it.
+        if (!entry.byResponse.components.empty())
+            if (const auto there = sum(entry.byResponse, record, {}, {}, options, {}); there.finite && there.validation.cost < score.chi * rows) {
+                score.chi = there.validation.cost / rows;
+                for (std::size_t c = 0; c < record.channels.size(); ++c)
+                    score.errorDb[record.channels[c]]
+                        = 10.0 * std::log10(std::max(there.power[c].error / std::max(there.power[c].measured, 1e-300), 1e-30));
+            }
         const auto known = std::find_if(result.scores.begin(), result.scores.end(),
                                         [&](const Score& s) { return s.effect == score.effect; });
         if (known != result.scores.end() && known->chi <= score.chi)
@@ -226,7 +250,10 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
             }
         std::sort(strengths.begin(), strengths.end());
         std::set_difference(together.begin(), together.end(), strengths.begin(), strengths.end(), std::back_inserter(rest));
-        s.uniqueDb = 10.0 * std::log10(std::max({predictedCost(sums.validation, gaussNewtonStep(sums.estimation, rest)), noise, 1e-300}) / least);
+        const auto without = gaussNewtonStep(sums.estimation, rest);
+        s.uniqueDb = 10.0 * std::log10(std::max({predictedCost(sums.validation, without), noise, 1e-300}) / least);
+        const double explained = predictedCost(sums.estimation, without) - predictedCost(sums.estimation, all);
+        s.inconsistency = gainByLevel(sums, all, strengths) / std::max(explained, 1e-300);
     }
     for (const auto& channel : sums.byChannel) {
         const double channelRows = std::max(1.0, channel.rows);
@@ -280,8 +307,9 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
     const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
     const double price = 2.4 * unit;
-    // Where the noise is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
-    const double least = record.noiseKnown ? 0.0 : 0.02 * now;
+    // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
+    constexpr double nearNoise = 4.0;
+    const double least = record.noiseKnown && unit < nearNoise ? 0.0 : 0.02 * now;
     Model result = model;
     for (const auto k : candidates) {
         auto use = old;

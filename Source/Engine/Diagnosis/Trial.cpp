@@ -6,6 +6,8 @@
 #include "Engine/Driver/OutputError.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 namespace excursion {
@@ -28,6 +30,19 @@ double costOf(const Model& model, const Record& record, const std::vector<std::s
     }
     addPrior(model, freeParameters(model), sum);
     return sum.cost;
+}
+
+/// A fit with laws that are fed; where what it finds runs away when it is simulated, a fit that simulates in its place.
+FitSummary fitFed(Model& model, const Record& record, const std::vector<std::size_t>& sections, FitOptions options, const Progress& progress)
+{
+    auto found = model;
+    options.fed = true;
+    const auto summary = fit(found, record, sections, options, progress);
+    options.fed = false;
+    if (hasPeriods(record) && !(summary.usable && std::isfinite(costOf(found, record, sections, options))))
+        return fit(model, record, sections, options, progress);
+    model = std::move(found);
+    return summary;
 }
 
 /// The strengths of the newest component scaled by a factor.
@@ -78,7 +93,7 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
         if (const double cost = costOf(proposed.byResponse, record, sections, chosen); cost < lowest)
             best = proposed.byResponse;
     model = std::move(best);
-    return fit(model, record, sections, chosen, progress);
+    return options.fed ? fitFed(model, record, sections, chosen, progress) : fit(model, record, sections, chosen, progress);
 }
 
 void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options, const Progress& progress)
@@ -108,14 +123,13 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     score.threads = chosen.threads;
     FitOptions quick = chosen;
     quick.search = {8, 1e-3};
-    quick.fed = true;
-    auto summary = fit(model, record, sections, quick, progress.part(0.0, 0.3));
+    auto summary = fitFed(model, record, sections, quick, progress.part(0.0, 0.3));
     constexpr int mostRaises = 3;
     for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
-        summary = fit(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
+        summary = fitFed(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
     if (hasPeriods(record)) {
         quick.search = {15, 1e-4};
-        summary = fit(model, record, sections, quick, progress.part(0.6, 0.75));
+        summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
         // A simulation tells more than laws that are fed only where both come near the noise.
         constexpr double nearNoise = 4.0;
         if (record.noiseKnown && summary.costPerResidual > nearNoise)

@@ -92,6 +92,7 @@ FitSummary search(Model& model, const ErrorOf& errorOf, const FitOptions& option
             all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
     };
     NormalEquations last;   // at the last accepted gradient
+    double variance = 0.0;  // of the residuals at the start
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
         place(at);
         for (const auto& section : errorOf(active, gradient)) {
@@ -100,7 +101,9 @@ FitSummary search(Model& model, const ErrorOf& errorOf, const FitOptions& option
             for (const auto& channel : section.channels)
                 sum.add(channel);
         }
-        addPrior(model, active, sum);
+        if (variance == 0.0)
+            variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
+        addPrior(model, active, sum, variance);
         if (gradient)
             last = sum;
         return true;

@@ -110,7 +110,7 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
         // singular point, but so near that nobody sees it.
         const double near = std::min(unseenErrors * p.standardError, unseenAlone * std::sqrt(variance / alone[r]));
         if (positive(p) && p.lower == 0.0 && p.value < near)
-            p.value = near;
+            p.value = std::min(near, p.upper);
     }
 }
 

@@ -201,14 +201,14 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     return fits;
 }
 
-void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum)
+void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum, double variance)
 {
     const auto all = parametersOf(model);
     for (std::size_t j = 0; j < active.size(); ++j) {
         const auto& p = *all[static_cast<std::size_t>(active[j])];
         if (!std::isfinite(p.prior))
             continue;
-        const double weight = 1.0 / (p.prior * p.prior);
+        const double weight = variance / (p.prior * p.prior);
         sum.cost += weight * p.value * p.value;
         if (sum.N.size() > 0) {
             const auto k = static_cast<Eigen::Index>(j);

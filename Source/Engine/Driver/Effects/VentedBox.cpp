@@ -44,6 +44,7 @@ public:
              port = positiveParameter("1/QP", "1", someLoss), leak = positiveParameter("1/QL", "1", someLoss),
              absorption = positiveParameter("1/QA", "1", 0.0), radiator = positiveParameter("Kp/Ka", "1", 0.0), share = positiveParameter("port", "1", 0.0);
         stiffness.strength = share.strength = true;
+        tuning.upper = e.highFrequency;   // beyond what was measured a search that finds nothing would run away
         // Losses are small and an open port has no spring: without better knowledge they stay near zero.
         for (auto* p : {&port, &leak, &absorption, &radiator})
             p->prior = 0.3;
