@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/OutputError.h"
 #include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
@@ -106,8 +107,21 @@ void Improvement::add(const std::string& id, const Progress& progress)
 /// Compares and diagnoses the rung's model.
 void Improvement::push(Rung rung, const Progress& progress)
 {
-    rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
-    rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, progress); }, data_);
+    const auto judge = [&] {
+        rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
+        rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, progress); }, data_);
+    };
+    judge();
+    // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
+    if (const auto* record = std::get_if<Record>(&data_);
+        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0) {
+        auto better = rung.model;
+        if (const auto run = fit(better, *record, estimationSections(*record), options_.diagnose.fit, progress); run.usable) {
+            rung.model = std::move(better);
+            rung.fit = run;
+            judge();
+        }
+    }
     rung.diagnosis.problems = report_.problems;
     ladder_.rungs.push_back(std::move(rung));
     const auto& diagnosis = ladder_.rungs.back().diagnosis;

@@ -130,7 +130,7 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     if (hasPeriods(record)) {
         quick.search = {15, 1e-4};
         summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
-        // A simulation tells more than laws that are fed only where both come near the noise.
+        // While more is missing a simulation tells little more than laws that are fed.
         constexpr double nearNoise = 4.0;
         if (record.noiseKnown && summary.costPerResidual > nearNoise)
             return summary;

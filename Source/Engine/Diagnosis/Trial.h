@@ -21,7 +21,8 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std:
 /// model has the effect already or can't have it.
 void tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});
 
-/// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays.
+/// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays. Of a take with periods
+/// the laws are fed, and what comes near the noise is fitted by simulation in the end; FitSummary::substeps is 0 where it was not.
 FitSummary refine(Model&, const Record&, const FitOptions&, const Progress& = {});
 
 } // namespace excursion

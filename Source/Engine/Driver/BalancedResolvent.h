@@ -3,62 +3,46 @@
 
 #include "Engine/Driver/StateUnits.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <complex>
 
 namespace excursion {
 
-/// (s I - A)^-1 at one s after another: by the Schur form A = U T U^H, made once, in units in which no digits are lost. Each s then costs a
-/// triangular system in place of a factorization.
+/// (s I - A)^-1 at one s after another, factored in units in which no digits are lost.
 class BalancedResolvent {
 public:
-    explicit BalancedResolvent(const Eigen::MatrixXd& A) : units_(stateUnits(A))
+    explicit BalancedResolvent(const Eigen::MatrixXd& A)
+        : units_(stateUnits(A)), minusA_(-inUnits(A, units_).cast<std::complex<double>>()), factors_(A.rows())
     {
-        const Eigen::ComplexSchur<Eigen::MatrixXcd> schur(inUnits(A, units_).cast<std::complex<double>>());
-        T_ = schur.matrixT();
-        transposed_ = T_.transpose();
-        into_ = schur.matrixU().adjoint() * units_.cwiseInverse().asDiagonal();
-        from_ = units_.asDiagonal() * schur.matrixU();
-        overDiagonal_.resize(T_.rows());
     }
 
     void moveTo(std::complex<double> s)
     {
-        for (Eigen::Index k = 0; k < T_.rows(); ++k) {
-            const auto pole = s - T_(k, k);
-            overDiagonal_[k] = std::conj(pole) / std::norm(pole);
-        }
+        system_ = minusA_;
+        system_.diagonal().array() += s;
+        factors_.compute(system_);
     }
 
     /// (s I - A)^-1 times a vector or a matrix.
     template <class Right>
     auto times(const Right& right) const
     {
-        auto y = (into_ * right).eval();
-        for (Eigen::Index k = y.rows() - 1; k >= 0; --k) {
-            y.row(k) *= overDiagonal_[k];
-            y.topRows(k).noalias() += T_.col(k).head(k) * y.row(k);
-        }
-        return (from_ * y).eval();
+        return (units_.asDiagonal() * factors_.solve(units_.cwiseInverse().asDiagonal() * right)).eval();
     }
 
     /// c (s I - A)^-1 of a row c, as a column.
     Eigen::VectorXcd row(const Eigen::RowVectorXd& c) const
     {
-        Eigen::VectorXcd y = from_.transpose() * c.transpose();
-        const auto n = y.size();
-        for (Eigen::Index k = 0; k < n; ++k) {
-            y[k] *= overDiagonal_[k];
-            y.tail(n - k - 1) += y[k] * transposed_.col(k).tail(n - k - 1);
-        }
-        return into_.transpose() * y;
+        const Eigen::VectorXcd scaled = (c.transpose().cwiseProduct(units_)).cast<std::complex<double>>();
+        const Eigen::VectorXcd solved = factors_.transpose().solve(scaled);
+        return solved.cwiseQuotient(units_);
     }
 
 private:
     Eigen::VectorXd units_;
-    Eigen::MatrixXcd T_, transposed_, into_, from_;
-    Eigen::VectorXcd overDiagonal_;   ///< 1 / (s - T_kk)
+    Eigen::MatrixXcd minusA_, system_;
+    Eigen::PartialPivLU<Eigen::MatrixXcd> factors_;
 };
 
 } // namespace excursion

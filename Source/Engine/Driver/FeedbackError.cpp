@@ -22,6 +22,7 @@ using Complex = std::complex<double>;
 struct Paths {
     std::vector<Response> fromVoltage, fromForce;   ///< by quantity; by line from `first` on
     std::size_t first = 0;
+    double lateness = 0.0;   ///< s, of the sound at rest
 };
 
 /// 0 Hz is taken for a small share of the first line's frequency, where nothing divides by zero.
@@ -32,7 +33,7 @@ Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::
     std::vector<double> frequency;
     for (std::size_t k = first; k <= last; ++k)
         frequency.push_back(resolution * (k > 0 ? static_cast<double>(k) : nearlyRest));
-    Paths paths {{}, {}, first};
+    Paths paths {{}, {}, first, linearize(model).lateness};
     forEachSection(2, threads, {}, [&](std::size_t n) {
         (n == 0 ? paths.fromVoltage : paths.fromForce) = respond(model, quantities, frequency, withGradient, n == 0 ? Drives::terminals : Drives::cone);
         return true;
@@ -175,20 +176,31 @@ private:
         return result;
     }
 
+    /// What leaves the cone, of what arrives as late as at rest.
+    std::vector<double> leaving(const Spectrum& sound) const { return inverseFft(later(sound, -paths_.lateness), section_.window); }
+    /// What arrives, as late as the laws make it.
+    Spectrum arriving(const std::vector<double>& flow) const { return later(fft(arrival_.back().heard(flow)), paths_.lateness); }
+
+    Spectrum later(Spectrum sound, double time) const
+    {
+        for (std::size_t k = 0; k < sound.size(); ++k)
+            sound[k] *= std::polar(1.0, -2.0 * std::numbers::pi * record_.frequency(section_, k) * time);
+        return sound;
+    }
+
     /// Makes the sound of laws arrive late; true where any does.
     bool hear(Spectrum& sound)
     {
         for (const auto& law : fed_.laws) {
             if (law.lateness.empty())
                 continue;
-            const std::size_t N = section_.window;
-            const auto leaving = inverseFft(sound, N);
+            const auto flow = leaving(sound);
             arrival_.emplace_back(law.lateness, record_.sampleRate);
-            byLeaving_ = slopeOf(leaving, record_.sampleRate);
+            byLeaving_ = slopeOf(flow, record_.sampleRate);
             const auto drift = slopeOf(law.lateness, record_.sampleRate);
-            for (std::size_t n = 0; n < N; ++n)
+            for (std::size_t n = 0; n < flow.size(); ++n)
                 byLeaving_[n] /= 1.0 + drift[n];
-            sound = fft(arrival_.back().heard(leaving));
+            sound = arriving(flow);
         }
         return !arrival_.empty();
     }
@@ -196,13 +208,20 @@ private:
     Eigen::MatrixXd columns(std::size_t c, const std::vector<Eigen::Index>& active, bool heard) const
     {
         Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2 * lines_, static_cast<Eigen::Index>(active.size()));
+        Spectrum slope(fed_.voltage.size(), 0.0);
         const auto fill = [&](Eigen::Index column, const auto& at) {
+            for (std::size_t k = first_; k <= last_; ++k)
+                slope[k] = at(k);
+            if (heard)
+                slope = arriving(leaving(slope));
             for (Eigen::Index n = 0; n < lines_; ++n) {
                 const auto k = first_ + static_cast<std::size_t>(n);
-                const Complex slope = weight(c, k) * at(k);
-                J(n, column) = slope.real();
-                J(lines_ + n, column) = slope.imag();
+                const Complex row = weight(c, k) * slope[k];
+                J(n, column) = row.real();
+                J(lines_ + n, column) = row.imag();
             }
+            if (heard)
+                std::fill(slope.begin(), slope.end(), 0.0);
         };
         const auto& byVoltage = paths_.fromVoltage[c];
         const auto& byForce = paths_.fromForce[c];
@@ -229,16 +248,17 @@ private:
             if (U.empty())
                 continue;
             const double electrical = model_.electrical() ? 1.0 : 0.0;
-            fill(column, [&](std::size_t k) {
-                return byForce.value[k - paths_.first] * F[k] - electrical * byVoltage.value[k - paths_.first] * U[k];
-            });
+            Spectrum late;
             if (heard && !drive.latenessSlopes[own].empty()) {
                 auto change = drive.latenessSlopes[own];
                 for (std::size_t n = 0; n < change.size(); ++n)
                     change[n] *= -byLeaving_[n];
-                const auto late = fft(arrival_.back().heard(change));
-                fill(column, [&](std::size_t k) { return late[k]; });
+                late = later(fft(change), paths_.lateness);   // as at rest, which arriving() makes later still
             }
+            fill(column, [&](std::size_t k) {
+                const auto sum = byForce.value[k - paths_.first] * F[k] - electrical * byVoltage.value[k - paths_.first] * U[k];
+                return late.empty() ? sum : sum + late[k];
+            });
         }
         return J;
     }

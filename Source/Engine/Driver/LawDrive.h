@@ -19,8 +19,8 @@ struct LawDrive {
     std::vector<std::vector<double>> latenessSlopes;
 };
 
-/// Asks the law, which is no linear effect, along the motion, and integrates its memory there by the fourth-order Runge-Kutta method, one
-/// step a sample, after a quarter of a period.
+/// Asks the law, which is no linear effect, along the motion, and integrates its memory there by the fourth-order Runge-Kutta method,
+/// after a quarter of a period.
 /// @param start      of its memory, a quarter of a period before the window
 /// @param wanted     parameters to differentiate by: one flag each
 LawDrive driveOf(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate, const std::vector<bool>& wanted);

@@ -2,7 +2,7 @@
 #include "Engine/Driver/Linearize.h"
 
 #include "Engine/Driver/Dynamics.h"
-#include "Engine/Driver/BalancedResolvent.h"
+#include "Engine/Driver/SchurResolvent.h"
 #include "Engine/Error.h"
 
 #include <Eigen/Eigenvalues>
@@ -249,7 +249,7 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
             responses[q].gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
     }
     const auto inside = placesOf(linear.dA, linear.dB), outside = placesOf(linear.dC, linear.dD);
-    BalancedResolvent resolvent(linear.A);
+    SchurResolvent resolvent(linear.A);
     for (std::size_t f = 0; f < frequency.size(); ++f) {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
         resolvent.moveTo(s);
