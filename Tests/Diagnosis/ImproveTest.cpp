@@ -175,13 +175,10 @@ TEST_CASE("The current alone tells a stiffening suspension", "[improve][slow]")
     CHECK(ladder.verdict == Verdict::complete);
 }
 
-TEST_CASE("What the catalogue does not hold is not given another name", "[improve][slow]")
+/// A laser that is bent, which no loudspeaker is: by a power of the displacement.
+Measurement withBentLaser(Measurement take, int power)
 {
-    // A laser that is bent, which no loudspeaker is: its square, and its cube.
-    const int power = GENERATE(2, 3);
-    INFO(power);
-    auto bent = take({}, {Quantity::current, Quantity::displacement});
-    for (auto& channel : bent.channels)
+    for (auto& channel : take.channels)
         if (channel.quantity == Quantity::displacement) {
             double peak = 0.0;
             for (const double x : channel.samples)
@@ -189,10 +186,35 @@ TEST_CASE("What the catalogue does not hold is not given another name", "[improv
             for (auto& x : channel.samples)
                 x += 0.05 * peak * std::pow(x / peak, power);
         }
-    const auto ladder = improve(bent);
+    return take;
+}
+
+TEST_CASE("What the catalogue does not hold is not given another name", "[improve][slow]")
+{
+    const int power = GENERATE(2, 3);
+    INFO(power);
+    const auto ladder = improve(withBentLaser(take({}, {Quantity::current, Quantity::displacement}), power));
     CHECK(ladder.verdict == Verdict::unknownEffect);
     CHECK(added(ladder).empty());
     CHECK_THAT(ladder.sentence, Catch::Contains("no effect of the catalogue explains"));
+}
+
+TEST_CASE("What is known is named beside what is not", "[improve][slow]")
+{
+    const auto ladder = improve(withBentLaser(take({{"force-factor", 0.4}}, {Quantity::current, Quantity::displacement}), 2));
+    CHECK(ladder.verdict == Verdict::unknownEffect);
+    CHECK(added(ladder) == std::vector<std::string> {"force-factor"});
+}
+
+TEST_CASE("Four effects at once are all named", "[improve][slow]")
+{
+    const auto ladder = improve(take({{"force-factor", 0.3}, {"stiffness", 0.3}, {"inductance-position", 0.25}, {"friction", 0.2}}));
+    CHECK_THAT(added(ladder), Catch::UnorderedEquals(std::vector<std::string> {"force-factor", "stiffness", "inductance-position", "friction"}));
+    for (const auto& rung : ladder.rungs)
+        for (const auto& channel : rung.comparison.channels)
+            UNSCOPED_INFO(rung.added << " " << name(channel.quantity) << " " << channel.total.db << " dB");
+    for (const auto& channel : ladder.rungs.back().comparison.channels)
+        CHECK(channel.total.db < -55.0);
 }
 
 TEST_CASE("A faulty take is not improved", "[improve]")

@@ -242,6 +242,8 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     const auto all = gaussNewtonStep(sums.estimation, together);
     const double noise = record.noiseKnown ? rows : 0.0, least = std::max({predictedCost(sums.validation, all), noise, 1e-300});
     for (auto& s : result.scores) {
+        if (!hasPeriods(record))
+            break;   // a simulation's sensitivities say little of several strong effects at once
         std::vector<Eigen::Index> strengths, rest;
         for (const auto& entry : entries)
             if (entry.model.components.back().effect == s.effect) {

@@ -17,7 +17,7 @@ struct Score {
     Model model;
     Model byResponse;                          ///< of a linear effect: as a search on the frequency responses found it; without components when none was made
     double chi = 0.0;                          ///< predicted, all channels
-    double uniqueDb = 0.0;                     ///< by how much all candidates together would leave more without this one: what it alone explains
+    double uniqueDb = 0.0;                     ///< by how much all candidates together would leave more without this one: what it alone explains. 0 without periods
     double inconsistency = 0.0;                ///< how much more it would explain with strengths of its own at each level, as a share of that: a law is
                                                ///< the same at all levels, what is bent to stand for something else is not
     std::map<Quantity, double> errorDb;        ///< predicted, by channel

@@ -3,12 +3,10 @@
 
 #include "Engine/Driver/Arrival.h"
 #include "Engine/Driver/EachSection.h"
-#include "Engine/Driver/LawDrive.h"
-#include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/FedLaws.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -17,105 +15,6 @@ namespace excursion {
 namespace {
 
 using Complex = std::complex<double>;
-
-/// Responses of several quantities to the voltage and to a force on the cone, on the lines of a window.
-struct Paths {
-    std::vector<Response> fromVoltage, fromForce;   ///< by quantity; by line from `first` on
-    std::size_t first = 0;
-    double lateness = 0.0;   ///< s, of the sound at rest
-};
-
-/// 0 Hz is taken for a small share of the first line's frequency, where nothing divides by zero.
-Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::size_t first, std::size_t last, double resolution, bool withGradient,
-              unsigned threads = 1)
-{
-    constexpr double nearlyRest = 1e-3;
-    std::vector<double> frequency;
-    for (std::size_t k = first; k <= last; ++k)
-        frequency.push_back(resolution * (k > 0 ? static_cast<double>(k) : nearlyRest));
-    Paths paths {{}, {}, first, linearize(model).lateness};
-    forEachSection(2, threads, {}, [&](std::size_t n) {
-        (n == 0 ? paths.fromVoltage : paths.fromForce) = respond(model, quantities, frequency, withGradient, n == 0 ? Drives::terminals : Drives::cone);
-        return true;
-    });
-    return paths;
-}
-
-bool isLaw(const Component& component) { return !component.effect->linear(); }
-
-/// What all laws make of the motion of one section.
-struct Fed {
-    std::vector<std::size_t> component;   ///< of the model, one a law
-    std::vector<LawDrive> laws;
-    Spectrum voltage, force;              ///< at the terminals with the laws' taken away, and on the cone
-};
-
-/// Memories of the laws a quarter of a period before the window of each section: of slow ones with their history, of others settled.
-std::vector<MemoryStart> startsOf(const Component& law, const Record& record, const std::vector<std::size_t>& sections, const ShownMotions& motions,
-                                  bool withGradient)
-{
-    const auto size = static_cast<Eigen::Index>(law.effect->memorySize(law.extent));
-    const auto count = static_cast<Eigen::Index>(law.parameters.size());
-    std::vector<MemoryStart> starts(sections.size(), {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});
-    if (size == 0)
-        return starts;
-    if (!law.effect->slow()) {
-        for (std::size_t s = 0; s < sections.size(); ++s) {
-            const std::size_t N = record.sections[sections[s]].window;
-            starts[s] = settledMemory(law, motions[s].coarse, N - N / 4, record.sampleRate);
-        }
-        return starts;
-    }
-    // Sections that are not asked for have heated the coil all the same: as much as those of the same level, or of the nearest.
-    std::vector<PeriodicMotion> all;
-    std::vector<double> run;
-    for (const auto& section : record.sections) {
-        const auto nearest = std::min_element(sections.begin(), sections.end(), [&](std::size_t a, std::size_t b) {
-            const auto distance = [&](std::size_t n) {
-                const auto& other = record.sections[n];
-                return std::pair(&other == &section ? 0 : 1, std::abs(other.level - section.level));
-            };
-            return distance(a) < distance(b);
-        });
-        all.push_back(motions[static_cast<std::size_t>(nearest - sections.begin())].coarse);
-        run.push_back(0.75 * static_cast<double>(section.window) / record.sampleRate);
-    }
-    const auto histories = historyOf(law, record, all, run, withGradient);
-    for (std::size_t s = 0; s < sections.size(); ++s)
-        starts[s] = histories[sections[s]];
-    return starts;
-}
-
-using Starts = std::vector<std::vector<MemoryStart>>;   ///< [component][section]
-
-Starts startsOf(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const ShownMotions& motions, bool withGradient)
-{
-    Starts starts;
-    for (const auto& component : model.components)
-        starts.push_back(isLaw(component) ? startsOf(component, record, sections, motions, withGradient) : std::vector<MemoryStart> {});
-    return starts;
-}
-
-Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion, const Starts& starts, std::size_t place,
-         const std::vector<std::vector<bool>>& wanted)
-{
-    Fed fed;
-    fed.voltage = fft(section.input);
-    fed.force.assign(fed.voltage.size(), 0.0);
-    for (std::size_t k = 1; k < model.components.size(); ++k) {
-        if (!isLaw(model.components[k]))
-            continue;
-        auto drive = driveOf(model.components[k], motion, starts[k][place], record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
-        for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
-            if (model.electrical())
-                fed.voltage[n] -= drive.voltage[n];
-            fed.force[n] += drive.force[n];
-        }
-        fed.component.push_back(k);
-        fed.laws.push_back(std::move(drive));
-    }
-    return fed;
-}
 
 /// Residuals and columns of one section.
 class FedSection {
@@ -276,41 +175,6 @@ private:
 
 } // namespace
 
-bool hasPeriods(const Record& record)
-{
-    return std::all_of(record.sections.begin(), record.sections.end(), [](const Section& s) { return s.periodic && s.window == s.input.size(); });
-}
-
-ShownMotions shownMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const ShownMotions& before)
-{
-    const std::vector motion {Quantity::current, Quantity::displacement};
-    const auto starts = before.empty() ? Starts {} : startsOf(model, record, sections, before, false);
-    std::map<std::size_t, Paths> paths;   // by window
-    ShownMotions motions;
-    for (std::size_t s = 0; s < sections.size(); ++s) {
-        const auto& section = record.sections[sections[s]];
-        const auto last = record.lineRange(section).second;
-        if (!paths.contains(section.window))
-            paths[section.window] = pathsOf(model, motion, 0, last, record.sampleRate / static_cast<double>(section.window), false);
-        const auto fed = before.empty() ? Fed {{}, {}, fft(section.input), Spectrum(section.window / 2 + 1, 0.0)}
-                                        : feed(model, record, section, before[s], starts, s, {});
-        std::array<Spectrum, 2> expected;
-        for (std::size_t q = 0; q < 2; ++q) {
-            expected[q].assign(fed.voltage.size(), 0.0);
-            for (std::size_t k = 0; k <= last; ++k)
-                expected[q][k] = paths[section.window].fromVoltage[q].value[k] * fed.voltage[k] + paths[section.window].fromForce[q].value[k] * fed.force[k];
-            expected[q][0] = expected[q][0].real();
-        }
-        motions.push_back(shownMotion(record, section, expected[0], expected[1]));
-    }
-    return motions;
-}
-
-ShownMotions settledMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections)
-{
-    return shownMotions(model, record, sections, shownMotions(model, record, sections));
-}
-
 std::vector<SectionFit> feedbackError(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const ShownMotions& motions,
                                       const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& progress)
 {
@@ -322,7 +186,7 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
         for (std::size_t j = 0; j < component.parameters.size(); ++j, ++index)
             wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), index));
     }
-    const auto starts = startsOf(model, record, sections, motions, gradient);
+    const auto starts = lawStarts(model, record, sections, motions, gradient);
     std::map<std::size_t, Paths> paths;   // by window
     for (const auto s : sections)
         if (const auto& section = record.sections[s]; !paths.contains(section.window)) {

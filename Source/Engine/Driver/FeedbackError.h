@@ -2,23 +2,11 @@
 #pragma once
 
 #include "Engine/Driver/OutputError.h"
-#include "Engine/Driver/ShownMotion.h"
+#include "Engine/Driver/ShownMotions.h"
 
 #include <vector>
 
 namespace excursion {
-
-/// The motions of some sections of a record, one each.
-using ShownMotions = std::vector<ShownMotion>;
-
-/// Whether the sections of a record are periods, which the following needs.
-bool hasPeriods(const Record&);
-
-/// Motions of the sections as the take shows them, and where it shows nothing as the model expects them from the motions `before`; without these
-/// from its linear part.
-ShownMotions shownMotions(const Model&, const Record&, const std::vector<std::size_t>& sections, const ShownMotions& before = {});
-/// The same, from the linear part and once more from there.
-ShownMotions settledMotions(const Model&, const Record&, const std::vector<std::size_t>& sections);
 
 /// What outputError() tells, where the laws do not follow the simulation but are fed the motion that the take shows (nonlinear identification
 /// through feedback of the outputs, Adams & Allemang 2000, Mech. Syst. Signal Process. 14). The model's linear part is exact,

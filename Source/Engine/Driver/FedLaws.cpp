@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Driver/FedLaws.h"
+
+#include "Engine/Driver/EachSection.h"
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+bool isLaw(const Component& component) { return !component.effect->linear(); }
+
+/// Memories of the laws a quarter of a period before the window of each section: of slow ones with their history, of others settled.
+std::vector<MemoryStart> startsOf(const Component& law, const Record& record, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>& motions,
+                                  bool withGradient)
+{
+    const auto size = static_cast<Eigen::Index>(law.effect->memorySize(law.extent));
+    const auto count = static_cast<Eigen::Index>(law.parameters.size());
+    std::vector<MemoryStart> starts(sections.size(), {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});
+    if (size == 0)
+        return starts;
+    if (!law.effect->slow()) {
+        for (std::size_t s = 0; s < sections.size(); ++s) {
+            const std::size_t N = record.sections[sections[s]].window;
+            starts[s] = settledMemory(law, motions[s].coarse, N - N / 4, record.sampleRate);
+        }
+        return starts;
+    }
+    // Sections that are not asked for have heated the coil all the same: as much as those of the same level, or of the nearest.
+    std::vector<PeriodicMotion> all;
+    std::vector<double> run;
+    for (const auto& section : record.sections) {
+        const auto nearest = std::min_element(sections.begin(), sections.end(), [&](std::size_t a, std::size_t b) {
+            const auto distance = [&](std::size_t n) {
+                const auto& other = record.sections[n];
+                return std::pair(&other == &section ? 0 : 1, std::abs(other.level - section.level));
+            };
+            return distance(a) < distance(b);
+        });
+        all.push_back(motions[static_cast<std::size_t>(nearest - sections.begin())].coarse);
+        run.push_back(0.75 * static_cast<double>(section.window) / record.sampleRate);
+    }
+    const auto histories = historyOf(law, record, all, run, withGradient);
+    for (std::size_t s = 0; s < sections.size(); ++s)
+        starts[s] = histories[sections[s]];
+    return starts;
+}
+
+} // namespace
+
+Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::size_t first, std::size_t last, double resolution, bool withGradient,
+              unsigned threads)
+{
+    constexpr double nearlyRest = 1e-3;
+    std::vector<double> frequency;
+    for (std::size_t k = first; k <= last; ++k)
+        frequency.push_back(resolution * (k > 0 ? static_cast<double>(k) : nearlyRest));
+    Paths paths {{}, {}, first, linearize(model).lateness};
+    forEachSection(2, threads, {}, [&](std::size_t n) {
+        (n == 0 ? paths.fromVoltage : paths.fromForce) = respond(model, quantities, frequency, withGradient, n == 0 ? Drives::terminals : Drives::cone);
+        return true;
+    });
+    return paths;
+}
+
+LawStarts lawStarts(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>& motions,
+                    bool withGradient)
+{
+    LawStarts starts;
+    for (const auto& component : model.components)
+        starts.push_back(isLaw(component) ? startsOf(component, record, sections, motions, withGradient) : std::vector<MemoryStart> {});
+    return starts;
+}
+
+Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion, const LawStarts& starts, std::size_t place,
+         const std::vector<std::vector<bool>>& wanted)
+{
+    Fed fed;
+    fed.voltage = fft(section.input);
+    fed.force.assign(fed.voltage.size(), 0.0);
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        if (!isLaw(model.components[k]))
+            continue;
+        auto drive = driveOf(model.components[k], motion, starts[k][place], record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
+        for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
+            if (model.electrical())
+                fed.voltage[n] -= drive.voltage[n];
+            fed.force[n] += drive.force[n];
+        }
+        fed.component.push_back(k);
+        fed.laws.push_back(std::move(drive));
+    }
+    return fed;
+}
+
+} // namespace excursion
