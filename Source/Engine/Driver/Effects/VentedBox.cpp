@@ -44,7 +44,6 @@ public:
              port = positiveParameter("1/QP", "1", someLoss), leak = positiveParameter("1/QL", "1", someLoss),
              absorption = positiveParameter("1/QA", "1", 0.0), radiator = positiveParameter("Kp/Ka", "1", 0.0), share = positiveParameter("port", "1", 0.0);
         stiffness.strength = share.strength = true;
-        tuning.upper = e.highFrequency;   // beyond what was measured a search that finds nothing would run away
         // Losses are small and an open port has no spring: without better knowledge they stay near zero.
         for (auto* p : {&port, &leak, &absorption, &radiator})
             p->prior = 0.3;
@@ -78,11 +77,12 @@ public:
     int memorySize(const Extent&) const override { return 3; }
     int coefficientCount(const Extent&) const override { return 8; }
 
-    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard.
+    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard. The tuning stays at the end of what was measured where a
+    /// search that finds nothing runs away with it.
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const Extent& e, const T* p, T* c) const
     {
-        const T w = 2.0 * std::numbers::pi * p[1], &r = p[5];
+        const T w = 2.0 * std::numbers::pi * (p[1] < e.highFrequency ? p[1] : T(e.highFrequency)), &r = p[5];
         c[0] = p[0] * (1.0 + r);
         c[1] = p[0] * r;
         c[2] = w * w / (1.0 + r);
