@@ -22,7 +22,8 @@ Measurement take(std::vector<bench::HiddenEffect> hidden)
     options.sampleRate = 44100.0;
     options.seconds = 2.0;
     options.channels = {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure};
-    return bench::measure(bench::draw(7, options).speaker, bench::draw(7, options).setup);
+    const auto drawn = bench::draw(7, options);
+    return bench::measure(drawn.speaker, drawn.setup);
 }
 
 struct Ready {

@@ -155,7 +155,6 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     FitOptions quick = options.fit;
     quick.substeps = substepsFor(model, record, options.fit.simulationTolerance);
     quick.search = {10, 3e-3};
-    quick.fed = true;
     const auto before = compare(model, record, {quick.substeps, true}, progress.part(0.0, 0.1));
     diagnosis.error = errorOf(before);
 

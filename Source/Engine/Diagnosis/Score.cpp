@@ -39,8 +39,7 @@ Sums sum(const Model& model, const Record& record, std::vector<std::size_t> sect
     for (const auto n : held)
         if (std::find(sections.begin(), sections.end(), n) == sections.end())
             sections.push_back(n);
-    const auto fits = hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections), active, run, progress)
-                                         : outputError(model, record, sections, active, run, progress);
+    const auto fits = quickError(model, record, sections, active, run, progress);
     for (std::size_t k = 0; k < fits.size(); ++k) {
         const auto n = sections[k];
         if (!fits[k].finite) {
@@ -69,6 +68,8 @@ double predictedCost(const NormalEquations& e, const Eigen::VectorXd& d)
 {
     return std::max(0.0, e.cost + 2.0 * e.g.dot(d) + d.dot(e.N * d));
 }
+
+double decibels(double error, double measured) { return 10.0 * std::log10(std::max(error / std::max(measured, 1e-300), 1e-30)); }
 
 /// How much more of each level would be explained if these strengths, which a step d has set for all levels, had values of their own there.
 double gainByLevel(const Sums& sums, const Eigen::VectorXd& d, const std::vector<Eigen::Index>& strengths)
@@ -153,7 +154,6 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     for (const auto* effect : catalogue()) {
         if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
             continue;
-        const auto starts = effect->starts(extent).size();
         const auto consider = [&](Model candidate, Model byResponse) {
             augmented.components.push_back(candidate.components.back());
             entries.push_back({std::move(candidate), std::move(byResponse), augmented.components.size() - 1});
@@ -166,7 +166,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
             else
                 consider(plain, {});
         } else {
-            for (std::size_t start = 0; start < starts; ++start)
+            for (std::size_t start = 0; start < effect->starts(extent).size(); ++start)
                 consider(withEffect(model, *effect, extent, start), {});
         }
     }
@@ -210,16 +210,14 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
             const auto& channel = sums.byChannel[c];
             const double ratio = channel.cost > 0.0 ? predictedCost(channel, d) / channel.cost : 1.0;
-            score.errorDb[record.channels[c]]
-                = 10.0 * std::log10(std::max(ratio * sums.power[c].error / std::max(sums.power[c].measured, 1e-300), 1e-30));
+            score.errorDb[record.channels[c]] = decibels(ratio * sums.power[c].error, sums.power[c].measured);
         }
         // A base that has settled on a part of what the effect does leaves no small step to it.
         if (!entry.byResponse.components.empty())
             if (const auto there = sum(entry.byResponse, record, {}, {}, options, {}); there.finite && there.validation.cost < score.chi * rows) {
                 score.chi = there.validation.cost / rows;
                 for (std::size_t c = 0; c < record.channels.size(); ++c)
-                    score.errorDb[record.channels[c]]
-                        = 10.0 * std::log10(std::max(there.power[c].error / std::max(there.power[c].measured, 1e-300), 1e-30));
+                    score.errorDb[record.channels[c]] = decibels(there.power[c].error, there.power[c].measured);
             }
         const auto known = std::find_if(result.scores.begin(), result.scores.end(),
                                         [&](const Score& s) { return s.effect == score.effect; });

@@ -13,15 +13,10 @@
 namespace excursion {
 namespace {
 
-double costOf(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+/// The cost of a model that leaves this, infinite where it runs away.
+double costOf(const Model& model, const std::vector<SectionFit>& fits)
 {
-    OutputErrorOptions run;
-    run.gradient = false;
-    run.substeps = options.substeps;
-    run.threads = options.threads;
     NormalEquations sum;
-    const auto fits = options.fed && hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections), {}, run)
-                                                        : outputError(model, record, sections, {}, run);
     for (const auto& section : fits) {
         if (!section.finite)
             return std::numeric_limits<double>::infinity();
@@ -32,6 +27,15 @@ double costOf(const Model& model, const Record& record, const std::vector<std::s
     return sum.cost;
 }
 
+OutputErrorOptions withoutGradient(const FitOptions& options)
+{
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.substeps = options.substeps;
+    run.threads = options.threads;
+    return run;
+}
+
 /// A fit with laws that are fed; where what it finds runs away when it is simulated, a fit that simulates in its place.
 FitSummary fitFed(Model& model, const Record& record, const std::vector<std::size_t>& sections, FitOptions options, const Progress& progress)
 {
@@ -39,7 +43,7 @@ FitSummary fitFed(Model& model, const Record& record, const std::vector<std::siz
     options.fed = true;
     const auto summary = fit(found, record, sections, options, progress);
     options.fed = false;
-    if (hasPeriods(record) && !(summary.usable && std::isfinite(costOf(found, record, sections, options))))
+    if (hasPeriods(record) && !(summary.usable && std::isfinite(costOf(found, outputError(found, record, sections, {}, withoutGradient(options))))))
         return fit(model, record, sections, options, progress);
     model = std::move(found);
     return summary;
@@ -76,11 +80,12 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     FitOptions chosen = options;
     if (chosen.substeps == 0)
         chosen.substeps = substepsFor(model, record, options.simulationTolerance);
+    const auto left = [&](const Model& candidate) { return costOf(candidate, quickError(candidate, record, sections, {}, withoutGradient(chosen))); };
     Model best = scaled(model, 0.0);
-    double lowest = costOf(best, record, sections, chosen);
+    double lowest = left(best);
     for (const double factor : {1.0, 0.5, 0.2}) {
         const Model candidate = scaled(model, factor);
-        const double cost = costOf(candidate, record, sections, chosen);
+        const double cost = left(candidate);
         if (cost < lowest) {
             lowest = cost;
             best = candidate;
@@ -90,10 +95,10 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     // A linear effect shows in the frequency response alone; in time it would creep along the curved valley in which relaxations trade off
     // against the stiffness.
     if (!proposed.byResponse.components.empty())
-        if (const double cost = costOf(proposed.byResponse, record, sections, chosen); cost < lowest)
+        if (const double cost = left(proposed.byResponse); cost < lowest)
             best = proposed.byResponse;
     model = std::move(best);
-    return options.fed ? fitFed(model, record, sections, chosen, progress) : fit(model, record, sections, chosen, progress);
+    return fitFed(model, record, sections, chosen, progress);
 }
 
 void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options, const Progress& progress)
@@ -108,7 +113,6 @@ void tryEffect(Model& model, const Record& record, const Effect& effect, const F
     FitOptions quick = options;
     quick.substeps = test.substeps;
     quick.search = {10, 3e-3};
-    quick.fed = true;
     tryFit(model, *start, record, trialSections(record, 2), quick, progress.part(0.4, 1.0));
 }
 

@@ -31,14 +31,6 @@ public:
         return (units_.asDiagonal() * factors_.solve(units_.cwiseInverse().asDiagonal() * right)).eval();
     }
 
-    /// c (s I - A)^-1 of a row c, as a column.
-    Eigen::VectorXcd row(const Eigen::RowVectorXd& c) const
-    {
-        const Eigen::VectorXcd scaled = (c.transpose().cwiseProduct(units_)).cast<std::complex<double>>();
-        const Eigen::VectorXcd solved = factors_.transpose().solve(scaled);
-        return solved.cwiseQuotient(units_);
-    }
-
 private:
     Eigen::VectorXd units_;
     Eigen::MatrixXcd minusA_, system_;

@@ -204,4 +204,11 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
     return fits;
 }
 
+std::vector<SectionFit> quickError(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<Eigen::Index>& active,
+                                   const OutputErrorOptions& options, const Progress& progress)
+{
+    return hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections), active, options, progress)
+                              : outputError(model, record, sections, active, options, progress);
+}
+
 } // namespace excursion

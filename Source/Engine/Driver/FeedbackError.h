@@ -19,4 +19,8 @@ namespace excursion {
 std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::vector<std::size_t>& sections, const ShownMotions& motions,
                                       const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& = {});
 
+/// What is quickest told of a model: with laws that are fed the settled motion where the record has periods, else by simulation.
+std::vector<SectionFit> quickError(const Model&, const Record&, const std::vector<std::size_t>& sections, const std::vector<Eigen::Index>& active,
+                                   const OutputErrorOptions&, const Progress& = {});
+
 } // namespace excursion

@@ -259,14 +259,15 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         constexpr double settled = 0.95;
         double before = std::numeric_limits<double>::infinity();
         for (int n = 0; n < mostRounds; ++n) {
+            if (n > 0)
+                motions = shownMotions(model, record, sections, motions);
             const auto round = search(model, errorOf, options, progress);
-            if (!round.usable)
+            if (n > 0 && !round.usable)
                 break;
             summary = round;
-            if (n > 0 && !(summary.finalCost < settled * before))
+            if (!(summary.usable && summary.finalCost < settled * before))
                 break;
             before = summary.finalCost;
-            motions = shownMotions(model, record, sections, motions);
         }
         return summary;
     }
