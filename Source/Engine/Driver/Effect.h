@@ -156,6 +156,8 @@ public:
     virtual int memorySize(const Extent&) const { return 0; }         ///< extra states
     /// The memory changes little within a period: what it holds was made by the whole take before. Its rate is to be affine in it.
     virtual bool slow() const { return false; }
+    /// No parameter moves the memory: what a motion leaves in it is known before any fit.
+    virtual bool remembersMotionAlone() const { return false; }
     virtual int coefficientCount(const Extent&) const = 0;
 
     /// Turns parameters into coefficients: all that depends on the parameters alone, once a run.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/FedLaws.h"
 
-#include "Engine/Driver/EachSection.h"
+#include "Engine/Driver/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -12,22 +12,25 @@ namespace {
 
 bool isLaw(const Component& component) { return !component.effect->linear(); }
 
-/// Memories of the laws a quarter of a period before the window of each section: of slow ones with their history, of others settled.
+MemoryStart atRest(const Component& law)
+{
+    const auto size = static_cast<Eigen::Index>(law.effect->memorySize(law.extent));
+    return {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(law.parameters.size()))};
+}
+
+/// Where the memory of a law that is not slow stands a quarter of a period before the window.
+MemoryStart startOf(const Component& law, const Section& section, const ShownMotion& motion, double sampleRate)
+{
+    if (law.effect->memorySize(law.extent) == 0)
+        return atRest(law);
+    return settledMemory(law, everySample(motion), section.window - section.window / 4, sampleRate);
+}
+
+/// Where the slow memory of a law stands a quarter of a period before the window of each section.
 std::vector<MemoryStart> startsOf(const Component& law, const Record& record, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>& motions,
                                   bool withGradient)
 {
-    const auto size = static_cast<Eigen::Index>(law.effect->memorySize(law.extent));
-    const auto count = static_cast<Eigen::Index>(law.parameters.size());
-    std::vector<MemoryStart> starts(sections.size(), {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});
-    if (size == 0)
-        return starts;
-    if (!law.effect->slow()) {
-        for (std::size_t s = 0; s < sections.size(); ++s) {
-            const std::size_t N = record.sections[sections[s]].window;
-            starts[s] = settledMemory(law, motions[s].coarse, N - N / 4, record.sampleRate);
-        }
-        return starts;
-    }
+    std::vector<MemoryStart> starts(sections.size());
     // Sections that are not asked for have heated the coil all the same: as much as those of the same level, or of the nearest.
     std::vector<PeriodicMotion> all;
     std::vector<double> run;
@@ -39,7 +42,7 @@ std::vector<MemoryStart> startsOf(const Component& law, const Record& record, co
             };
             return distance(a) < distance(b);
         });
-        all.push_back(motions[static_cast<std::size_t>(nearest - sections.begin())].coarse);
+        all.push_back(everySample(motions[static_cast<std::size_t>(nearest - sections.begin())]));
         run.push_back(0.75 * static_cast<double>(section.window) / record.sampleRate);
     }
     const auto histories = historyOf(law, record, all, run, withGradient);
@@ -58,32 +61,45 @@ Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::
     for (std::size_t k = first; k <= last; ++k)
         frequency.push_back(resolution * (k > 0 ? static_cast<double>(k) : nearlyRest));
     Paths paths {{}, {}, first, linearize(model).lateness};
-    forEachSection(2, threads, {}, [&](std::size_t n) {
+    inParallel(2, threads, {}, [&](std::size_t n) {
         (n == 0 ? paths.fromVoltage : paths.fromForce) = respond(model, quantities, frequency, withGradient, n == 0 ? Drives::terminals : Drives::cone);
         return true;
     });
     return paths;
 }
 
-LawStarts lawStarts(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>& motions,
-                    bool withGradient)
+LawHistories lawHistories(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>& motions,
+                          bool withGradient)
 {
-    LawStarts starts;
+    LawHistories histories;
     for (const auto& component : model.components)
-        starts.push_back(isLaw(component) ? startsOf(component, record, sections, motions, withGradient) : std::vector<MemoryStart> {});
-    return starts;
+        histories.push_back(isLaw(component) && component.effect->slow() ? startsOf(component, record, sections, motions, withGradient)
+                                                                         : std::vector<MemoryStart> {});
+    return histories;
 }
 
-Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion, const LawStarts& starts, std::size_t place,
+void rememberMotion(const Model& model, const Section& section, double sampleRate, ShownMotion& motion)
+{
+    for (const auto& component : model.components)
+        if (isLaw(component) && component.effect->remembersMotionAlone())
+            motion.memories[component.effect->id()] = memoryAlong(component, motion, startOf(component, section, motion, sampleRate), sampleRate);
+}
+
+Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion, const LawHistories& histories,
+         std::size_t place,
          const std::vector<std::vector<bool>>& wanted)
 {
     Fed fed;
     fed.voltage = fft(section.input);
     fed.force.assign(fed.voltage.size(), 0.0);
     for (std::size_t k = 1; k < model.components.size(); ++k) {
-        if (!isLaw(model.components[k]))
+        const auto& law = model.components[k];
+        if (!isLaw(law))
             continue;
-        auto drive = driveOf(model.components[k], motion, starts[k][place], record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
+        const auto start = law.effect->slow()                                ? histories[k][place]
+                           : motion.memories.contains(law.effect->id()) ? atRest(law)
+                                                                             : startOf(law, section, motion, record.sampleRate);
+        auto drive = driveOf(law, motion, start, record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
         for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
             if (model.electrical())
                 fed.voltage[n] -= drive.voltage[n];

@@ -29,14 +29,18 @@ struct Fed {
     Spectrum voltage, force;              ///< at the terminals with the laws' taken away, and on the cone
 };
 
-using LawStarts = std::vector<std::vector<MemoryStart>>;   ///< [component][section], a quarter of a period before its window; empty for what is no law
+using LawHistories = std::vector<std::vector<MemoryStart>>;   ///< [component][section], a quarter of a period before its window; empty for what is not slow
 
-/// Where the memories of the laws stand: of slow ones with their history, of others settled.
-LawStarts lawStarts(const Model&, const Record&, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>&, bool withGradient);
+/// Where the slow memories of the laws stand after what was played before.
+LawHistories lawHistories(const Model&, const Record&, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>&, bool withGradient);
 
-/// The laws of a model, fed the motion of a section.
-/// @param place   of the section among those of `starts`
+/// Adds to the motion of a section the memories of laws that no parameter moves.
+void rememberMotion(const Model&, const Section&, double sampleRate, ShownMotion&);
+
+/// The laws of a model, fed the motion of a section. A memory that is neither slow nor held by the motion is settled there.
+/// @param place   of the section among those of `histories`
 /// @param wanted  by component, parameters to differentiate by; empty: none
-Fed feed(const Model&, const Record&, const Section&, const ShownMotion&, const LawStarts&, std::size_t place, const std::vector<std::vector<bool>>& wanted);
+Fed feed(const Model&, const Record&, const Section&, const ShownMotion&, const LawHistories&, std::size_t place,
+         const std::vector<std::vector<bool>>& wanted);
 
 } // namespace excursion

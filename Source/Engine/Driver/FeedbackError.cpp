@@ -2,7 +2,7 @@
 #include "Engine/Driver/FeedbackError.h"
 
 #include "Engine/Driver/Arrival.h"
-#include "Engine/Driver/EachSection.h"
+#include "Engine/Driver/Parallel.h"
 #include "Engine/Driver/FedLaws.h"
 #include "Engine/Signal/Fft.h"
 
@@ -186,7 +186,7 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
         for (std::size_t j = 0; j < component.parameters.size(); ++j, ++index)
             wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), index));
     }
-    const auto starts = lawStarts(model, record, sections, motions, gradient);
+    const auto histories = lawHistories(model, record, sections, motions, gradient);
     std::map<std::size_t, Paths> paths;   // by window
     for (const auto s : sections)
         if (const auto& section = record.sections[s]; !paths.contains(section.window)) {
@@ -195,9 +195,9 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
                                              options.threads);
         }
     std::vector<SectionFit> fits(sections.size());
-    forEachSection(sections.size(), options.threads, progress, [&](std::size_t s) {
+    inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];
-        const auto fed = feed(model, record, section, motions[s], starts, s, wanted);
+        const auto fed = feed(model, record, section, motions[s], histories, s, wanted);
         fits[s] = FedSection(model, record, section, fed, paths.at(section.window)).run(active, options);
         return fits[s].finite;
     });
@@ -207,7 +207,8 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
 std::vector<SectionFit> quickError(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<Eigen::Index>& active,
                                    const OutputErrorOptions& options, const Progress& progress)
 {
-    return hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections), active, options, progress)
+    return hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections, options.threads), active, options,
+                                               progress)
                               : outputError(model, record, sections, active, options, progress);
 }
 

@@ -249,7 +249,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     run.threads = options.threads;
     if (options.fed && hasPeriods(record)) {
         FitSummary summary;
-        auto motions = settledMotions(model, record, sections);
+        auto motions = settledMotions(model, record, sections, options.threads);
         const ErrorOf errorOf = [&](const std::vector<Eigen::Index>& active, bool gradient) {
             run.gradient = gradient;
             return feedbackError(model, record, sections, motions, active, run, progress);
@@ -260,7 +260,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         double before = std::numeric_limits<double>::infinity();
         for (int n = 0; n < mostRounds; ++n) {
             if (n > 0)
-                motions = shownMotions(model, record, sections, motions);
+                motions = shownMotions(model, record, sections, motions, options.threads);
             const auto round = search(model, errorOf, options, progress);
             if (n > 0 && !round.usable)
                 break;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/LawDrive.h"
 
+#include "Engine/Driver/RungeKutta.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -11,9 +12,54 @@ namespace {
 
 constexpr std::size_t fine = ShownMotion::fine;   // a law is asked once a sample, and its memory in between; a record's rate leaves room for products
 
+/// What a law answers along a motion: one value a sample.
 template <class T>
-struct Asked {
-    std::vector<T> voltage, force, lateness;   // one value a sample
+struct Answers {
+    std::vector<T> voltage, force, lateness;
+};
+
+/// A law that is asked along a motion.
+template <class T>
+class Along {
+public:
+    Along(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion)
+        : law_(law), coefficients_(coefficientsOf(law, parameters)), motion_(motion)
+    {
+    }
+
+    /// @param place  between two fine values of the motion as well
+    Balance<T> ask(double place, const T* memory, T* rate) const
+    {
+        Balance<T> sum;
+        law_.effect->contribute(law_.extent, coefficients_.data(), at(place), memory, rate, sum);
+        return sum;
+    }
+
+    /// Adds what was asked there to the answers.
+    void answer(std::size_t n, const Balance<T>& sum, const T* memory, const T* rate, Answers<T>& answers) const
+    {
+        answers.voltage.push_back(sum.drop + sum.fluxSlope * motion_.v[n] + sum.inductance * motion_.slope[n]);
+        answers.force.push_back(sum.force - sum.mass * motion_.a[n]);
+        if (!law_.effect->emits())
+            return;
+        Emission<T> emission;
+        law_.effect->emit(law_.extent, coefficients_.data(), at(static_cast<double>(n)), T(motion_.a[n]), memory, rate, emission);
+        answers.lateness.push_back(emission.lateness);
+    }
+
+private:
+    Motion<T> at(double place) const
+    {
+        const auto whole = static_cast<std::size_t>(place);
+        const double share = place - static_cast<double>(whole);
+        const std::size_t length = motion_.i.size(), here = whole % length, next = (here + 1) % length;
+        const auto between = [&](const std::vector<double>& q) { return T(q[here] + share * (q[next] - q[here])); };
+        return {between(motion_.i), between(motion_.x), between(motion_.v)};
+    }
+
+    const Component& law_;
+    std::vector<T> coefficients_;
+    const ShownMotion& motion_;
 };
 
 /// Steps a sample in which a law's memory can be followed: its fastest rate along the motion times the step stays below one.
@@ -40,60 +86,55 @@ int stepsFor(const Component& law, const ShownMotion& motion, double sampleRate)
     return static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most));
 }
 
-template <class T>
-Asked<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion, std::vector<T> memory, int steps, double sampleRate)
+/// Follows a law's memory from a quarter of a period before the window to its end, and shows what it meets there once a sample:
+/// see(fine value, sum, memory, its rate).
+template <class T, class See>
+void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, int steps, double sampleRate, const See& see)
 {
-    const auto coefficients = coefficientsOf(law, parameters);
-    const std::size_t length = motion.i.size(), size = memory.size();
-    const double h = 1.0 / (steps * sampleRate);
-    const bool heard = law.effect->emits();
-    std::vector<T> rate(size), stage(size), k2(size), k3(size), k4(size);
-    const auto at = [&](std::size_t n, double share) -> Motion<T> {   // of the way from there to the next value
-        const std::size_t next = (n + 1) % length;
-        const auto between = [&](const std::vector<double>& q) { return T(q[n] + share * (q[next] - q[n])); };
-        return {between(motion.i), between(motion.x), between(motion.v)};
-    };
-    const auto contribute = [&](std::size_t n, double later, const std::vector<T>& held, std::vector<T>& out) {   // later: values
-        const auto whole = static_cast<std::size_t>(later);
-        Balance<T> sum;
-        law.effect->contribute(law.extent, coefficients.data(), at((n + whole) % length, later - static_cast<double>(whole)), held.data(), out.data(), sum);
-        return sum;
-    };
-    const auto moved = [&](const std::vector<T>& by, double time) -> const std::vector<T>& {
-        for (std::size_t k = 0; k < size; ++k)
-            stage[k] = memory[k] + time * by[k];
-        return stage;
-    };
-    Asked<T> asked;
-    asked.voltage.reserve(length / fine);
-    asked.force.reserve(length / fine);
-    const std::size_t leadIn = size > 0 ? length / fine / 4 * fine : 0;
+    RungeKutta<T> method(memory.size());
+    std::vector<T> rate(memory.size());
+    const std::size_t leadIn = length / fine / 4 * fine;
+    const double h = 1.0 / (steps * sampleRate), across = static_cast<double>(fine) / steps;
     for (std::size_t step = 0; step < leadIn + length; step += fine) {
         const std::size_t n = (length - leadIn + step) % length;
-        const auto sum = contribute(n, 0.0, memory, rate);
-        if (step >= leadIn) {
-            asked.voltage.push_back(sum.drop + sum.fluxSlope * motion.v[n] + sum.inductance * motion.slope[n]);
-            asked.force.push_back(sum.force - sum.mass * motion.a[n]);
-            if (heard) {
-                Emission<T> emission;
-                law.effect->emit(law.extent, coefficients.data(), at(n, 0.0), T(motion.a[n]), memory.data(), rate.data(), emission);
-                asked.lateness.push_back(emission.lateness);
-            }
-        }
-        if (size == 0)
-            continue;
+        const auto sum = law.ask(static_cast<double>(n), memory.data(), rate.data());
+        if (step >= leadIn)
+            see(n, sum, memory, rate);
         for (int part = 0; part < steps; ++part) {
-            const double begin = static_cast<double>(fine) * part / steps, half = 0.5 * static_cast<double>(fine) / steps;
+            const double begin = static_cast<double>(n) + across * part;
             if (part > 0)
-                contribute(n, begin, memory, rate);
-            contribute(n, begin + half, moved(rate, 0.5 * h), k2);
-            contribute(n, begin + half, moved(k2, 0.5 * h), k3);
-            contribute(n, begin + 2.0 * half, moved(k3, h), k4);
-            for (std::size_t k = 0; k < size; ++k)
-                memory[k] += (h / 6.0) * (rate[k] + 2.0 * (k2[k] + k3[k]) + k4[k]);
+                law.ask(begin, memory.data(), rate.data());
+            method.step(memory, rate, h, [&](double share, const std::vector<T>& held, std::vector<T>& out) {
+                law.ask(begin + share * across, held.data(), out.data());
+            });
         }
     }
-    return asked;
+}
+
+template <class T>
+Answers<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion, const std::vector<T>& start, int steps,
+               double sampleRate)
+{
+    const Along<T> along(law, parameters, motion);
+    const std::size_t length = motion.i.size(), size = start.size();
+    Answers<T> answers;
+    answers.voltage.reserve(length / fine);
+    answers.force.reserve(length / fine);
+    const auto known = motion.memories.find(law.effect->id());
+    if (size > 0 && known == motion.memories.end()) {
+        follow(along, start, length, steps, sampleRate, [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory, const std::vector<T>& rate) {
+            along.answer(n, sum, memory.data(), rate.data(), answers);
+        });
+        return answers;
+    }
+    std::vector<T> memory(size), rate(size);
+    for (std::size_t n = 0; n < length; n += fine) {
+        for (std::size_t k = 0; k < size; ++k)
+            memory[k] = T(known->second[n / fine * size + k]);
+        const auto sum = along.ask(static_cast<double>(n), memory.data(), rate.data());
+        along.answer(n, sum, memory.data(), rate.data(), answers);
+    }
+    return answers;
 }
 
 template <class T, class Read>
@@ -106,11 +147,22 @@ std::vector<double> series(const std::vector<T>& samples, const Read& read)
 
 } // namespace
 
+std::vector<double> memoryAlong(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate)
+{
+    std::vector<double> track;
+    track.reserve(motion.i.size() / fine * static_cast<std::size_t>(start.value.size()));
+    follow(Along<double>(law, valuesOf(law), motion), {start.value.begin(), start.value.end()}, motion.i.size(), stepsFor(law, motion, sampleRate), sampleRate,
+           [&](std::size_t, const Balance<double>&, const std::vector<double>& memory, const std::vector<double>&) {
+               track.insert(track.end(), memory.begin(), memory.end());
+           });
+    return track;
+}
+
 LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate, const std::vector<bool>& wanted)
 {
     const auto count = law.parameters.size();
     const auto size = static_cast<std::size_t>(start.value.size());
-    const int steps = size > 0 ? stepsFor(law, motion, sampleRate) : 1;
+    const int steps = size > 0 && !motion.memories.contains(law.effect->id()) ? stepsFor(law, motion, sampleRate) : 1;
     LawDrive drive;
     const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, steps, sampleRate);
     drive.voltage = fft(plain.voltage);

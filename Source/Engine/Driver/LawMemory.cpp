@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/LawMemory.h"
 
+#include "Engine/Driver/RungeKutta.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -35,18 +37,9 @@ struct Affine {
         for (const auto& value : B)
             fastest = std::max(fastest, rateOf(value));
         const int steps = static_cast<int>(std::clamp(std::ceil(2.0 * fastest * time), 1.0, 2000.0));
-        const double h = time / steps;
-        const auto moved = [&](const std::vector<T>& rate, double by) {
-            auto result = m;
-            for (std::size_t k = 0; k < size; ++k)
-                result[k] += by * rate[k];
-            return result;
-        };
-        for (int n = 0; n < steps; ++n) {
-            const auto k1 = rate(m), k2 = rate(moved(k1, 0.5 * h)), k3 = rate(moved(k2, 0.5 * h)), k4 = rate(moved(k3, h));
-            for (std::size_t k = 0; k < size; ++k)
-                m[k] += (h / 6.0) * (k1[k] + 2.0 * (k2[k] + k3[k]) + k4[k]);
-        }
+        RungeKutta<T> method(size);
+        for (int n = 0; n < steps; ++n)
+            method.step(m, rate(m), time / steps, [&](double, const std::vector<T>& memory, std::vector<T>& out) { out = rate(memory); });
     }
 };
 
@@ -119,7 +112,8 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
     constexpr int parts = 2;   // steps a sample
     const double h = 1.0 / (parts * sampleRate);
     const std::size_t N = motion.i.size();
-    std::vector<double> m(size, 0.0), stage(size), k1(size), k2(size), k3(size), k4(size);
+    std::vector<double> m(size, 0.0), k1(size);
+    RungeKutta<double> method(size);
     const auto rate = [&](std::size_t n, double s, const std::vector<double>& memory, std::vector<double>& out) {
         const std::size_t from = (begin + n) % N, to = (from + 1) % N;
         const auto at = [&](const std::vector<double>& q) { return q[from] + s * (q[to] - q[from]); };
@@ -127,23 +121,16 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
         component.effect->contribute(component.extent, coefficients.data(), {at(motion.i), at(motion.x), at(motion.v)}, memory.data(),
                                      out.data(), unused);
     };
-    const auto moved = [&](const std::vector<double>& by, double time) -> const std::vector<double>& {
-        for (std::size_t k = 0; k < size; ++k)
-            stage[k] = m[k] + time * by[k];
-        return stage;
-    };
     std::vector<double> once;   // after the first period
     for (std::size_t n = 0; n < 2 * N; ++n) {
         if (n == N)
             once = m;
         for (int part = 0; part < parts; ++part) {
-            const double s = static_cast<double>(part) / parts, half = 0.5 / parts;
-            rate(n, s, m, k1);
-            rate(n, s + half, moved(k1, 0.5 * h), k2);
-            rate(n, s + half, moved(k2, 0.5 * h), k3);
-            rate(n, s + 2.0 * half, moved(k3, h), k4);
-            for (std::size_t k = 0; k < size; ++k)
-                m[k] += h / 6.0 * (k1[k] + 2.0 * (k2[k] + k3[k]) + k4[k]);
+            const double begun = static_cast<double>(part) / parts;
+            rate(n, begun, m, k1);
+            method.step(m, k1, h, [&](double share, const std::vector<double>& memory, std::vector<double>& out) {
+                rate(n, begun + share / parts, memory, out);
+            });
         }
     }
     // What a period leaves of a difference, the next one leaves again: where the memory repeats, m = once + q m.

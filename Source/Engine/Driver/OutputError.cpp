@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/OutputError.h"
 
-#include "Engine/Driver/EachSection.h"
+#include "Engine/Driver/Parallel.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Sensors.h"
 #include "Engine/Driver/Simulate.h"
@@ -194,7 +194,7 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
     const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
     std::vector<SectionFit> fits(sections.size());
-    forEachSection(sections.size(), options.threads, progress, [&](std::size_t n) {
+    inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
         fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
         return fits[n].finite;
     });

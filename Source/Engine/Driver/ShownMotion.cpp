@@ -39,16 +39,17 @@ Told displacementAt(const Record& record, const Section& section, std::size_t li
     return weights > 0.0 ? Told {sum / weights, 1.0 / weights} : Told {0.0, 1.0};
 }
 
-/// The record of a derivative of a spectrum of N/2 + 1 lines, `factor` values a sample.
-std::vector<double> played(const Spectrum& spectrum, std::size_t N, std::size_t factor, int derivative, double sampleRate)
+/// The record of a derivative of a spectrum of N/2 + 1 lines, ShownMotion::fine values a sample.
+std::vector<double> played(const Spectrum& spectrum, std::size_t N, int derivative, double sampleRate)
 {
-    Spectrum wide(factor * N / 2 + 1, 0.0);
+    constexpr auto fine = ShownMotion::fine;
+    Spectrum wide(fine * N / 2 + 1, 0.0);
     const double step = 2.0 * std::numbers::pi * sampleRate / static_cast<double>(N);
     for (std::size_t k = 0; k < std::min(spectrum.size(), (N + 1) / 2); ++k)
-        wide[k] = spectrum[k] * static_cast<double>(factor) * std::pow(Complex(0.0, step * static_cast<double>(k)), derivative);
+        wide[k] = spectrum[k] * static_cast<double>(fine) * std::pow(Complex(0.0, step * static_cast<double>(k)), derivative);
     if (derivative > 0)
         wide[0] = 0.0;
-    return inverseFft(wide, factor * N);
+    return inverseFft(wide, fine * N);
 }
 
 } // namespace
@@ -66,10 +67,19 @@ ShownMotion shownMotion(const Record& record, const Section& section, const Spec
         if (const auto told = displacementAt(record, section, k); told.isSure())
             X[k] = told.value;
     }
-    const auto motion = [&](const Spectrum& of, std::size_t factor, int derivative) { return played(of, N, factor, derivative, record.sampleRate); };
-    constexpr auto fine = ShownMotion::fine;
-    return {motion(I, fine, 0), motion(I, fine, 1), motion(X, fine, 0), motion(X, fine, 1), motion(X, fine, 2),
-            {motion(I, 1, 0), motion(X, 1, 0), motion(X, 1, 1)}};
+    const auto motion = [&](const Spectrum& of, int derivative) { return played(of, N, derivative, record.sampleRate); };
+    return {motion(I, 0), motion(I, 1), motion(X, 0), motion(X, 1), motion(X, 2), {}};
+}
+
+PeriodicMotion everySample(const ShownMotion& motion)
+{
+    const auto thinned = [](const std::vector<double>& values) {
+        std::vector<double> result(values.size() / ShownMotion::fine);
+        for (std::size_t n = 0; n < result.size(); ++n)
+            result[n] = values[n * ShownMotion::fine];
+        return result;
+    };
+    return {thinned(motion.i), thinned(motion.x), thinned(motion.v)};
 }
 
 } // namespace excursion

@@ -5,6 +5,8 @@
 #include "Engine/Driver/Record.h"
 
 #include <complex>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace excursion {
@@ -15,8 +17,11 @@ using Spectrum = std::vector<std::complex<double>>;   ///< unnormalized DFT of a
 struct ShownMotion {
     static constexpr std::size_t fine = 2;        ///< values a sample of the record
     std::vector<double> i, slope, x, v, a;        ///< A, A/s, m, m/s, m/s^2; `fine` values a sample
-    PeriodicMotion coarse;                        ///< i, x and v, one value a sample
+    std::map<std::string, std::vector<double>> memories;   ///< by effect, of those that no parameter moves: all states of a sample, then the next
 };
+
+/// One value a sample of the motion.
+PeriodicMotion everySample(const ShownMotion&);
 
 /// What a periodic section tells of the motion. A line of the current, or of the displacement (from every channel of motion, weighted by its
 /// noise), that stands three times above its noise is taken as it was measured, any other as it is expected.

@@ -49,6 +49,7 @@ public:
         return result;
     }
     int memorySize(const Extent&) const override { return loops; }
+    bool remembersMotionAlone() const override { return true; }
     int coefficientCount(const Extent& e) const override { return e.degree + 1 + 2 * loops; }
 
     /// The curve's, then each loop's rate and weight.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Driver/EachSection.h"
+#include "Engine/Driver/Parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,7 +10,7 @@
 
 namespace excursion {
 
-void forEachSection(std::size_t count, unsigned threads, const Progress& progress, const std::function<bool(std::size_t)>& work)
+void inParallel(std::size_t count, unsigned threads, const Progress& progress, const std::function<bool(std::size_t)>& work)
 {
     std::atomic<std::size_t> next {0};
     std::atomic<bool> failed {false};
