@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole way from a take to a verdict, on takes of a simulator that shares no code with the model.
-#include "Bench/Draw.h"
+#include "SeedDriver.h"
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
@@ -14,26 +14,6 @@
 using namespace excursion;
 
 namespace {
-
-bench::Draw drawSeedDriver(std::vector<bench::HiddenEffect> hidden, std::vector<Quantity> outputs)
-{
-    bench::DrawOptions options;
-    options.driver = "seed";
-    options.hidden = std::move(hidden);
-    options.noiseDb = -70.0;
-    options.sampleRate = 44100.0;
-    options.seconds = 2.0;
-    options.channels = std::move(outputs);
-    options.channels->insert(options.channels->begin(), Quantity::voltage);
-    return bench::draw(7, options);
-}
-
-Measurement take(std::vector<bench::HiddenEffect> hidden,
-                 std::vector<Quantity> outputs = {Quantity::current, Quantity::displacement})
-{
-    const auto drawn = drawSeedDriver(std::move(hidden), std::move(outputs));
-    return bench::measure(drawn.speaker, drawn.setup);
-}
 
 std::vector<std::string> added(const Ladder& ladder)
 {
@@ -59,7 +39,7 @@ void requireAtTheNoise(const Comparison& comparison)
 
 TEST_CASE("Nothing is added to a driver without effects, and its parameters are found", "[improve]")
 {
-    const auto ladder = improve(take({}));
+    const auto ladder = improve(seedTake({}));
     CHECK(ladder.verdict == Verdict::complete);
     REQUIRE(ladder.rungs.size() == 1);
     requireAtTheNoise(ladder.rungs.front().comparison);
@@ -75,7 +55,7 @@ TEST_CASE("Nothing is added to a driver without effects, and its parameters are 
 
 TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is cancelled", "[improve][slow]")
 {
-    Improvement work(take({{"stiffness", 0.3}}));
+    Improvement work(seedTake({{"stiffness", 0.3}}));
     REQUIRE(work.report().fitForUse());
     CHECK(work.ladder().rungs.empty());
     work.begin();
@@ -115,7 +95,7 @@ TEST_CASE("One hidden effect is named, added, and the error falls to the noise",
     const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness", "inductance-position", "inductance-current", "eddy-currents", "creep",
                              "damping-velocity", "friction", "coil-heating", "vented-box");
     INFO(id);
-    const auto ladder = improve(take({{id, 0.25}}));
+    const auto ladder = improve(seedTake({{id, 0.25}}));
     CHECK(added(ladder) == std::vector {id});
     CHECK(ladder.verdict == Verdict::complete);
     CHECK(ladder.withdrawn.empty());
@@ -132,7 +112,7 @@ TEST_CASE("Eddy currents and creep that follow no law are found, and nothing bes
 {
     const auto id = GENERATE(as<std::string> {}, "eddy-currents", "creep");
     INFO(id);
-    const auto ladder = improve(take({{id, 0.25, true}}));
+    const auto ladder = improve(seedTake({{id, 0.25, true}}));
     CHECK(added(ladder) == std::vector {id});
     CHECK(ladder.verdict == Verdict::complete);
     requireAtTheNoise(ladder.rungs.back().comparison);
@@ -160,7 +140,7 @@ TEST_CASE("Random chains of cells are explained at the noise in nineteen of twen
 
 TEST_CASE("Two hidden effects are added one after the other", "[improve][slow]")
 {
-    const auto ladder = improve(take({{"stiffness", 0.3}, {"force-factor", 0.3}}));
+    const auto ladder = improve(seedTake({{"stiffness", 0.3}, {"force-factor", 0.3}}));
     auto found = added(ladder);
     std::sort(found.begin(), found.end());
     CHECK(found == std::vector<std::string> {"force-factor", "stiffness"});
@@ -170,7 +150,7 @@ TEST_CASE("Two hidden effects are added one after the other", "[improve][slow]")
 
 TEST_CASE("The current alone tells a stiffening suspension", "[improve][slow]")
 {
-    const auto ladder = improve(take({{"stiffness", 0.3}}, {Quantity::current}));
+    const auto ladder = improve(seedTake({{"stiffness", 0.3}}, {Quantity::current}));
     CHECK(added(ladder) == std::vector<std::string> {"stiffness"});
     CHECK(ladder.verdict == Verdict::complete);
 }
@@ -193,7 +173,7 @@ TEST_CASE("What the catalogue does not hold is not given another name", "[improv
 {
     const int power = GENERATE(2, 3);
     INFO(power);
-    const auto ladder = improve(withBentLaser(take({}, {Quantity::current, Quantity::displacement}), power));
+    const auto ladder = improve(withBentLaser(seedTake({}, {Quantity::current, Quantity::displacement}), power));
     CHECK(ladder.verdict == Verdict::unknownEffect);
     CHECK(added(ladder).empty());
     CHECK_THAT(ladder.sentence, Catch::Contains("no effect of the catalogue explains"));
@@ -201,14 +181,14 @@ TEST_CASE("What the catalogue does not hold is not given another name", "[improv
 
 TEST_CASE("What is known is named beside what is not", "[improve][slow]")
 {
-    const auto ladder = improve(withBentLaser(take({{"force-factor", 0.4}}, {Quantity::current, Quantity::displacement}), 2));
+    const auto ladder = improve(withBentLaser(seedTake({{"force-factor", 0.4}}, {Quantity::current, Quantity::displacement}), 2));
     CHECK(ladder.verdict == Verdict::unknownEffect);
     CHECK(added(ladder) == std::vector<std::string> {"force-factor"});
 }
 
 TEST_CASE("Four effects at once are all named", "[improve][slow]")
 {
-    const auto ladder = improve(take({{"force-factor", 0.3}, {"stiffness", 0.3}, {"inductance-position", 0.25}, {"friction", 0.2}}));
+    const auto ladder = improve(seedTake({{"force-factor", 0.3}, {"stiffness", 0.3}, {"inductance-position", 0.25}, {"friction", 0.2}}));
     CHECK_THAT(added(ladder), Catch::UnorderedEquals(std::vector<std::string> {"force-factor", "stiffness", "inductance-position", "friction"}));
     for (const auto& rung : ladder.rungs)
         for (const auto& channel : rung.comparison.channels)
@@ -235,7 +215,7 @@ TEST_CASE("Effects that are given are in the first model and are not added again
 {
     ImproveOptions options;
     options.with = {"stiffness"};
-    const auto ladder = improve(take({{"stiffness", 0.3}}), options);
+    const auto ladder = improve(seedTake({{"stiffness", 0.3}}), options);
     CHECK(ladder.rungs.front().model.has("stiffness"));
     CHECK(added(ladder).empty());
     CHECK(ladder.verdict == Verdict::complete);
@@ -243,7 +223,7 @@ TEST_CASE("Effects that are given are in the first model and are not added again
 
 TEST_CASE("What cannot be asked for is refused before any work, and work stops when it is told to", "[improve]")
 {
-    const auto record = take({});
+    const auto record = seedTake({});
     const auto kindOf = [&](const ImproveOptions& options, const Progress& progress = {}) {
         try {
             improve(record, options, progress);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Laws that are fed the motion that a take shows: against simulations, against differences, and on takes of the virtual bench.
-#include "Bench/Draw.h"
+#include "SeedDriver.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FeedbackError.h"
 #include "Engine/Driver/Fit.h"
@@ -13,19 +13,6 @@ using namespace excursion;
 
 namespace {
 
-Measurement take(std::vector<bench::HiddenEffect> hidden)
-{
-    bench::DrawOptions options;
-    options.driver = "seed";
-    options.hidden = std::move(hidden);
-    options.noiseDb = -70.0;
-    options.sampleRate = 44100.0;
-    options.seconds = 2.0;
-    options.channels = {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure};
-    const auto drawn = bench::draw(7, options);
-    return bench::measure(drawn.speaker, drawn.setup);
-}
-
 struct Ready {
     Record record;
     Model model;   ///< linear, fitted
@@ -34,7 +21,7 @@ struct Ready {
 
 Ready ready(std::vector<bench::HiddenEffect> hidden)
 {
-    Ready result {makeRecord(take(std::move(hidden))), {}, {}};
+    Ready result {makeRecord(seedTake(std::move(hidden), {Quantity::current, Quantity::displacement, Quantity::pressure})), {}, {}};
     result.model = startModel(result.record);
     adapt(result.record, result.model);
     result.sections = estimationSections(result.record);

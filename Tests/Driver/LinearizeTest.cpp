@@ -116,6 +116,33 @@ TEST_CASE("Laws that are zero at rest leave the linear part alone", "[linearize]
     CHECK(linear.B.tail(memories).norm() == 0.0);
 }
 
+TEST_CASE("An effect of no strength changes no response, whatever it stands beside", "[linearize]")
+{
+    using enum Quantity;
+    const std::vector<Quantity> quantities {current, displacement, pressure};
+    const auto frequency = someFrequencies();
+    for (const auto* atWork : catalogue()) {
+        if (!atWork->linear())
+            continue;
+        const auto only = linearPart(allAtWork());
+        auto model = midbass();
+        for (const auto& component : only.components)
+            if (component.effect == atWork)
+                model.components.push_back(component);
+        const auto alone = respond(model, quantities, frequency);
+        for (const auto* other : catalogue()) {
+            if (!other->linear() || other == atWork)
+                continue;
+            const auto beside = respond(withEffect(model, *other, someExtent(1.0)), quantities, frequency);
+            for (std::size_t q = 0; q < quantities.size(); ++q)
+                for (std::size_t n = 0; n < frequency.size(); ++n) {
+                    INFO(atWork->id() << " beside " << other->id() << ", " << name(quantities[q]) << ", " << frequency[n] << " Hz");
+                    CHECK(relative(beside[q].value[n], alone[q].value[n]) < 1e-9);
+                }
+        }
+    }
+}
+
 TEST_CASE("A driver is stable with every effect at work, and not with a resistance that drives it", "[linearize]")
 {
     CHECK(isStable(midbass()));

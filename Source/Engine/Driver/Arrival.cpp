@@ -77,6 +77,15 @@ std::vector<double> slopeOf(std::span<const double> samples, double sampleRate)
     return inverseFft(spectrum, samples.size());
 }
 
+std::vector<double> slopeByLeaving(std::span<const double> samples, std::span<const double> lateness, double sampleRate)
+{
+    auto slope = slopeOf(samples, sampleRate);
+    const auto drift = slopeOf(lateness, sampleRate);
+    for (std::size_t n = 0; n < slope.size(); ++n)
+        slope[n] /= 1.0 + drift[n];
+    return slope;
+}
+
 Arrival::Arrival(std::span<const double> lateness, double sampleRate)
 {
     if (std::all_of(lateness.begin(), lateness.end(), [](double l) { return l == 0.0; }))

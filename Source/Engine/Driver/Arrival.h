@@ -11,6 +11,10 @@ namespace excursion {
 /// @param sampleRate  Hz
 std::vector<double> slopeOf(std::span<const double> samples, double sampleRate);
 
+/// Derivative of what arrives by the instant at which it has left, x'(s)/(1 + lateness'(s)), at each instant s: sound that leaves by ds later
+/// arrives as it is told by this times ds less.
+std::vector<double> slopeByLeaving(std::span<const double> samples, std::span<const double> lateness, double sampleRate);
+
 /// Sound that is late by an amount that changes: what leaves at s arrives at t = s + lateness(s). For a record of one period this tells when
 /// what arrives at each of its instants has left, by Newton's iteration on the band-limited lateness, and reads any record there,
 ///     y(t) = x(s(t)),   s(t) + lateness(s(t)) = t.

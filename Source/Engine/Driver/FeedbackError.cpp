@@ -20,10 +20,8 @@ using Complex = std::complex<double>;
 class FedSection {
 public:
     FedSection(const Model& model, const Record& record, const Section& section, const Fed& fed, const Paths& paths)
-        : model_(model), record_(record), section_(section), fed_(fed), paths_(paths)
+        : model_(model), record_(record), section_(section), residual_(record, section), fed_(fed), paths_(paths)
     {
-        std::tie(first_, last_) = record.lineRange(section);
-        lines_ = static_cast<Eigen::Index>(last_ - first_ + 1);
     }
 
     SectionFit run(const std::vector<Eigen::Index>& active, const OutputErrorOptions& options)
@@ -33,30 +31,13 @@ public:
         for (std::size_t c = 0; c < record_.channels.size(); ++c) {
             auto predicted = sum(c, fed_.voltage, fed_.force);
             const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted);
-            NormalEquations normal;
-            ErrorPower power;
-            Eigen::VectorXd r(2 * lines_);
-            for (Eigen::Index n = 0; n < lines_; ++n) {
-                const auto k = first_ + static_cast<std::size_t>(n);
-                const auto error = predicted[k] - section_.measured[c][k];
-                r[n] = weight(c, k) * error.real();
-                r[lines_ + n] = weight(c, k) * error.imag();
-                power.error += std::norm(error);
-                power.measured += std::norm(section_.measured[c][k]);
-                power.noise += section_.deviation[c][k] * section_.deviation[c][k];
-            }
-            normal.cost = r.squaredNorm();
-            normal.rows = static_cast<double>(2 * lines_);
+            const auto r = residual_.of(c, predicted);
+            NormalEquations normal(r);
             fit.finite = fit.finite && std::isfinite(normal.cost);
-            if (options.gradient && !active.empty()) {
-                const auto J = columns(c, active, heard);
-                normal.N.setZero(J.cols(), J.cols());
-                normal.N.selfadjointView<Eigen::Upper>().rankUpdate(J.transpose());
-                normal.N.triangularView<Eigen::StrictlyLower>() = normal.N.transpose();
-                normal.g.noalias() = J.transpose() * r;
-            }
+            if (options.gradient && !active.empty())
+                normal.differentiateBy(columns(c, active, heard), r);
             fit.channels.push_back(std::move(normal));
-            fit.power.push_back(power);
+            fit.power.push_back(residual_.power(c, predicted));
             if (options.spectra)
                 fit.predicted.push_back(std::move(predicted));
         }
@@ -64,13 +45,11 @@ public:
     }
 
 private:
-    double weight(std::size_t c, std::size_t line) const { return std::numbers::sqrt2 / section_.deviation[c][line]; }
-
     /// The spectrum that a voltage and a force make of a channel.
     Spectrum sum(std::size_t c, const Spectrum& voltage, const Spectrum& force) const
     {
         Spectrum result(voltage.size(), 0.0);
-        for (std::size_t k = first_; k <= last_; ++k)
+        for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
             result[k] = paths_.fromVoltage[c].value[k - paths_.first] * voltage[k] + paths_.fromForce[c].value[k - paths_.first] * force[k];
         return result;
     }
@@ -95,10 +74,7 @@ private:
                 continue;
             const auto flow = leaving(sound);
             arrival_.emplace_back(law.lateness, record_.sampleRate);
-            byLeaving_ = slopeOf(flow, record_.sampleRate);
-            const auto drift = slopeOf(law.lateness, record_.sampleRate);
-            for (std::size_t n = 0; n < flow.size(); ++n)
-                byLeaving_[n] /= 1.0 + drift[n];
+            byLeaving_ = slopeByLeaving(flow, law.lateness, record_.sampleRate);
             sound = arriving(flow);
         }
         return !arrival_.empty();
@@ -106,19 +82,14 @@ private:
 
     Eigen::MatrixXd columns(std::size_t c, const std::vector<Eigen::Index>& active, bool heard) const
     {
-        Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2 * lines_, static_cast<Eigen::Index>(active.size()));
+        Eigen::MatrixXd J = Eigen::MatrixXd::Zero(residual_.rows(), static_cast<Eigen::Index>(active.size()));
         Spectrum slope(fed_.voltage.size(), 0.0);
         const auto fill = [&](Eigen::Index column, const auto& at) {
-            for (std::size_t k = first_; k <= last_; ++k)
+            for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
                 slope[k] = at(k);
             if (heard)
                 slope = arriving(leaving(slope));
-            for (Eigen::Index n = 0; n < lines_; ++n) {
-                const auto k = first_ + static_cast<std::size_t>(n);
-                const Complex row = weight(c, k) * slope[k];
-                J(n, column) = row.real();
-                J(lines_ + n, column) = row.imag();
-            }
+            residual_.fill(c, slope, J.col(column));
             if (heard)
                 std::fill(slope.begin(), slope.end(), 0.0);
         };
@@ -165,10 +136,9 @@ private:
     const Model& model_;
     const Record& record_;
     const Section& section_;
+    Residual residual_;
     const Fed& fed_;
     const Paths& paths_;
-    std::size_t first_ = 0, last_ = 0;
-    Eigen::Index lines_ = 0;
     std::vector<Arrival> arrival_;
     std::vector<double> byLeaving_;
 };

@@ -88,7 +88,8 @@ void addPriors(const Model& model, const std::vector<Eigen::Index>& active, cons
 }
 
 /// Standard errors and covariance from what is left, as if neighbouring points erred independently.
-void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const std::vector<Eigen::Index>& active)
+/// @param origin  values of the active parameters that the search began from
+void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const std::vector<Eigen::Index>& active, const Eigen::VectorXd& origin)
 {
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size()), count = static_cast<Eigen::Index>(all.size());
@@ -107,8 +108,8 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
         auto& p = *all[static_cast<std::size_t>(row)];
         p.standardError = std::sqrt(covariance(r, r));
         // A positive parameter that the data takes for zero (an inductance that the eddy currents have taken over) stays away from the
-        // singular point, but so near that nobody sees it.
-        const double near = std::min(unseenErrors * p.standardError, unseenAlone * std::sqrt(variance / alone[r]));
+        // singular point, but so near that nobody sees it, and no farther than it was before: a large error may also be that of a shape whose effect does nothing.
+        const double near = std::min({unseenErrors * p.standardError, unseenAlone * std::sqrt(variance / alone[r]), origin[r]});
         if (positive(p) && p.lower == 0.0 && p.value < near)
             p.value = std::min(near, p.upper);
     }
@@ -143,6 +144,9 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
     const auto active = movedIn(model);
     const auto all = parametersOf(model);
     std::vector<bool> logarithmic;
+    Eigen::VectorXd values(static_cast<Eigen::Index>(active.size()));
+    for (Eigen::Index k = 0; k < values.size(); ++k)
+        values[k] = all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value;
     for (const auto k : active)
         logarithmic.push_back(positive(*all[static_cast<std::size_t>(k)]));
     const auto P = static_cast<Eigen::Index>(active.size());
@@ -193,7 +197,7 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
     const auto summary = minimize(evaluate, y, lower, upper, options);
     place(shifted(summary.usable ? y : start));
     if (summary.usable)
-        keepErrors(model, targets, active);
+        keepErrors(model, targets, active, values);
     return summary;
 }
 

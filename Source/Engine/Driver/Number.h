@@ -15,4 +15,11 @@ using Jet = ceres::Jet<double, jetWidth>;
 /// tells how force and flux go on along a given motion, which is what an inversion needs.
 using Tangent = ceres::Jet<double, 2>;
 
+/// A value, or the limit above which it has no meaning.
+template <class T>
+T atMost(double limit, const T& value)
+{
+    return value < limit ? value : T(limit);
+}
+
 } // namespace excursion

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace excursion {
 namespace {
@@ -28,9 +27,8 @@ class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section, const std::vector<Eigen::Index>& active,
                const OutputErrorOptions& options, std::size_t leadIn, const StartState& from)
-        : model_(model), record_(record), section_(section), active_(active), options_(options), from_(from)
+        : model_(model), record_(record), section_(section), residual_(record, section), active_(active), options_(options), from_(from)
     {
-        std::tie(first_, last_) = record.lineRange(section);
         const auto drive = record.drive(section, leadIn);
         drive_.emplace(drive, record.sampleRate, options.substeps);
         if (options.gradient && options.gradientSubsteps != options.substeps)
@@ -42,34 +40,28 @@ public:
     {
         SectionFit fit;
         const auto channels = record_.channels.size();
-        const auto lines = static_cast<Eigen::Index>(last_ - first_ + 1);
         const auto columns = static_cast<Eigen::Index>(active_.size());
 
         Trajectory trajectory;
         fit.finite = integrate(model_, *drive_, start_, trajectory, from_.value);
         if (!fit.finite)
             return fit;
-        fit.channels.resize(channels);
-        fit.power.resize(channels);
-        std::vector<Eigen::VectorXd> residual(channels, Eigen::VectorXd(2 * lines));
-        std::vector<Spectrum> predicted(channels);
+        std::vector<Eigen::VectorXd> residual;
+        std::vector<Spectrum> predicted;
         Sensors sensors(model_, trajectory, record_.sampleRate);
         for (std::size_t c = 0; c < channels; ++c) {
-            predicted[c] = sensors.seen(record_.channels[c]);
-            residualOf(c, predicted[c], residual[c], fit.power[c]);
-            fit.channels[c].cost = residual[c].squaredNorm();
-            fit.channels[c].rows = static_cast<double>(2 * lines);
+            predicted.push_back(sensors.seen(record_.channels[c]));
+            residual.push_back(residual_.of(c, predicted[c]));
+            fit.power.push_back(residual_.power(c, predicted[c]));
+            fit.channels.emplace_back(residual[c]);
         }
         if (options_.gradient && columns > 0) {
-            std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(2 * lines, columns));
-            if (!sensitivities(sensors, J)) {
-                fit.finite = false;
+            std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(residual_.rows(), columns));
+            fit.finite = sensitivities(sensors, J);
+            if (!fit.finite)
                 return fit;
-            }
-            for (std::size_t c = 0; c < channels; ++c) {
-                fit.channels[c].N.noalias() = J[c].transpose() * J[c];
-                fit.channels[c].g.noalias() = J[c].transpose() * residual[c];
-            }
+            for (std::size_t c = 0; c < channels; ++c)
+                fit.channels[c].differentiateBy(J[c], residual[c]);
         }
         if (options_.spectra)
             fit.predicted = std::move(predicted);
@@ -77,35 +69,6 @@ public:
     }
 
 private:
-    void residualOf(std::size_t c, const Spectrum& predicted, Eigen::VectorXd& r, ErrorPower& power) const
-    {
-        const auto& measured = section_.measured[c];
-        const auto& deviation = section_.deviation[c];
-        const auto lines = static_cast<Eigen::Index>(last_ - first_ + 1);
-        for (Eigen::Index n = 0; n < lines; ++n) {
-            const auto k = first_ + static_cast<std::size_t>(n);
-            const auto error = predicted[k] - measured[k];
-            const double weight = std::numbers::sqrt2 / deviation[k];
-            r[n] = weight * error.real();
-            r[lines + n] = weight * error.imag();
-            power.error += std::norm(error);
-            power.measured += std::norm(measured[k]);
-            power.noise += deviation[k] * deviation[k];
-        }
-    }
-
-    void fill(std::size_t c, const Spectrum& derivative, Eigen::Ref<Eigen::VectorXd> column) const
-    {
-        const auto& deviation = section_.deviation[c];
-        const auto lines = static_cast<Eigen::Index>(last_ - first_ + 1);
-        for (Eigen::Index n = 0; n < lines; ++n) {
-            const auto k = first_ + static_cast<std::size_t>(n);
-            const double weight = std::numbers::sqrt2 / deviation[k];
-            column[n] = weight * derivative[k].real();
-            column[lines + n] = weight * derivative[k].imag();
-        }
-    }
-
     bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
     {
         std::vector<Trace> traces;   // of all channels, each once
@@ -130,7 +93,7 @@ private:
                         rows.row(static_cast<Eigen::Index>(r)) = slopes[static_cast<std::size_t>(place)].row(static_cast<Eigen::Index>(b));
                     }
                     if (!rows.isZero(0.0))
-                        fill(c, sensors.slope(record_.channels[c], rows), J[c].col(static_cast<Eigen::Index>(block + b)));
+                        residual_.fill(c, sensors.slope(record_.channels[c], rows), J[c].col(static_cast<Eigen::Index>(block + b)));
                 }
             }
         }
@@ -140,27 +103,15 @@ private:
     const Model& model_;
     const Record& record_;
     const Section& section_;
+    Residual residual_;
     const std::vector<Eigen::Index>& active_;
     const OutputErrorOptions& options_;
     const StartState& from_;
     std::optional<Drive> drive_, gradientDrive_;
-    std::size_t first_ = 0, last_ = 0, start_ = 0;
+    std::size_t start_ = 0;
 };
 
 } // namespace
-
-void NormalEquations::add(const NormalEquations& other)
-{
-    if (N.size() == 0) {
-        N = other.N;
-        g = other.g;
-    } else if (other.N.size() > 0) {
-        N += other.N;
-        g += other.g;
-    }
-    cost += other.cost;
-    rows += other.rows;
-}
 
 std::size_t settlingTime(const Model& model, const Record& record)
 {

@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/Model.h"
 #include "Engine/Driver/Record.h"
+#include "Engine/Driver/Residual.h"
 #include "Engine/Progress.h"
 
 #include <Eigen/Core>
@@ -12,22 +13,6 @@
 #include <vector>
 
 namespace excursion {
-
-/// The least-squares problem min |r + J d|^2 of residuals r (one channel, over some sections) in its normal form.
-/// Residuals are (model - measured)/deviation, real and imaginary part, each with unit variance if only noise is left.
-struct NormalEquations {
-    Eigen::MatrixXd N;     ///< J^T J
-    Eigen::VectorXd g;     ///< J^T r
-    double cost = 0.0;     ///< r^T r
-    double rows = 0.0;     ///< number of real residuals
-
-    void add(const NormalEquations&);
-};
-
-/// Error power and measured power of a channel, not weighted; noise power in the same window.
-struct ErrorPower {
-    double error = 0.0, measured = 0.0, noise = 0.0;
-};
 
 /// What a model's simulation leaves of one section.
 struct SectionFit {

@@ -92,12 +92,8 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
     };
     if (quantity == Quantity::pressure) {
         // What arrives at t has left at s, so d(flow) there is that of the flow and that of s: ds = -d(lateness)/(1 + lateness').
-        if (flowByLeaving_.empty()) {
-            flowByLeaving_ = slopeOf(run_[Trace::flow], sampleRate_);
-            const auto drift = slopeOf(run_[Trace::lateness], sampleRate_);
-            for (std::size_t n = 0; n < flowByLeaving_.size(); ++n)
-                flowByLeaving_[n] /= 1.0 + drift[n];
-        }
+        if (flowByLeaving_.empty())
+            flowByLeaving_ = slopeByLeaving(run_[Trace::flow], run_[Trace::lateness], sampleRate_);
         auto change = row(0);
         for (std::size_t n = 0; n < change.size(); ++n)
             change[n] -= flowByLeaving_[n] * slopes(1, static_cast<Eigen::Index>(n));

@@ -95,10 +95,10 @@ public:
         const double highest = 1.25 * e.highFrequency;
         constexpr double mostLoss = 2.0;
         for (int k = 0; k < resonators; ++k, p += each, c += each) {
-            const T w = 2.0 * std::numbers::pi * (p[1] < highest ? p[1] : T(highest));
+            const T w = 2.0 * std::numbers::pi * atMost(highest, p[1]);
             c[0] = p[0];
             c[1] = w * w;
-            c[2] = w * (p[2] < mostLoss ? p[2] : T(mostLoss));
+            c[2] = w * atMost(mostLoss, p[2]);
         }
     }
 

@@ -82,7 +82,7 @@ public:
     template <class T>
     void prepareFor(const Extent& e, const T* p, T* c) const
     {
-        const T w = 2.0 * std::numbers::pi * (p[1] < e.highFrequency ? p[1] : T(e.highFrequency)), &r = p[5];
+        const T w = 2.0 * std::numbers::pi * atMost(e.highFrequency, p[1]), &r = p[5];
         c[0] = p[0] * (1.0 + r);
         c[1] = p[0] * r;
         c[2] = w * w / (1.0 + r);
