@@ -5,9 +5,12 @@
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 
 namespace excursion::study {
 namespace {
@@ -25,11 +28,11 @@ double truth(const bench::Loudspeaker& speaker, const std::string& effect, doubl
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<LawCoverage> coverage(const Model& model, const bench::Loudspeaker& speaker, const std::string& hidden)
+std::vector<LawCoverage> coverage(const Model& model, const bench::Loudspeaker& speaker, const Outcome& outcome)
 {
     std::vector<LawCoverage> result;
     for (const auto& law : laws(model)) {
-        LawCoverage covered {law.effectId, law.effectId == hidden, 0, 0};
+        LawCoverage covered {law.effectId, outcome.hides(law.effectId), 0, 0};
         for (std::size_t n = 0; n < law.argument.size(); ++n) {
             if (std::abs(law.argument[n]) > 0.9 * law.argument.back())
                 continue;
@@ -59,18 +62,57 @@ double baseOverNoise(const Measurement& take, const FitOptions& options)
     return overNoise(compare(model, record));
 }
 
+/// What a loudspeaker plays without noise, by channel.
+std::map<Quantity, std::vector<double>> played(const bench::Loudspeaker& speaker, bench::BenchSetup setup)
+{
+    setup.noiseDb = -std::numeric_limits<double>::infinity();
+    setup.channelNoiseDb.clear();
+    std::map<Quantity, std::vector<double>> result;
+    for (const auto& channel : bench::measure(speaker, setup).channels)
+        if (channel.quantity != Quantity::voltage)
+            result[channel.quantity] = channel.samples;
+    return result;
+}
+
+double power(const std::vector<double>& samples)
+{
+    return std::inner_product(samples.begin(), samples.end(), samples.begin(), 0.0);
+}
+
+/// What is missing without one effect of several, in the channel that shows it best, over the noise.
+double shownBy(const std::string& effect, const bench::Draw& drawn, const std::map<Quantity, std::vector<double>>& whole, std::uint64_t seed,
+               bench::DrawOptions options)
+{
+    std::erase_if(*options.hidden, [&](const bench::HiddenEffect& h) { return h.id == effect; });
+    const auto without = played(bench::draw(seed, options).speaker, drawn.setup);
+    double most = -std::numeric_limits<double>::infinity();
+    for (const auto& [quantity, samples] : whole) {
+        auto difference = without.at(quantity);
+        for (std::size_t n = 0; n < samples.size(); ++n)
+            difference[n] -= samples[n];
+        most = std::max(most, 10.0 * std::log10(power(difference) / power(samples)) - drawn.setup.noiseDb);
+    }
+    return most;
+}
+
 void improveAndJudge(Outcome& outcome)
 {
     bench::DrawOptions options;
     options.seconds = outcome.what.seconds;
     options.hidden.emplace();
-    if (!outcome.control())
-        options.hidden->push_back({outcome.what.hidden, 0.0});
+    for (const auto& id : outcome.what.hidden)
+        options.hidden->push_back({id, 0.0});
     const auto drawn = bench::draw(outcome.what.seed, options);
     outcome.driver = drawn.driver;
     outcome.sampleRate = drawn.setup.sampleRate;
     outcome.noiseDb = drawn.setup.noiseDb;
-    outcome.strength = drawn.hidden.empty() ? 0.0 : drawn.hidden.front().strength;
+    for (const auto& hidden : drawn.hidden)
+        outcome.strengths.push_back(hidden.strength);
+    if (outcome.whole()) {
+        const auto whole = played(drawn.speaker, drawn.setup);
+        for (const auto& id : outcome.what.hidden)
+            outcome.showDb.push_back(shownBy(id, drawn, whole, outcome.what.seed, options));
+    }
     const auto take = bench::measure(drawn.speaker, drawn.setup);
     outcome.takeSeconds = static_cast<double>(take.length()) / take.sampleRate;
 
@@ -94,7 +136,7 @@ void improveAndJudge(Outcome& outcome)
         outcome.first = base.diagnosis.ranking.front().effect;
     outcome.standsDb = overNoise(base.comparison);
     outcome.finalDb = overNoise(ladder.rungs.back().comparison);
-    outcome.laws = coverage(ladder.model(), drawn.speaker, outcome.what.hidden);
+    outcome.laws = coverage(ladder.model(), drawn.speaker, outcome);
 }
 
 } // namespace
@@ -104,9 +146,23 @@ bool Outcome::nothingAdded() const
     return failure.empty() && added.empty() && withdrawn.empty() && verdict != name(Verdict::badMeasurement);
 }
 
+bool Outcome::hides(const std::string& effect) const
+{
+    return std::find(what.hidden.begin(), what.hidden.end(), effect) != what.hidden.end();
+}
+
+bool Outcome::shows(std::size_t n) const { return showDb[n] >= standsOutDb; }
+
 bool Outcome::explained() const
 {
-    return control() ? nothingAdded() : failure.empty() && added == std::vector {what.hidden};
+    if (control())
+        return nothingAdded();
+    if (!failure.empty() || !std::all_of(added.begin(), added.end(), [&](const std::string& id) { return hides(id); }))
+        return false;
+    for (std::size_t n = 0; n < what.hidden.size(); ++n)
+        if ((!whole() || shows(n)) && std::find(added.begin(), added.end(), what.hidden[n]) == added.end())
+            return false;
+    return true;
 }
 
 Outcome run(const Case& what)

@@ -10,7 +10,7 @@ namespace excursion::study {
 /// One random take of the study.
 struct Case {
     std::uint64_t seed = 1;
-    std::string hidden;        ///< the effect's id; empty: a control, nothing is hidden
+    std::vector<std::string> hidden;   ///< ids of effects; none: a control
     double seconds = 12.0;     ///< about, of the take
     unsigned threads = 1;      ///< of the fits
 };
@@ -25,7 +25,9 @@ struct LawCoverage {
 struct Outcome {
     Case what;
     std::string driver;
-    double sampleRate = 0.0, noiseDb = 0.0, strength = 0.0, takeSeconds = 0.0, improveSeconds = 0.0;
+    double sampleRate = 0.0, noiseDb = 0.0, takeSeconds = 0.0, improveSeconds = 0.0;
+    std::vector<double> strengths;              ///< of the hidden effects
+    std::vector<double> showDb;                 ///< of several: what each changes in the channel that shows it best, over the noise
     std::string verdict, first;                 ///< first of the ranking of the base's diagnosis
     std::vector<std::string> added, withdrawn;
     double standsDb = 0.0;   ///< validation error of the base over the noise floor, in the worst channel
@@ -34,10 +36,16 @@ struct Outcome {
     std::string failure;     ///< what was thrown
 
     bool control() const { return what.hidden.empty(); }
-    bool named() const { return first == what.hidden; }
+    bool whole() const { return what.hidden.size() > 1; }   ///< a loudspeaker with several effects
+    bool hides(const std::string& effect) const;
+    bool shows(std::size_t n) const;      ///< hidden effect n, 6 dB above the noise
+    bool named() const { return hides(first); }
     bool nothingAdded() const;    ///< and not refused either
-    bool explained() const;       ///< the effect that is hidden was added and no other; of a control none
+    bool explained() const;       ///< what is hidden was added and nothing else; of several all that show, of a control none
 };
+
+/// How far an effect stands out that counts as one to be seen, and how near to the noise a model is good, dB.
+inline constexpr double standsOutDb = 6.0, nearNoiseDb = 3.0;
 
 /// Draws the loudspeaker and its take, lets it be improved, and compares with the truth. Never throws.
 Outcome run(const Case&);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How often is the diagnosis right? Random loudspeakers with one hidden effect, and controls with none, are measured on the virtual
+// How often is the diagnosis right? Random loudspeakers with one hidden effect or several, and controls with none, are measured on the virtual
 // bench, improved, and compared with the truth.
 #include "Study/Summary.h"
 
 #include "Bench/Draw.h"
+#include "Bench/Random.h"
 #include "Engine/Document/JsonText.h"
 
 #include <CLI/CLI.hpp>
@@ -18,13 +19,36 @@ using namespace excursion::study;
 
 namespace {
 
-/// The hidden effects take turns; the controls follow with seeds of their own.
-std::vector<Case> cases(const std::vector<std::string>& effects, int takes, int controls, std::uint64_t firstSeed, double seconds, unsigned threads)
+/// How many effects a take hides.
+struct Several {
+    int fewest = 1, most = 1;
+};
+
+/// A take that hides one effect gets them in turn, one that hides more draws them from its seed.
+std::vector<std::string> hiddenIn(std::uint64_t seed, std::size_t turn, std::vector<std::string> effects, const Several& several)
+{
+    if (several.most <= 1)
+        return {effects[turn % effects.size()]};
+    bench::Random choice(seed, 40);
+    const int count = several.fewest + choice.index(several.most - several.fewest + 1);
+    std::vector<std::string> hidden;
+    while (static_cast<int>(hidden.size()) < count && !effects.empty()) {
+        const auto next = effects.begin() + choice.index(static_cast<int>(effects.size()));
+        hidden.push_back(*next);
+        effects.erase(next);
+    }
+    return hidden;
+}
+
+/// The controls follow with seeds of their own.
+std::vector<Case> cases(const std::vector<std::string>& effects, const Several& several, int takes, int controls, std::uint64_t firstSeed, double seconds,
+                        unsigned threads)
 {
     std::vector<Case> result;
-    for (int n = 0; n < takes + controls; ++n)
-        result.push_back({firstSeed + static_cast<std::uint64_t>(n),
-                          n < takes ? effects[static_cast<std::size_t>(n) % effects.size()] : "", seconds, threads});
+    for (int n = 0; n < takes + controls; ++n) {
+        const auto seed = firstSeed + static_cast<std::uint64_t>(n);
+        result.push_back({seed, n < takes ? hiddenIn(seed, static_cast<std::size_t>(n), effects, several) : std::vector<std::string> {}, seconds, threads});
+    }
     return result;
 }
 
@@ -35,13 +59,16 @@ int main(int argc, char** argv)
     int takes = 200, controls = 50, jobs = 2;
     std::uint64_t firstSeed = 1;
     double seconds = 12.0;
+    Several several;
     std::string json, demand;
     std::vector<std::string> hide = bench::drawnEffects();
-    CLI::App app {"Draws random takes of virtual loudspeakers with one hidden effect (and controls with none), improves each, and says "
-                  "how often the diagnosis was right."};
+    CLI::App app {"Draws random takes of virtual loudspeakers with one hidden effect or several (and controls with none), improves each, and "
+                  "says how often the diagnosis was right."};
     app.add_option("--takes", takes, "with a hidden effect")->check(CLI::NonNegativeNumber)->capture_default_str();
     app.add_option("--controls", controls, "without one")->check(CLI::NonNegativeNumber)->capture_default_str();
     app.add_option("--hide", hide, "the effects that take turns")->delimiter(',')->check(CLI::IsMember(bench::effectIds()))->capture_default_str();
+    app.add_option("--fewest", several.fewest, "effects that a take hides at once")->check(CLI::Range(1, 13))->capture_default_str();
+    app.add_option("--most", several.most, "effects that a take hides at once; with more than one they are drawn")->check(CLI::Range(1, 13))->capture_default_str();
     app.add_option("--first-seed", firstSeed, "of the first take; the others follow")->capture_default_str();
     app.add_option("--seconds", seconds, "about, of each take")->check(CLI::Range(0.5, 120.0))->capture_default_str();
     app.add_option("--jobs", jobs, "takes at once; with more than one, each fit has one thread")->check(CLI::Range(1, 64))->capture_default_str();
@@ -49,8 +76,9 @@ int main(int argc, char** argv)
     app.add_option("--demand", demand, "exit with 1 unless the shares reach their targets: of the diagnosis, or all, the bands of the laws too")
         ->check(CLI::IsMember({"diagnosis", "all"}));
     CLI11_PARSE(app, argc, argv);
+    several.most = std::max(several.most, several.fewest);
 
-    const auto plan = cases(hide, takes, controls, firstSeed, seconds, jobs > 1 ? 1 : 2);
+    const auto plan = cases(hide, several, takes, controls, firstSeed, seconds, jobs > 1 ? 1 : 2);
     std::vector<Outcome> outcomes;
     std::mutex mutex;
     std::size_t next = 0;

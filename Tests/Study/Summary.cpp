@@ -10,8 +10,6 @@
 namespace excursion::study {
 namespace {
 
-constexpr double standsOutDb = 6.0, nearNoiseDb = 3.0;
-
 template <class... Values>
 std::string formatted(const char* format, Values... values)
 {
@@ -45,6 +43,12 @@ bool Summary::diagnosed() const
 
 bool Summary::reached() const { return diagnosed() && inBand.value() >= 0.85; }
 
+double Summary::f1() const
+{
+    const int parts = shown + found + falselyAdded;   // added ones that do not show are neither right nor wrong
+    return parts > 0 ? 2.0 * found / parts : 1.0;
+}
+
 Summary summarize(const std::vector<Outcome>& outcomes)
 {
     Summary summary;
@@ -52,6 +56,16 @@ Summary summarize(const std::vector<Outcome>& outcomes)
     for (const auto& o : outcomes) {
         if (o.control()) {
             summary.untouched.add(o.nothingAdded());
+        } else if (o.whole()) {
+            for (std::size_t n = 0; n < o.showDb.size(); ++n) {
+                const bool added = std::find(o.added.begin(), o.added.end(), o.what.hidden[n]) != o.added.end();
+                if (o.shows(n)) {
+                    ++summary.shown;
+                    summary.found += added;
+                    summary.foundOf[o.what.hidden[n]].add(added);
+                }
+            }
+            summary.falselyAdded += static_cast<int>(std::count_if(o.added.begin(), o.added.end(), [&](const std::string& id) { return !o.hides(id); }));
         } else if (o.standsDb >= standsOutDb) {
             summary.named.add(o.named());
             summary.alone.add(o.explained());
@@ -77,10 +91,17 @@ Summary summarize(const std::vector<Outcome>& outcomes)
 
 std::string line(const Outcome& o)
 {
-    auto result = formatted("%s seed %-4llu %-19s %-9s %5.1f kHz noise %5.1f dB strength %.2f ",
-                            o.explained() ? "ok   " : "WRONG", static_cast<unsigned long long>(o.what.seed),
-                            o.control() ? "(control)" : o.what.hidden.c_str(), o.driver.c_str(), o.sampleRate / 1000.0, o.noiseDb,
-                            o.strength);
+    std::string hidden;
+    for (std::size_t n = 0; n < o.what.hidden.size(); ++n) {
+        hidden += (n > 0 ? ", " : "") + o.what.hidden[n];
+        if (n < o.strengths.size())
+            hidden += formatted(" %.2f", o.strengths[n]);
+        if (n < o.showDb.size())
+            hidden += formatted(" (%.0f dB)", o.showDb[n]);
+    }
+    auto result = formatted("%s seed %-4llu %-9s %5.1f kHz noise %5.1f dB, hidden ", o.explained() ? "ok   " : "WRONG",
+                            static_cast<unsigned long long>(o.what.seed), o.driver.c_str(), o.sampleRate / 1000.0, o.noiseDb)
+                + (o.control() ? "nothing" : hidden) + ": ";
     if (!o.failure.empty())
         return result + "failed: " + o.failure;
     result += formatted("stands %5.1f dB, first %s, added %s", o.standsDb, o.first.empty() ? "-" : o.first.c_str(), joined(o.added).c_str());
@@ -98,6 +119,12 @@ std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
     result += row("hidden effect first, where it stands 6 dB above the noise", s.named, 0.98);
     result += row("  ... and the only one added", s.alone, 0.0);
     result += row("hidden effect first, where it does not", s.faint, 0.0);
+    if (s.shown > 0) {
+        result += formatted("  of several hidden effects %d of %d that show were added, %d beside them that are not there: F1 %.3f\n", s.found, s.shown,
+                            s.falselyAdded, s.f1());
+        for (const auto& [effect, share] : s.foundOf)
+            result += row(("  " + effect).c_str(), share, 0.0);
+    }
     result += row("controls to which nothing was added", s.untouched, 0.99);
     result += row("final validation error within 3 dB of the noise", s.atNoise, 0.90);
     result += row("points of the true laws inside the 95 % bands", s.inBand, 0.85);
@@ -122,6 +149,9 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
     document["named"] = share(s.named);
     document["namedAlone"] = share(s.alone);
     document["namedFaint"] = share(s.faint);
+    document["several"] = {{"shown", s.shown}, {"found", s.found}, {"falselyAdded", s.falselyAdded}, {"f1", s.f1()}};
+    for (const auto& [effect, part] : s.foundOf)
+        document["foundOf"][effect] = share(part);
     document["controlsUntouched"] = share(s.untouched);
     document["atNoise"] = share(s.atNoise);
     document["inBand"] = share(s.inBand);
@@ -131,10 +161,12 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
     document["takes"] = Json::array();
     for (const auto& o : outcomes) {
         Json take {{"seed", o.what.seed},         {"hidden", o.what.hidden},     {"driver", o.driver},
-                   {"sampleRate", o.sampleRate},  {"noiseDb", o.noiseDb},        {"strength", o.strength},
+                   {"sampleRate", o.sampleRate},  {"noiseDb", o.noiseDb},        {"strengths", o.strengths},
                    {"seconds", o.takeSeconds},    {"first", o.first},            {"added", o.added},
                    {"withdrawn", o.withdrawn},    {"verdict", o.verdict},        {"standsDb", numberOrNull(o.standsDb)},
                    {"finalDb", numberOrNull(o.finalDb)},       {"improveSeconds", o.improveSeconds}};
+        if (o.whole())
+            take["showDb"] = o.showDb;
         for (const auto& law : o.laws)
             take["laws"].push_back({{"effect", law.effect}, {"hidden", law.hidden}, {"points", law.points}, {"inside", law.inside}});
         if (!o.failure.empty())

@@ -23,10 +23,14 @@ struct Summary {
     Share alone;           ///< takes of `named` whose final model has that effect and no other
     Share untouched;       ///< controls: no effect added
     Share atNoise;         ///< all: final validation error within 3 dB of the noise floor in every channel
+    int shown = 0, found = 0, falselyAdded = 0;   ///< of loudspeakers with several effects: those that show, of these the ones added; added but not there
+    std::map<std::string, Share> foundOf;    ///< by effect
     Share inBand;          ///< points of the hidden laws within their 95 % bands, pooled
     std::map<std::string, Share> inBandOf;   ///< by effect
     double medianTimeRatio = 0.0;            ///< time of improve over the take's length
 
+    /// Harmonic mean of the share of the shown effects that were found and of the share of the added ones that are there; 1 where there are none.
+    double f1() const;
     /// named 98 %, untouched 99 %, atNoise 90 %.
     bool diagnosed() const;
     /// The same, and inBand 85 %.

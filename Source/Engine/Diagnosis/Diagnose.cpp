@@ -31,8 +31,8 @@ bool better(const RankedEffect& a, const RankedEffect& b)
 {
     if (a.significant != b.significant)
         return a.significant;
-    if (a.significant && a.isBacked() != b.isBacked())
-        return a.isBacked();
+    if (a.significant && a.vote.backs() != b.vote.backs())
+        return a.vote.backs();
     const bool triedA = a.confirmedChi > 0.0, triedB = b.confirmedChi > 0.0;
     if (triedA != triedB)
         return triedA;
@@ -60,7 +60,7 @@ void judge(std::vector<RankedEffect>& ranking, double chi, bool noiseKnown, Diag
     // Two effects that each explain most of the same residual, and leave about as much, cannot be told apart.
     for (std::size_t k = 1; k < ranking.size() && ranking[k].significant; ++k) {
         const double first = excess(ranking[0].confirmedChi, noiseKnown), other = excess(ranking[k].confirmedChi, noiseKnown);
-        if (other < 1.25 * first && other < 0.4 * before && ranking[k].isBacked() == ranking[0].isBacked())
+        if (other < 1.25 * first && other < 0.4 * before && ranking[k].vote.backs() == ranking[0].vote.backs())
             diagnosis.indistinguishable.push_back(ranking[k].effect);
     }
     if (!diagnosis.indistinguishable.empty())
@@ -113,7 +113,7 @@ Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& co
 {
     const double before = excess(comparison.chi, comparison.noiseKnown);
     if (!ranking.empty() && ranking.front().significant && !outdone(ranking, comparison.noiseKnown)
-        && (ranking.front().standsAlone() || 1.0 - excess(ranking.front().confirmedChi, comparison.noiseKnown) / before >= smallestShare))
+        && (ranking.front().vote.standsAlone() || 1.0 - excess(ranking.front().confirmedChi, comparison.noiseKnown) / before >= smallestShare))
         return Verdict::missingEffect;
     constexpr double onlyNoise = 1.6;   // mean squared error over the noise's, 2 dB
     bool clean = comparison.noiseKnown;
@@ -170,8 +170,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         entry.effect = candidate.effect->id();
         entry.predictedChi = candidate.chi;
         entry.predictedErrorDb = candidate.errorDb;
-        entry.uniqueDb = candidate.uniqueDb;
-        entry.inconsistency = candidate.inconsistency;
+        entry.vote = candidate.vote;
         entry.model = candidate.model;
         auto errorAfter = candidate.errorDb;
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
@@ -209,7 +208,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     // with something unknown.
     if (diagnosis.verdict == Verdict::missingEffect && before.noiseKnown) {
         const auto& first = diagnosis.ranking.front();
-        if (!first.standsAlone() && excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
+        if (!first.vote.standsAlone() && excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
             const auto beyond = score(first.model, record, test, {});
             if (leastLeft(scores.chiByChannel, beyond.togetherChi) > mostLeft)
                 diagnosis.verdict = Verdict::unknownEffect;

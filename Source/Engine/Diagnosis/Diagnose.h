@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/Compare.h"
+#include "Engine/Diagnosis/Vote.h"
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/Model.h"
 #include "Engine/Driver/Record.h"
@@ -31,16 +32,10 @@ struct RankedEffect {
     std::map<Quantity, double> confirmedErrorDb;   ///< after a refit, on validation data; empty when not tried
     double predictedChi = 0.0;
     double confirmedChi = 0.0;                ///< 0 when not tried
-    double uniqueDb = 0.0;                    ///< by how much the catalogue as a whole would leave more without it
-    double inconsistency = 0.0;               ///< see Score
+    Vote vote;                                ///< of the catalogue as a whole; none of a frequency response
     bool significant = false;                 ///< it pays for its parameters
     std::string reason;                       ///< one sentence that a person can check on a plot
     Model model;                              ///< with the effect, as refitted; without components when not tried
-
-    /// Whether the catalogue as a whole speaks for it: the others explain clearly less without it, and it is about the same at all levels.
-    bool isBacked() const { return uniqueDb >= 0.5 && inconsistency < 0.5; }
-    /// Whether it explains what nothing else does, whatever else is missing.
-    bool standsAlone() const { return uniqueDb >= 3.0 && inconsistency < 0.2; }
 };
 
 struct Diagnosis {

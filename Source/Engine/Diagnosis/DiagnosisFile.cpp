@@ -23,8 +23,8 @@ Json rankedJson(const RankedEffect& ranked)
             {"confirmedErrorDb", tried ? toJson(ranked.confirmedErrorDb) : Json(nullptr)},
             {"predictedChi", numberOrNull(ranked.predictedChi)},
             {"confirmedChi", tried ? numberOrNull(ranked.confirmedChi) : Json(nullptr)},
-            {"uniqueDb", numberOrNull(ranked.uniqueDb)},
-            {"inconsistency", numberOrNull(ranked.inconsistency)},
+            {"uniqueDb", numberOrNull(ranked.vote.uniqueDb)},
+            {"inconsistency", numberOrNull(ranked.vote.inconsistency)},
             {"significant", ranked.significant},
             {"reason", ranked.reason}};
 }
@@ -41,9 +41,9 @@ RankedEffect rankedFrom(const JsonField& field)
         ranked.confirmedChi = field.at("confirmedChi").numberOrNaN();
     }
     if (field.has("uniqueDb"))   // not told of a frequency response, nor by files from before
-        ranked.uniqueDb = field.at("uniqueDb").numberOrNaN();
+        ranked.vote.uniqueDb = field.at("uniqueDb").numberOrNaN();
     if (field.has("inconsistency"))
-        ranked.inconsistency = field.at("inconsistency").numberOrNaN();
+        ranked.vote.inconsistency = field.at("inconsistency").numberOrNaN();
     ranked.significant = field.at("significant").flag();
     ranked.reason = field.at("reason").text();
     return ranked;

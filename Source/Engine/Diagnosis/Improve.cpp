@@ -27,7 +27,7 @@ double worth(const Comparison& before, const Comparison& after, const Comparison
 bool stoodAlone(const Rung& before, const Rung& rung)
 {
     const auto& ranking = before.diagnosis.ranking;
-    return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == rung.added && r.standsAlone(); });
+    return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == rung.added && r.vote.standsAlone(); });
 }
 
 /// When something unknown is left in the end, effects that removed little more than that may have explained a symptom of it: they are
@@ -52,10 +52,21 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
     Improvement work(take, options, progress.part(0.0, 0.02));
     if (work.ladder().verdict == Verdict::badMeasurement)
         return work.ladder();
-    const double share = 0.85 / options.maximumRungs;
+    std::size_t told = 0;
+    const auto tell = [&] {
+        for (; told < work.ladder().rungs.size(); ++told)
+            if (options.finished)
+                options.finished(work.ladder().rungs[told]);
+    };
     work.begin(progress.part(0.02, 0.15));
-    for (int n = 0; n < options.maximumRungs && work.ladder().verdict == Verdict::missingEffect; ++n)
-        work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, progress.part(0.15 + share * n, 0.15 + share * (n + 1)));
+    work.addTogether(progress.part(0.15, 0.6));
+    tell();
+    constexpr double begun = 0.6, done = 0.99;
+    const double share = (done - begun) / options.maximumRungs;
+    for (int n = static_cast<int>(work.ladder().rungs.size()) - 1; n < options.maximumRungs && work.ladder().verdict == Verdict::missingEffect; ++n) {
+        work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, progress.part(begun + share * n, begun + share * (n + 1)));
+        tell();
+    }
     auto ladder = work.ladder();
     withdrawDoubtful(ladder);
     if (std::holds_alternative<Measurement>(take))   // the diagnosis of a frequency response has told them

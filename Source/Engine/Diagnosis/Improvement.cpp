@@ -2,15 +2,19 @@
 #include "Engine/Diagnosis/Improvement.h"
 
 #include "Engine/Diagnosis/FitEffects.h"
+#include "Engine/Diagnosis/RungsTo.h"
 #include "Engine/Diagnosis/Trial.h"
+#include "Engine/Diagnosis/Whole.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/OutputError.h"
+#include "Engine/Driver/ShownMotions.h"
 #include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -81,6 +85,34 @@ void Improvement::begin(const Progress& progress)
     push(std::move(rung), progress.part(0.4, 1.0));
 }
 
+bool Improvement::addTogether(const Progress& progress)
+{
+    const auto* record = std::get_if<Record>(&data_);
+    const auto& base = ladder_.rungs.front();
+    const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(), [](const RankedEffect& r) { return r.vote.backs(); });
+    if (!record || !hasPeriods(*record) || backed < 2 || ladder_.rungs.size() > 1 || base.model.components.size() > 1)
+        return false;
+    const auto whole = fitWhole(base.model, *record, options_.diagnose.fit, progress.part(0.0, 0.5));
+    if (whole.votes.size() < 2 || static_cast<int>(whole.votes.size()) > options_.maximumRungs)
+        return false;
+    auto rungs = rungsTo(whole, base, *record, options_.diagnose, progress.part(0.5, 0.8));
+    if (!(rungs.back().comparison.chi < base.comparison.chi))
+        return false;
+    auto last = std::move(rungs.back());
+    rungs.pop_back();
+    const auto before = std::exchange(ladder_, Ladder {});
+    ladder_.problems = before.problems;
+    try {
+        for (auto& rung : rungs)
+            keep(std::move(rung));
+        push(std::move(last), progress.part(0.8, 1.0));
+    } catch (...) {
+        ladder_ = before;
+        throw;
+    }
+    return true;
+}
+
 void Improvement::add(const std::string& id, const Progress& progress)
 {
     const auto& effect = effectNamed(id);
@@ -112,9 +144,12 @@ void Improvement::push(Rung rung, const Progress& progress)
         rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, progress); }, data_);
     };
     judge();
-    // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
+    // Before something is called unknown the model is to be as good as it can be: where its simulation leaves much more than laws that were fed, it
+    // is fitted to that.
+    constexpr double muchMore = 1.5;
     if (const auto* record = std::get_if<Record>(&data_);
-        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0) {
+        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0
+        && rung.comparison.chi > muchMore * rung.fit.costPerResidual) {
         auto better = rung.model;
         if (const auto run = fit(better, *record, estimationSections(*record), options_.diagnose.fit, progress); run.usable) {
             rung.model = std::move(better);
@@ -122,13 +157,16 @@ void Improvement::push(Rung rung, const Progress& progress)
             judge();
         }
     }
+    keep(std::move(rung));
+}
+
+void Improvement::keep(Rung rung)
+{
     rung.diagnosis.problems = report_.problems;
     ladder_.rungs.push_back(std::move(rung));
     const auto& diagnosis = ladder_.rungs.back().diagnosis;
     ladder_.verdict = diagnosis.verdict;
     ladder_.sentence = diagnosis.sentence;
-    if (options_.finished)
-        options_.finished(ladder_.rungs.back());
 }
 
 void Improvement::undo()

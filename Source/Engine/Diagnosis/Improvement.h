@@ -15,7 +15,7 @@ struct ImproveOptions {
     DiagnoseOptions diagnose;
     std::vector<std::string> with;   ///< effects that the first model has already
     int maximumRungs = 8;
-    std::function<void(const Rung&)> finished;   ///< called with each rung once its diagnosis is known; may be empty
+    std::function<void(const Rung&)> finished;   ///< called by improve() with each rung once its diagnosis is known; may be empty
 };
 
 /// A take and the ladder that grows on it a rung at a time: what `improve` climbs by itself, and a person by hand. Long work reports and
@@ -31,6 +31,10 @@ public:
     /// The first rung: the base, with the effects asked for in ImproveOptions::with. Not for a take that is unfit for use.
     void begin(const Progress& = {});
 
+    /// Puts in at once what the catalogue explains together, where the first rung's diagnosis speaks for several effects: the rungs from the base to
+    /// there, the largest fall of the error first. False, and nothing done, where it speaks for one at most, and of a take without periods.
+    bool addTogether(const Progress& = {});
+
     /// Another rung: the effect is put into the last model, everything is refitted. Throws Error (data) when the model has the effect
     /// already or can't have it.
     void add(const std::string& effect, const Progress& = {});
@@ -44,6 +48,7 @@ public:
 
 private:
     void push(Rung, const Progress&);
+    void keep(Rung);
 
     ImproveOptions options_;
     std::variant<Record, Spectra> data_;

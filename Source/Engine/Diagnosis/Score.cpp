@@ -2,102 +2,21 @@
 #include "Engine/Diagnosis/Score.h"
 
 #include "Engine/Diagnosis/Trial.h"
+#include "Engine/Diagnosis/Vote.h"
 #include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Curve.h"
 #include "Engine/Driver/FeedbackError.h"
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Parallel.h"
 #include "Engine/Driver/Seen.h"
-#include "Engine/Driver/Simulate.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace excursion {
 namespace {
 
-/// Normal equations on sections to estimate on and on those that were held out, by channel and summed.
-struct Sums {
-    NormalEquations estimation, validation;
-    std::vector<NormalEquations> byChannel;     // of the validation sections
-    std::map<int, NormalEquations> byLevel;     // of the estimation sections
-    std::vector<ErrorPower> power;              // of the validation sections
-    bool finite = true;
-};
-
-Sums sum(const Model& model, const Record& record, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active,
-         const ScoreOptions& options, const Progress& progress)
-{
-    Sums sums;
-    sums.byChannel.resize(record.channels.size());
-    sums.power.resize(record.channels.size());
-    OutputErrorOptions run;
-    run.substeps = options.substeps;
-    run.threads = options.threads;
-    const auto held = validationSections(record);
-    for (const auto n : held)
-        if (std::find(sections.begin(), sections.end(), n) == sections.end())
-            sections.push_back(n);
-    const auto fits = quickError(model, record, sections, active, run, progress);
-    for (std::size_t k = 0; k < fits.size(); ++k) {
-        const auto n = sections[k];
-        if (!fits[k].finite) {
-            sums.finite = false;
-            return sums;
-        }
-        const bool validates = std::find(held.begin(), held.end(), n) != held.end();
-        for (std::size_t c = 0; c < record.channels.size(); ++c) {
-            if (!record.sections[n].validation) {
-                sums.estimation.add(fits[k].channels[c]);
-                sums.byLevel[record.sections[n].level].add(fits[k].channels[c]);
-            }
-            if (validates) {
-                sums.validation.add(fits[k].channels[c]);
-                sums.byChannel[c].add(fits[k].channels[c]);
-                sums.power[c].error += fits[k].power[c].error;
-                sums.power[c].measured += fits[k].power[c].measured;
-            }
-        }
-    }
-    addPrior(model, active, sums.estimation);
-    return sums;
-}
-
-double predictedCost(const NormalEquations& e, const Eigen::VectorXd& d)
-{
-    return std::max(0.0, e.cost + 2.0 * e.g.dot(d) + d.dot(e.N * d));
-}
-
 double decibels(double error, double measured) { return 10.0 * std::log10(std::max(error / std::max(measured, 1e-300), 1e-30)); }
-
-/// How much more of each level would be explained if these strengths, which a step d has set for all levels, had values of their own there.
-double gainByLevel(const Sums& sums, const Eigen::VectorXd& d, const std::vector<Eigen::Index>& strengths)
-{
-    double gain = 0.0;
-    for (const auto& [level, whole] : sums.byLevel) {
-        auto own = whole;
-        own.g += own.N * d;
-        const auto e = gaussNewtonStep(own, strengths);
-        gain -= 2.0 * own.g.dot(e) + e.dot(own.N * e);
-    }
-    return gain;
-}
-
-/// Indices of the strengths of component k, as positions in `active`.
-std::vector<Eigen::Index> strengthPositions(const Model& model, std::size_t k, const std::vector<Eigen::Index>& active)
-{
-    Eigen::Index first = 0;
-    for (std::size_t j = 0; j < k; ++j)
-        first += static_cast<Eigen::Index>(model.components[j].parameters.size());
-    std::vector<Eigen::Index> positions;
-    for (std::size_t j = 0; j < model.components[k].parameters.size(); ++j)
-        if (const auto& p = model.components[k].parameters[j]; p.strength && p.free) {
-            const auto index = first + static_cast<Eigen::Index>(j);
-            positions.push_back(std::lower_bound(active.begin(), active.end(), index) - active.begin());
-        }
-    return positions;
-}
 
 /// The step of the model's own parameters and of the strengths of component k. A strength that it would push below its lower bound stays there;
 /// when all of them do the effect is absent, and the step is none.
@@ -125,15 +44,20 @@ Eigen::VectorXd feasibleStep(const NormalEquations& normal, const Model& model, 
     return Eigen::VectorXd::Zero(normal.g.size());
 }
 
-/// The model with its newest effect, which is linear, in the shape that was found, at zero strength.
-Model shapedAs(const Model& shaped, Model model)
+const Component& componentOf(const Model& model, const Effect& effect)
 {
-    auto& parameters = model.components.back().parameters;
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-        const auto& found = shaped.components.back().parameters[k];
-        parameters[k].free = found.free;
-        if (!parameters[k].strength)
-            parameters[k].value = found.value;
+    return *std::find_if(model.components.begin(), model.components.end(), [&](const Component& c) { return c.effect == &effect; });
+}
+
+/// The model with its newest effect, which is linear, in the shape that was found, at zero strength.
+Model shapedAs(const Component& found, Model model)
+{
+    auto& newest = model.components.back();
+    newest.extent = found.extent;
+    for (std::size_t k = 0; k < newest.parameters.size(); ++k) {
+        newest.parameters[k].free = found.parameters[k].free;
+        if (!newest.parameters[k].strength)
+            newest.parameters[k].value = found.parameters[k].value;
     }
     return model;
 }
@@ -150,26 +74,35 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         std::size_t component;
     };
     std::vector<Entry> entries;
+    const auto consider = [&](Model candidate, Model byResponse) {
+        augmented.components.push_back(candidate.components.back());
+        entries.push_back({std::move(candidate), std::move(byResponse), augmented.components.size() - 1});
+    };
     const auto seen = seenIn(record);
+    std::vector<Model> searched;   // with a linear effect, whose shape the responses tell at once: in time every start would carry a memory of its own
     for (const auto* effect : catalogue()) {
         if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
             continue;
-        const auto consider = [&](Model candidate, Model byResponse) {
-            augmented.components.push_back(candidate.components.back());
-            entries.push_back({std::move(candidate), std::move(byResponse), augmented.components.size() - 1});
-        };
-        if (effect->linear()) {
-            // The responses tell its shape at once; every start would carry a memory of its own through the simulation.
-            const auto plain = withEffect(model, *effect, extent);
-            if (auto shaped = plain; fitNewestByResponse(shaped, record).usable)
-                consider(shapedAs(shaped, plain), shaped);
-            else
-                consider(plain, {});
-        } else {
+        const auto* known = options.shapes && options.shapes->has(effect->id()) ? &componentOf(*options.shapes, *effect) : nullptr;
+        if (effect->linear() && known)
+            consider(shapedAs(*known, withEffect(model, *effect, extent)), {});
+        else if (effect->linear() && !options.shapes)
+            searched.push_back(withEffect(model, *effect, extent));
+        else if (!effect->linear())
             for (std::size_t start = 0; start < effect->starts(extent).size(); ++start)
                 consider(withEffect(model, *effect, extent, start), {});
-        }
     }
+    std::vector<Model> found(searched.size());
+    inParallel(searched.size(), options.threads, progress, [&](std::size_t k) {
+        if (auto shaped = searched[k]; fitNewestByResponse(shaped, record).usable)
+            found[k] = std::move(shaped);
+        return true;
+    });
+    for (std::size_t k = 0; k < searched.size(); ++k)
+        if (found[k].components.empty())
+            consider(searched[k], {});
+        else
+            consider(shapedAs(found[k].components.back(), searched[k]), found[k]);
     // Shapes do not matter at zero strength: only the model's own parameters and the strengths have a sensitivity.
     std::vector<Eigen::Index> own, active;
     const auto parameters = parametersOf(augmented);
@@ -192,7 +125,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
 
     progress.at(0.1, "testing every effect of the catalogue");
     // Who the culprit may be shows in one realization a level; all of them would only tell it more exactly.
-    const auto sums = sum(augmented, record, trialSections(record, 1), active, options, progress);
+    const auto sums = sumsOf(augmented, record, trialSections(record, 1), active, options, progress);
     ScoreResult result;
     if (!sums.finite)
         throw Error(Error::Kind::numerical, "The model runs away on this take, so nothing can be said about what it lacks; fit it again.");
@@ -201,7 +134,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
 
     std::vector<Eigen::Index> together = own;
     for (const auto& entry : entries) {
-        const auto positions = strengthPositions(augmented, entry.component, active);
+        const auto positions = strengthPlaces(augmented, entry.component, active);
         together.insert(together.end(), positions.begin(), positions.end());
         const auto d = feasibleStep(sums.estimation, augmented, entry.component, own, positions);
         Score score;
@@ -214,7 +147,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         }
         // A base that has settled on a part of what the effect does leaves no small step to it.
         if (!entry.byResponse.components.empty())
-            if (const auto there = sum(entry.byResponse, record, {}, {}, options, {}); there.finite && there.validation.cost < score.chi * rows) {
+            if (const auto there = sumsOf(entry.byResponse, record, {}, {}, options, {}); there.finite && there.validation.cost < score.chi * rows) {
                 score.chi = there.validation.cost / rows;
                 for (std::size_t c = 0; c < record.channels.size(); ++c)
                     score.errorDb[record.channels[c]] = decibels(there.power[c].error, there.power[c].measured);
@@ -238,22 +171,16 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     }
     std::sort(together.begin(), together.end());
     const auto all = gaussNewtonStep(sums.estimation, together);
-    const double noise = record.noiseKnown ? rows : 0.0, least = std::max({predictedCost(sums.validation, all), noise, 1e-300});
-    for (auto& s : result.scores) {
-        if (!hasPeriods(record))
-            break;   // a simulation's sensitivities say little of several strong effects at once
-        std::vector<Eigen::Index> strengths, rest;
-        for (const auto& entry : entries)
-            if (entry.model.components.back().effect == s.effect) {
-                const auto positions = strengthPositions(augmented, entry.component, active);
-                strengths.insert(strengths.end(), positions.begin(), positions.end());
-            }
-        std::sort(strengths.begin(), strengths.end());
-        std::set_difference(together.begin(), together.end(), strengths.begin(), strengths.end(), std::back_inserter(rest));
-        const auto without = gaussNewtonStep(sums.estimation, rest);
-        s.uniqueDb = 10.0 * std::log10(std::max({predictedCost(sums.validation, without), noise, 1e-300}) / least);
-        const double explained = predictedCost(sums.estimation, without) - predictedCost(sums.estimation, all);
-        s.inconsistency = gainByLevel(sums, all, strengths) / std::max(explained, 1e-300);
+    if (hasPeriods(record)) {   // a simulation's sensitivities say little of several strong effects at once
+        for (auto& s : result.scores) {
+            std::vector<Eigen::Index> strengths;
+            for (const auto& entry : entries)
+                if (entry.model.components.back().effect == s.effect) {
+                    const auto places = strengthPlaces(augmented, entry.component, active);
+                    strengths.insert(strengths.end(), places.begin(), places.end());
+                }
+            s.vote = voteOn(sums, together, strengths, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size())), record.noiseKnown);
+        }
     }
     for (const auto& channel : sums.byChannel) {
         const double channelRows = std::max(1.0, channel.rows);
@@ -262,67 +189,6 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     }
     std::stable_sort(result.scores.begin(), result.scores.end(), [](const Score& a, const Score& b) { return a.chi < b.chi; });
     return result;
-}
-
-std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, int by)
-{
-    std::vector<std::string> raised;
-    // All laws with room are raised at once; then each is judged on its own columns.
-    Model higher = model;
-    std::vector<std::size_t> candidates;
-    for (std::size_t k = 1; k < model.components.size(); ++k)
-        if (model.components[k].effect->law() && model.components[k].extent.degree + by <= curve::maximumDegree) {
-            higher = withDegree(std::move(higher), k, model.components[k].extent.degree + by);
-            candidates.push_back(k);
-        }
-    if (candidates.empty())
-        return raised;
-    const auto active = freeParameters(higher);
-    const auto sums = sum(higher, record, estimationSections(record), active, options, {});
-    if (!sums.finite)
-        return raised;
-    std::vector<Eigen::Index> old;
-    std::vector<std::vector<Eigen::Index>> added(higher.components.size());
-    Eigen::Index position = 0, index = 0;
-    const auto visit = [&](const Parameter& p, bool isNew, std::size_t k) {
-        if (p.free) {
-            if (isNew)
-                added[k].push_back(position);
-            else
-                old.push_back(position);
-            ++position;
-        }
-        ++index;
-    };
-    for (std::size_t k = 0; k < higher.components.size(); ++k)
-        for (const auto& p : higher.components[k].parameters) {
-            const auto& before = model.components[k].parameters;
-            const bool isNew = std::none_of(before.begin(), before.end(), [&](const Parameter& b) { return b.name == p.name; });
-            visit(p, isNew, k);
-        }
-    for (const auto& p : higher.path.parameters)
-        visit(p, false, 0);
-    // Twice what noise alone gives, about the 95 % point of chi-square: a higher price would leave a bias of several standard errors out
-    // of the confidence bands, a lower one would let the law wander where the record seldom is.
-    const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
-    const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
-    const double price = 2.4 * unit;
-    // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
-    constexpr double nearNoise = 4.0;
-    const double least = record.noiseKnown && unit < nearNoise ? 0.0 : 0.02 * now;
-    Model result = model;
-    for (const auto k : candidates) {
-        auto use = old;
-        use.insert(use.end(), added[k].begin(), added[k].end());
-        std::sort(use.begin(), use.end());
-        const double then = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, use));
-        if (now - then > std::max(least, price * static_cast<double>(added[k].size()))) {
-            result = withDegree(std::move(result), k, model.components[k].extent.degree + by);
-            raised.push_back(model.components[k].effect->id());
-        }
-    }
-    model = std::move(result);
-    return raised;
 }
 
 } // namespace excursion

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Diagnosis/Sums.h"
+#include "Engine/Diagnosis/Vote.h"
 #include "Engine/Driver/Model.h"
-#include "Engine/Driver/OutputError.h"
 #include "Engine/Driver/Record.h"
 
 #include <map>
@@ -17,16 +18,8 @@ struct Score {
     Model model;
     Model byResponse;                          ///< of a linear effect: as a search on the frequency responses found it; without components when none was made
     double chi = 0.0;                          ///< predicted, all channels
-    double uniqueDb = 0.0;                     ///< by how much all candidates together would leave more without this one: what it alone explains. 0 without periods
-    double inconsistency = 0.0;                ///< how much more it would explain with strengths of its own at each level, as a share of that: a law is
-                                               ///< the same at all levels, what is bent to stand for something else is not
+    Vote vote;                                 ///< of all candidates at once; none without periods
     std::map<Quantity, double> errorDb;        ///< predicted, by channel
-};
-
-struct ScoreOptions {
-    int substeps = 1;
-    unsigned threads = 2;
-    int degree = 6;      ///< of the laws that are tried
 };
 
 struct ScoreResult {
@@ -40,9 +33,5 @@ struct ScoreResult {
 ///     d = argmin |r + J d|^2   over the model's parameters and the effect's strengths
 /// predicts the residual r + J d. Levels, channels and sections all count, weighted by their noise.
 ScoreResult score(const Model&, const Record&, const ScoreOptions&, const Progress& = {});
-
-/// Raises the degree of the model's laws by `by` where the same test says that the new coefficients pay for themselves; returns
-/// the effects that were raised. The new coefficients start at zero.
-std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&, int by = 4);
 
 } // namespace excursion

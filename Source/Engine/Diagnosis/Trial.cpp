@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Trial.h"
 
+#include "Engine/Diagnosis/RaiseDegrees.h"
 #include "Engine/Driver/FeedbackError.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/OutputError.h"
@@ -36,7 +37,17 @@ OutputErrorOptions withoutGradient(const FitOptions& options)
     return run;
 }
 
-/// A fit with laws that are fed; where what it finds runs away when it is simulated, a fit that simulates in its place.
+/// The strengths of the newest component scaled by a factor.
+Model scaled(Model model, double factor)
+{
+    for (auto& p : model.components.back().parameters)
+        if (p.strength)
+            p.value *= factor;
+    return model;
+}
+
+} // namespace
+
 FitSummary fitFed(Model& model, const Record& record, const std::vector<std::size_t>& sections, FitOptions options, const Progress& progress)
 {
     auto found = model;
@@ -48,17 +59,6 @@ FitSummary fitFed(Model& model, const Record& record, const std::vector<std::siz
     model = std::move(found);
     return summary;
 }
-
-/// The strengths of the newest component scaled by a factor.
-Model scaled(Model model, double factor)
-{
-    for (auto& p : model.components.back().parameters)
-        if (p.strength)
-            p.value *= factor;
-    return model;
-}
-
-} // namespace
 
 std::vector<std::size_t> trialSections(const Record& record, int realizations)
 {

@@ -11,6 +11,9 @@ namespace excursion {
 /// Sections for a quick fit: of each level up to `realizations` of those not held out.
 std::vector<std::size_t> trialSections(const Record&, int realizations);
 
+/// A fit with laws that are fed; where what it finds runs away when it is simulated, a fit that simulates in its place.
+FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& sections, FitOptions, const Progress& = {});
+
 /// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it so
 /// far.
 /// @param model  the result: as proposed, with zero strength, when nothing helps

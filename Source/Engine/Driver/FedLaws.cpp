@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/FedLaws.h"
 
-#include "Engine/Driver/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -61,10 +60,9 @@ Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::
     for (std::size_t k = first; k <= last; ++k)
         frequency.push_back(resolution * (k > 0 ? static_cast<double>(k) : nearlyRest));
     Paths paths {{}, {}, first, linearize(model).lateness};
-    inParallel(2, threads, {}, [&](std::size_t n) {
-        (n == 0 ? paths.fromVoltage : paths.fromForce) = respond(model, quantities, frequency, withGradient, n == 0 ? Drives::terminals : Drives::cone);
-        return true;
-    });
+    auto responses = respondToEach(model, quantities, frequency, {Drives::terminals, Drives::cone}, withGradient, threads);
+    paths.fromVoltage = std::move(responses[0]);
+    paths.fromForce = std::move(responses[1]);
     return paths;
 }
 

@@ -2,6 +2,7 @@
 #include "Engine/Driver/Linearize.h"
 
 #include "Engine/Driver/Dynamics.h"
+#include "Engine/Driver/Parallel.h"
 #include "Engine/Driver/SchurResolvent.h"
 #include "Engine/Error.h"
 
@@ -108,6 +109,29 @@ Observed observe(const Model& model, const Linearization& linear, Quantity quant
     return observed;
 }
 
+/// Places of the linear part's states and parameters among those of the whole, and how many these are.
+struct LinearAmongAll {
+    std::vector<Eigen::Index> states {0, 1, 2}, parameters;
+    Eigen::Index order = 3, count = 0;
+};
+
+LinearAmongAll linearAmongAll(const Model& model)
+{
+    LinearAmongAll places;
+    for (const auto& component : model.components) {
+        const bool linear = component.effect->linear();
+        for (int k = component.effect->memorySize(component.extent); k > 0; --k, ++places.order)
+            if (linear)
+                places.states.push_back(places.order);
+        for (std::size_t k = 0; k < component.parameters.size(); ++k, ++places.count)
+            if (linear)
+                places.parameters.push_back(places.count);
+    }
+    for (std::size_t k = 0; k < model.path.parameters.size(); ++k)
+        places.parameters.push_back(places.count++);
+    return places;
+}
+
 /// Of a model that is linear.
 Linearization linearForm(const Model& model, bool withGradient, Drives drives)
 {
@@ -156,39 +180,74 @@ Linearization linearForm(const Model& model, bool withGradient, Drives drives)
     return result;
 }
 
+/// The responses of a linear part to what drives it, once z = (s I - A)^-1 B is known.
+struct DrivenResponse {
+    Linearization linear;
+    std::vector<Observed> observed;
+    std::vector<Place> inside, outside;
+
+    DrivenResponse(const Model& model, Linearization part, const std::vector<Quantity>& quantities) : linear(std::move(part))
+    {
+        for (const auto quantity : quantities)
+            observed.push_back(observe(model, linear, quantity));
+        inside = placesOf(linear.dA, linear.dB);
+        outside = placesOf(linear.dC, linear.dD);
+    }
+
+    std::complex<double> factor(std::size_t q, std::complex<double> s) const
+    {
+        std::complex<double> result = observed[q].gain;
+        for (int k = 0; k < observed[q].order; ++k)
+            result *= s;
+        return observed[q].delayed ? result * std::exp(-s * linear.lateness) : result;
+    }
+
+    std::complex<double> value(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z) const
+    {
+        return factor(q, s) * ((observed[q].row * z)(0) + observed[q].direct);
+    }
+
+    /// d(C R B + D) = C R (dA R B + dB) + dC R B + dD with R = (sI - A)^-1 and left = C R.
+    void differentiate(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z, const Eigen::VectorXcd& left, std::complex<double> value,
+                       const std::vector<Eigen::Index>& parameters, Eigen::MatrixXcd::RowXpr row) const
+    {
+        const auto by = factor(q, s);
+        const auto act = [&](const Place& place, std::complex<double> through) {
+            const auto moved = through * (place.column < z.size() ? z[place.column] : std::complex<double>(1.0));
+            for (const auto& [parameter, slope] : place.slopes)
+                row[parameters[static_cast<std::size_t>(parameter)]] += slope * moved;
+        };
+        for (const auto& place : inside)
+            act(place, by * left[place.row]);
+        for (const auto& place : outside)
+            if (place.row == observed[q].source)
+                act(place, by);
+        if (observed[q].delayed)
+            for (std::size_t k = 0; k < linear.dLateness.size(); ++k)
+                row[parameters[k]] -= s * linear.dLateness[k] * value;
+    }
+};
+
 } // namespace
 
 Linearization linearize(const Model& model, bool withGradient, Drives drives)
 {
-    // Places of the linear part's states and parameters among those of the whole.
-    std::vector<Eigen::Index> states {0, 1, 2}, parameters;
-    Eigen::Index n = 3, count = 0;
-    for (const auto& component : model.components) {
-        const bool linear = component.effect->linear();
-        for (int k = component.effect->memorySize(component.extent); k > 0; --k, ++n)
-            if (linear)
-                states.push_back(n);
-        for (std::size_t k = 0; k < component.parameters.size(); ++k, ++count)
-            if (linear)
-                parameters.push_back(count);
-    }
-    for (std::size_t k = 0; k < model.path.parameters.size(); ++k)
-        parameters.push_back(count++);
+    const auto [states, parameters, n, count] = linearAmongAll(model);
     const auto part = linearForm(linearPart(model), withGradient, drives);
     if (static_cast<Eigen::Index>(states.size()) == n && static_cast<Eigen::Index>(parameters.size()) == count)
         return part;
 
-    const auto square = [&](const Eigen::MatrixXd& A) {
+    const auto square = [&states = states, n = n](const Eigen::MatrixXd& A) {
         Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n, n);
         whole(states, states) = A;
         return whole;
     };
-    const auto wide = [&](const Eigen::MatrixXd& C) {
+    const auto wide = [&states = states, n = n](const Eigen::MatrixXd& C) {
         Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(C.rows(), n);
         whole(Eigen::all, states) = C;
         return whole;
     };
-    const auto tall = [&](const Eigen::VectorXd& B) {
+    const auto tall = [&states = states, n = n](const Eigen::VectorXd& B) {
         Eigen::VectorXd whole = Eigen::VectorXd::Zero(n);
         whole(states) = B;
         return whole;
@@ -235,54 +294,53 @@ bool isStable(const Model& model)
 std::vector<Response> respond(const Model& model, const std::vector<Quantity>& quantities,
                               const std::vector<double>& frequency, bool withGradient, Drives drives)
 {
+    return respondToEach(model, quantities, frequency, {drives}, withGradient).front();
+}
+
+std::vector<std::vector<Response>> respondToEach(const Model& model, const std::vector<Quantity>& quantities, const std::vector<double>& frequency,
+                                                 const std::vector<Drives>& drives, bool withGradient, unsigned threads)
+{
     using Complex = std::complex<double>;
-    const auto linear = linearize(model, withGradient, drives);
-    const auto n = linear.A.rows();
-    const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
-    const Eigen::VectorXcd B = linear.B.cast<Complex>();
-    std::vector<Observed> observed;
-    std::vector<Response> responses(quantities.size());
-    for (std::size_t q = 0; q < quantities.size(); ++q) {
-        observed.push_back(observe(model, linear, quantities[q]));
-        responses[q].value.resize(frequency.size());
-        if (withGradient)
-            responses[q].gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), count);
-    }
-    const auto inside = placesOf(linear.dA, linear.dB), outside = placesOf(linear.dC, linear.dD);
-    SchurResolvent resolvent(linear.A);
-    for (std::size_t f = 0; f < frequency.size(); ++f) {
-        const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
-        resolvent.moveTo(s);
-        const Eigen::VectorXcd z = resolvent.times(B);
-        const auto driven = [&](const Place& place) { return place.column < n ? z[place.column] : Complex(1.0); };
-        for (std::size_t q = 0; q < quantities.size(); ++q) {
-            const auto& of = observed[q];
-            Complex factor = of.gain;
-            for (int k = 0; k < of.order; ++k)
-                factor *= s;
-            if (of.delayed)
-                factor *= std::exp(-s * linear.lateness);
-            const Complex value = factor * ((of.row * z)(0) + of.direct);
-            responses[q].value[f] = value;
-            if (!withGradient)
-                continue;
-            // d(C R B + D) = C R (dA R B + dB) + dC R B + dD with R = (sI - A)^-1.
-            const Eigen::VectorXcd left = resolvent.row(of.row);
-            auto row = responses[q].gradient.row(static_cast<Eigen::Index>(f));
-            const auto act = [&row](const Place& place, Complex through) {
-                for (const auto& [parameter, slope] : place.slopes)
-                    row[parameter] += slope * through;
-            };
-            for (const auto& place : inside)
-                act(place, factor * left[place.row] * driven(place));
-            for (const auto& place : outside)
-                if (place.row == of.source)
-                    act(place, factor * driven(place));
-            if (of.delayed)
-                for (Eigen::Index k = 0; k < count; ++k)
-                    row[k] -= s * linear.dLateness[static_cast<std::size_t>(k)] * value;
+    const auto among = linearAmongAll(model);   // laws and their memories have no part in it
+    const auto small = linearPart(model);
+    std::vector<DrivenResponse> driven;
+    for (const auto drive : drives)
+        driven.emplace_back(model, linearForm(small, withGradient, drive), quantities);
+    const SchurResolvent resolvent(driven.front().linear.A);
+    std::vector<Eigen::VectorXcd> inputs, outputs;
+    for (const auto& d : driven)
+        inputs.push_back(resolvent.turnedRight(d.linear.B));
+    for (const auto& of : driven.front().observed)
+        outputs.push_back(resolvent.turnedLeft(of.row));
+    std::vector<std::vector<Response>> responses(drives.size(), std::vector<Response>(quantities.size()));
+    for (auto& ofDrive : responses)
+        for (auto& response : ofDrive) {
+            response.value.resize(frequency.size());
+            if (withGradient)
+                response.gradient = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(frequency.size()), among.count);
         }
-    }
+    const std::size_t parts = std::max(1U, threads);
+    inParallel(parts, threads, {}, [&](std::size_t part) {
+        auto at = resolvent;
+        std::vector<Eigen::VectorXcd> left(quantities.size());
+        for (std::size_t f = part * frequency.size() / parts; f < (part + 1) * frequency.size() / parts; ++f) {
+            const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
+            at.moveTo(s);
+            if (withGradient)
+                for (std::size_t q = 0; q < quantities.size(); ++q)
+                    left[q] = at.row(outputs[q]);
+            for (std::size_t d = 0; d < driven.size(); ++d) {
+                const Eigen::VectorXcd z = at.column(inputs[d]);
+                for (std::size_t q = 0; q < quantities.size(); ++q) {
+                    responses[d][q].value[f] = driven[d].value(q, s, z);
+                    if (withGradient)
+                        driven[d].differentiate(q, s, z, left[q], responses[d][q].value[f], among.parameters,
+                                                responses[d][q].gradient.row(static_cast<Eigen::Index>(f)));
+                }
+            }
+        }
+        return true;
+    });
     return responses;
 }
 

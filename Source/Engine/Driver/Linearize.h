@@ -50,4 +50,8 @@ struct Response {
 std::vector<Response> respond(const Model&, const std::vector<Quantity>& quantities,
                               const std::vector<double>& frequency, bool withGradient = false, Drives = Drives::terminals);
 
+/// The same for several ways to drive the model, [drive][quantity]: what they share is worked out once.
+std::vector<std::vector<Response>> respondToEach(const Model&, const std::vector<Quantity>& quantities, const std::vector<double>& frequency,
+                                                 const std::vector<Drives>&, bool withGradient = false, unsigned threads = 1);
+
 } // namespace excursion

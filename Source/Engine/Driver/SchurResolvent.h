@@ -31,22 +31,23 @@ public:
         }
     }
 
-    /// (s I - A)^-1 times a vector or a matrix.
-    template <class Right>
-    auto times(const Right& right) const
+    /// B, and a row c, as column() and row() take them at every s.
+    Eigen::VectorXcd turnedRight(const Eigen::VectorXd& B) const { return into_ * B; }
+    Eigen::VectorXcd turnedLeft(const Eigen::RowVectorXd& c) const { return from_.transpose() * c.transpose(); }
+
+    /// (s I - A)^-1 B.
+    Eigen::VectorXcd column(Eigen::VectorXcd y) const
     {
-        auto y = (into_ * right).eval();
-        for (Eigen::Index k = y.rows() - 1; k >= 0; --k) {
-            y.row(k) *= overDiagonal_[k];
-            y.topRows(k).noalias() += T_.col(k).head(k) * y.row(k);
+        for (Eigen::Index k = y.size() - 1; k >= 0; --k) {
+            y[k] *= overDiagonal_[k];
+            y.head(k) += y[k] * T_.col(k).head(k);
         }
-        return (from_ * y).eval();
+        return from_ * y;
     }
 
-    /// c (s I - A)^-1 of a row c, as a column.
-    Eigen::VectorXcd row(const Eigen::RowVectorXd& c) const
+    /// c (s I - A)^-1, as a column.
+    Eigen::VectorXcd row(Eigen::VectorXcd y) const
     {
-        Eigen::VectorXcd y = from_.transpose() * c.transpose();
         const auto n = y.size();
         for (Eigen::Index k = 0; k < n; ++k) {
             y[k] *= overDiagonal_[k];

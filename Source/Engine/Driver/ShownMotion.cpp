@@ -4,6 +4,7 @@
 #include "Engine/Signal/Fft.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace excursion {
@@ -12,6 +13,15 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double sure = 3.0;   // times its noise: a line that is told
+
+/// s^n, n times over: a power of complex numbers costs a logarithm.
+Complex repeated(Complex s, int n)
+{
+    Complex result = 1.0;
+    for (int k = 0; k < std::abs(n); ++k)
+        result *= s;
+    return n < 0 ? 1.0 / result : result;
+}
 
 /// A measured value with its variance.
 struct Told {
@@ -29,7 +39,7 @@ Told displacementAt(const Record& record, const Section& section, std::size_t li
     double weights = 0.0;
     for (std::size_t c = 0; c < record.channels.size(); ++c)
         if (const auto order = integrationsToDisplacement(record.channels[c])) {
-            const auto scale = std::pow(s, -*order);
+            const auto scale = repeated(s, -*order);
             const Told told {scale * section.measured[c][line], std::norm(scale) * section.deviation[c][line] * section.deviation[c][line]};
             if (told.isSure()) {
                 sum += told.value / told.variance;
@@ -46,7 +56,7 @@ std::vector<double> played(const Spectrum& spectrum, std::size_t N, int derivati
     Spectrum wide(fine * N / 2 + 1, 0.0);
     const double step = 2.0 * std::numbers::pi * sampleRate / static_cast<double>(N);
     for (std::size_t k = 0; k < std::min(spectrum.size(), (N + 1) / 2); ++k)
-        wide[k] = spectrum[k] * static_cast<double>(fine) * std::pow(Complex(0.0, step * static_cast<double>(k)), derivative);
+        wide[k] = spectrum[k] * static_cast<double>(fine) * repeated(Complex(0.0, step * static_cast<double>(k)), derivative);
     if (derivative > 0)
         wide[0] = 0.0;
     return inverseFft(wide, fine * N);

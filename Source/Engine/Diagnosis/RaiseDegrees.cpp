@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/RaiseDegrees.h"
+
+#include "Engine/Driver/Curve.h"
+#include "Engine/Driver/LeastSquares.h"
+
+#include <algorithm>
+
+namespace excursion {
+
+std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, int by)
+{
+    std::vector<std::string> raised;
+    // All laws with room are raised at once; then each is judged on its own columns.
+    Model higher = model;
+    std::vector<std::size_t> candidates;
+    for (std::size_t k = 1; k < model.components.size(); ++k)
+        if (model.components[k].effect->law() && model.components[k].extent.degree + by <= curve::maximumDegree) {
+            higher = withDegree(std::move(higher), k, model.components[k].extent.degree + by);
+            candidates.push_back(k);
+        }
+    if (candidates.empty())
+        return raised;
+    const auto active = freeParameters(higher);
+    const auto sums = sumsOf(higher, record, estimationSections(record), active, options, {});
+    if (!sums.finite)
+        return raised;
+    std::vector<Eigen::Index> old;
+    std::vector<std::vector<Eigen::Index>> added(higher.components.size());
+    Eigen::Index position = 0, index = 0;
+    const auto visit = [&](const Parameter& p, bool isNew, std::size_t k) {
+        if (p.free) {
+            if (isNew)
+                added[k].push_back(position);
+            else
+                old.push_back(position);
+            ++position;
+        }
+        ++index;
+    };
+    for (std::size_t k = 0; k < higher.components.size(); ++k)
+        for (const auto& p : higher.components[k].parameters) {
+            const auto& before = model.components[k].parameters;
+            const bool isNew = std::none_of(before.begin(), before.end(), [&](const Parameter& b) { return b.name == p.name; });
+            visit(p, isNew, k);
+        }
+    for (const auto& p : higher.path.parameters)
+        visit(p, false, 0);
+    // Twice what noise alone gives, about the 95 % point of chi-square: a higher price would leave a bias of several standard errors out
+    // of the confidence bands, a lower one would let the law wander where the record seldom is.
+    const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
+    const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
+    const double price = 2.4 * unit;
+    // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
+    constexpr double nearNoise = 4.0;
+    const double least = record.noiseKnown && unit < nearNoise ? 0.0 : 0.02 * now;
+    Model result = model;
+    for (const auto k : candidates) {
+        auto use = old;
+        use.insert(use.end(), added[k].begin(), added[k].end());
+        std::sort(use.begin(), use.end());
+        const double then = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, use));
+        if (now - then > std::max(least, price * static_cast<double>(added[k].size()))) {
+            result = withDegree(std::move(result), k, model.components[k].extent.degree + by);
+            raised.push_back(model.components[k].effect->id());
+        }
+    }
+    model = std::move(result);
+    return raised;
+}
+
+} // namespace excursion

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/RungsTo.h"
+
+#include "Engine/Diagnosis/Reason.h"
+#include "Engine/Diagnosis/Score.h"
+#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Driver/Catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+/// The whole with some of its effects only, as many as a model has and one more.
+Model partOf(const Whole& whole, const Model& model, const std::string& more)
+{
+    auto part = whole.model;
+    std::erase_if(part.components, [&](const Component& c) {
+        return &c != &part.components.front() && !model.has(c.effect->id()) && c.effect->id() != more;
+    });
+    part.covariance.resize(0, 0);
+    return part;
+}
+
+/// How sure an effect of the whole is: the share of what would be left without it that it explains, as far as that is the same at all levels.
+double confidenceOf(const Vote& vote) { return std::max(0.0, 1.0 - std::pow(10.0, -vote.uniqueDb / 10.0)) * std::clamp(1.0 - vote.inconsistency, 0.0, 1.0); }
+
+/// What is said of a rung whose next effect is known.
+Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Score>& scores, const Whole& whole)
+{
+    Diagnosis diagnosis;
+    diagnosis.verdict = Verdict::missingEffect;
+    int others = -1;   // besides the next one
+    for (const auto& channel : rung.comparison.channels)
+        diagnosis.error[channel.quantity] = channel.total;
+    for (const auto& candidate : scores) {
+        RankedEffect entry;
+        entry.effect = candidate.effect->id();
+        entry.predictedChi = candidate.chi;
+        entry.predictedErrorDb = candidate.errorDb;
+        entry.vote = candidate.vote;
+        entry.model = candidate.model;
+        auto errorAfter = candidate.errorDb;
+        if (const auto needed = whole.votes.find(entry.effect); needed != whole.votes.end()) {
+            entry.vote = needed->second;
+            entry.significant = true;
+            entry.confidence = confidenceOf(entry.vote);
+            ++others;
+        }
+        if (entry.effect == next.added) {
+            entry.confirmedChi = next.comparison.chi;
+            for (const auto& channel : next.comparison.channels)
+                entry.confirmedErrorDb[channel.quantity] = channel.total.db;
+            errorAfter = entry.confirmedErrorDb;
+            entry.model = next.model;
+        }
+        entry.reason = reasonFor(*candidate.effect, entry.model, rung.comparison, errorAfter);
+        diagnosis.ranking.push_back(std::move(entry));
+    }
+    std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const RankedEffect& a, const RankedEffect& b) {
+        const auto place = [&](const RankedEffect& r) { return r.effect == next.added ? 0 : r.significant ? 1 : 2; };
+        return place(a) != place(b) ? place(a) < place(b) : a.predictedChi < b.predictedChi;
+    });
+    diagnosis.sentence = effectNamed(next.added).title() + " is missing"
+                         + (others > 1   ? ", and " + std::to_string(others) + " other effects explain what it does not."
+                            : others > 0 ? ", and another effect explains what it does not."
+                                         : ".");
+    return diagnosis;
+}
+
+} // namespace
+
+std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, const DiagnoseOptions& options, const Progress& progress)
+{
+    const auto count = static_cast<double>(whole.model.components.size() - base.model.components.size());
+    ScoreOptions test;
+    test.threads = options.fit.threads;
+    test.shapes = &whole.model;
+    FitOptions brief = options.fit;
+    brief.search = {8, 1e-3};
+    std::vector<Rung> rungs {std::move(base)};
+    for (double n = 0.0; n < count; ++n) {
+        const auto part = progress.part(n / count, (n + 1.0) / count);
+        auto& rung = rungs.back();
+        const auto scores = score(rung.model, record, test, part.part(0.0, 0.4)).scores;   // lowest first
+        Rung next;
+        for (const auto& candidate : scores) {
+            if (!whole.model.has(candidate.effect->id()))
+                continue;
+            Rung trial;
+            trial.added = candidate.effect->id();
+            trial.predictedErrorDb = candidate.errorDb;
+            trial.model = partOf(whole, rung.model, trial.added);
+            if (trial.model.components.size() == whole.model.components.size()) {
+                trial.model = whole.model;
+                trial.fit = whole.fit;
+            } else {
+                trial.fit = fitFed(trial.model, record, estimationSections(record), brief, part.part(0.4, 0.9));
+            }
+            trial.comparison = compare(trial.model, record);
+            if (next.added.empty() || trial.comparison.chi < next.comparison.chi)
+                next = std::move(trial);
+            if (next.comparison.chi < rung.comparison.chi)
+                break;   // else another one may go first
+        }
+        rung.diagnosis = diagnosisOf(rung, next, scores, whole);
+        rungs.push_back(std::move(next));
+    }
+    return rungs;
+}
+
+} // namespace excursion

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Driver/OutputError.h"
+#include "Engine/Driver/Record.h"
+
+#include <map>
+#include <vector>
+
+namespace excursion {
+
+struct ScoreOptions {
+    int substeps = 1;
+    unsigned threads = 2;
+    int degree = 6;      ///< of the laws that are tried
+    const Model* shapes = nullptr;   ///< a model that tells the shapes of linear effects; those that it does not have are not tried. None: they are searched for
+};
+
+/// What a model leaves and how that moves with its parameters: normal equations on sections to estimate on and on those that were held out, by
+/// channel, by level and summed.
+struct Sums {
+    NormalEquations estimation, validation;
+    std::vector<NormalEquations> byChannel;     ///< of the validation sections
+    std::map<int, NormalEquations> byLevel;     ///< of the estimation sections
+    std::vector<ErrorPower> power;              ///< of the validation sections
+    bool finite = true;
+};
+
+/// By the quick error of FeedbackError.h.
+/// @param sections  to estimate on; those held out come by themselves
+Sums sumsOf(const Model&, const Record&, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active, const ScoreOptions&,
+            const Progress& = {});
+
+/// What a step d of the parameters leaves, never below zero.
+double predictedCost(const NormalEquations&, const Eigen::VectorXd& d);
+
+/// Places of the free strengths of component k among the active parameters.
+std::vector<Eigen::Index> strengthPlaces(const Model&, std::size_t k, const std::vector<Eigen::Index>& active);
+
+} // namespace excursion
