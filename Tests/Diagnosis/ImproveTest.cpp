@@ -179,6 +179,14 @@ TEST_CASE("What the catalogue does not hold is not given another name", "[improv
     CHECK_THAT(ladder.sentence, Catch::Contains("no effect of the catalogue explains"));
 }
 
+TEST_CASE("A suspension that is bent and creeps is both, in series", "[improve][slow]")
+{
+    // Laws that only add up leave 15 dB more of it.
+    const auto ladder = improve(seedTake({{"stiffness", 0.3}, {"creep", 0.2}}));
+    CHECK(added(ladder) == std::vector<std::string> {"stiffness", "creep"});
+    CHECK(ladder.rungs.back().comparison.chi < 6.0);
+}
+
 TEST_CASE("What is known is named beside what is not", "[improve][slow]")
 {
     const auto ladder = improve(withBentLaser(seedTake({{"force-factor", 0.4}}, {Quantity::current, Quantity::displacement}), 2));

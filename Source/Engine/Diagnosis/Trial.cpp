@@ -93,10 +93,14 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
         }
     }
     // A linear effect shows in the frequency response alone; in time it would creep along the curved valley in which relaxations trade off
-    // against the stiffness.
-    if (!proposed.byResponse.components.empty())
-        if (const double cost = left(proposed.byResponse); cost < lowest)
-            best = proposed.byResponse;
+    // against the stiffness. Beside laws the responses tell no more than where that valley is, so what they say may leave a little more at first.
+    constexpr double near = 2.0, worthIt = 0.8;
+    if (!proposed.byResponse.components.empty() && left(proposed.byResponse) < near * lowest) {
+        model = proposed.byResponse;
+        const auto summary = fitFed(model, record, sections, chosen, progress);
+        if (summary.usable && left(model) < worthIt * lowest)
+            return summary;
+    }
     model = std::move(best);
     return fitFed(model, record, sections, chosen, progress);
 }

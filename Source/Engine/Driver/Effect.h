@@ -67,6 +67,7 @@ struct Parameter {
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
     bool free = true;          ///< may a fit move it
+    bool relaxed = false;      ///< means something beside an effect that relaxes only: zero and not free without one
     bool heard = false;        ///< only the sound shows it: not free where none was measured
     bool strength = false;     ///< an effect whose strengths are all zero is absent
     double prior = std::numeric_limits<double>::infinity();   ///< standard deviation about zero that is plausible beforehand
@@ -156,6 +157,7 @@ public:
     virtual int memorySize(const Extent&) const { return 0; }         ///< extra states
     /// The memory changes little within a period: what it holds was made by the whole take before. Its rate is to be affine in it.
     virtual bool slow() const { return false; }
+    virtual bool relaxes() const { return false; }    ///< yields in the course of time
     /// No parameter moves the memory: what a motion leaves in it is known before any fit.
     virtual bool remembersMotionAlone() const { return false; }
     virtual int coefficientCount(const Extent&) const = 0;

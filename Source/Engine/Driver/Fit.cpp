@@ -245,6 +245,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
     followBase(model);
+    followEffects(model);
     OutputErrorOptions run;
     run.threads = options.threads;
     if (options.fed && hasPeriods(record)) {

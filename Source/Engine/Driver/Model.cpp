@@ -76,10 +76,19 @@ Model makeModel(std::string_view baseId)
     return model;
 }
 
+namespace {
+
+bool relaxes(const Model& model)
+{
+    return std::any_of(model.components.begin(), model.components.end(), [](const Component& c) { return c.effect->relaxes(); });
+}
+
+} // namespace
+
 bool movable(const Model& model, const Parameter& p)
 {
     const bool listens = model.path.parameters[1].free;   // the delay is, where a pressure was measured
-    return p.free && (listens || !p.heard);
+    return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model));
 }
 
 Model withEffect(Model model, const Effect& effect, const Extent& visited, std::size_t start)
@@ -104,6 +113,17 @@ void followBase(Model& model)
     for (auto& component : model.components)
         if (const auto base = component.effect->sizedBy(); !base.empty())
             component.extent.scale = model.baseParameter(base).value;
+}
+
+void followEffects(Model& model)
+{
+    const bool yields = relaxes(model);
+    for (auto& component : model.components)
+        for (auto& p : component.parameters)
+            if (p.relaxed) {
+                p.free = yields;
+                p.value = yields ? p.value : 0.0;
+            }
 }
 
 Model withoutEffect(Model model, std::string_view effectId)

@@ -72,6 +72,9 @@ bool movable(const Model&, const Parameter&);
 Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
 /// Extent::scale of every effect as its base parameter is now.
 void followBase(Model&);
+
+/// Parameters that mean something beside other effects only are free, or zero, as these are there or not.
+void followEffects(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
 Model linearPart(Model);

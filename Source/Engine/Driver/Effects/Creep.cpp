@@ -36,6 +36,7 @@ public:
     }
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
+    bool relaxes() const override { return true; }
 
     std::vector<Parameter> parameters(const Extent& e) const override
     {

@@ -36,7 +36,7 @@ public:
     {
         auto result = curve::parameters(e, "N/m");
         for (int k = 1; k <= yields; ++k)
-            result.push_back({.name = "w" + std::to_string(k), .unit = "1", .lower = 0.0, .upper = 1.0, .prior = plausibleYield});
+            result.push_back({.name = "w" + std::to_string(k), .unit = "1", .lower = 0.0, .upper = 1.0, .relaxed = true, .prior = plausibleYield});
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"K(x)", "N/m", "x", "m", "K"}; }
