@@ -144,12 +144,9 @@ void Improvement::push(Rung rung, const Progress& progress)
         rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, progress); }, data_);
     };
     judge();
-    // Before something is called unknown the model is to be as good as it can be: where its simulation leaves much more than laws that were fed, it
-    // is fitted to that.
-    constexpr double muchMore = 1.5;
+    // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
     if (const auto* record = std::get_if<Record>(&data_);
-        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0
-        && rung.comparison.chi > muchMore * rung.fit.costPerResidual) {
+        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0) {
         auto better = rung.model;
         if (const auto run = fit(better, *record, estimationSections(*record), options_.diagnose.fit, progress); run.usable) {
             rung.model = std::move(better);
