@@ -31,15 +31,11 @@ Ready ready(std::vector<bench::HiddenEffect> hidden)
     return result;
 }
 
-NormalEquations sumOf(const std::vector<SectionFit>& fits)
+NormalEquations sumOfFinite(const std::vector<SectionFit>& fits)
 {
-    NormalEquations sum;
-    for (const auto& section : fits) {
-        REQUIRE(section.finite);
-        for (const auto& channel : section.channels)
-            sum.add(channel);
-    }
-    return sum;
+    const auto sum = sumOf(fits);
+    REQUIRE(sum);
+    return *sum;
 }
 
 /// All laws of the catalogue that a small cone has, and Doppler, at some strength. Slow ones and friction have their memories from before.
@@ -67,8 +63,8 @@ TEST_CASE("Without laws to feed the error is that of the simulation", "[fed]")
 {
     const auto [record, model, sections] = ready({{"stiffness", 0.3}});
     const auto active = freeParameters(model);
-    const auto simulated = sumOf(outputError(model, record, sections, active, {}));
-    const auto fed = sumOf(feedbackError(model, record, sections, settledMotions(model, record, sections), active, {}));
+    const auto simulated = sumOfFinite(outputError(model, record, sections, active, {}));
+    const auto fed = sumOfFinite(feedbackError(model, record, sections, settledMotions(model, record, sections), active, {}));
     CHECK(fed.rows == simulated.rows);
     CHECK(fed.cost == Approx(simulated.cost).epsilon(1e-4));
     // Of the columns the simulation tells less than of the error, as its derivatives may be coarse.
@@ -96,8 +92,8 @@ TEST_CASE("A model is true to the motion that it makes itself", "[fed]")
                 record.sections[s].measured = made[s].predicted;
         }
         const auto motions = shownMotions(model, record, every, settledMotions(model, record, every));
-        const auto own = sumOf(feedbackError(model, record, every, motions, {}, run));
-        const auto others = sumOf(feedbackError(linear, record, every, settledMotions(linear, record, every), {}, run)).cost;
+        const auto own = sumOfFinite(feedbackError(model, record, every, motions, {}, run));
+        const auto others = sumOfFinite(feedbackError(linear, record, every, settledMotions(linear, record, every), {}, run)).cost;
         INFO(law->id() << " leaves " << own.cost / own.rows << " of the noise, without it " << others / own.rows);
         CHECK(others > (law->slow() ? 5e3 : 1e5) * own.cost);   // the history of a slow one is a mean
     }
@@ -110,7 +106,7 @@ TEST_CASE("The columns of fed laws are the derivatives of what they leave", "[fe
     const auto active = freeParameters(model);
     const std::vector<std::size_t> one {sections.back()};
     const auto motions = settledMotions(model, record, one);
-    const auto whole = sumOf(feedbackError(model, record, one, motions, active, {}));
+    const auto whole = sumOfFinite(feedbackError(model, record, one, motions, active, {}));
     const auto all = parametersOf(model);
     for (std::size_t k = 0; k < active.size(); ++k) {
         auto& p = *all[static_cast<std::size_t>(active[k])];
@@ -120,9 +116,9 @@ TEST_CASE("The columns of fed laws are the derivatives of what they leave", "[fe
         OutputErrorOptions plain;
         plain.gradient = false;
         p.value = value + step;
-        const double above = sumOf(feedbackError(model, record, one, motions, {}, plain)).cost;
+        const double above = sumOfFinite(feedbackError(model, record, one, motions, {}, plain)).cost;
         p.value = value - step;
-        const double below = sumOf(feedbackError(model, record, one, motions, {}, plain)).cost;
+        const double below = sumOfFinite(feedbackError(model, record, one, motions, {}, plain)).cost;
         p.value = value;
         // As much of the gradient as could be explained by the column at all.
         const double most = std::sqrt(whole.N(j, j) * whole.cost);
@@ -139,10 +135,10 @@ TEST_CASE("Several laws are found at once from nothing", "[fed][slow]")
         model = withEffect(model, effectNamed(id), extent);
     FitOptions options;
     options.fed = true;
-    const auto linear = sumOf(outputError(model, record, sections, {}, {}));
+    const auto linear = sumOfFinite(outputError(model, record, sections, {}, {}));
     const auto summary = fit(model, record, sections, options);
     INFO(summary.reason << ", " << summary.costPerResidual);
-    const auto simulated = sumOf(outputError(model, record, sections, {}, {}));
+    const auto simulated = sumOfFinite(outputError(model, record, sections, {}, {}));
     CHECK(linear.cost > 1e4 * linear.rows);
     CHECK(simulated.cost < 2.0 * simulated.rows);
 }

@@ -17,15 +17,11 @@ namespace {
 /// The cost of a model that leaves this, infinite where it runs away.
 double costOf(const Model& model, const std::vector<SectionFit>& fits)
 {
-    NormalEquations sum;
-    for (const auto& section : fits) {
-        if (!section.finite)
-            return std::numeric_limits<double>::infinity();
-        for (const auto& channel : section.channels)
-            sum.add(channel);
-    }
-    addPrior(model, freeParameters(model), sum);
-    return sum.cost;
+    auto sum = sumOf(fits);
+    if (!sum)
+        return std::numeric_limits<double>::infinity();
+    addPrior(model, freeParameters(model), *sum);
+    return sum->cost;
 }
 
 OutputErrorOptions withoutGradient(const FitOptions& options)
@@ -37,12 +33,10 @@ OutputErrorOptions withoutGradient(const FitOptions& options)
     return run;
 }
 
-/// The strengths of the newest component scaled by a factor.
-Model scaled(Model model, double factor)
+/// The strengths of the newest component times a factor.
+Model newestScaled(Model model, double factor)
 {
-    for (auto& p : model.components.back().parameters)
-        if (p.strength)
-            p.value *= factor;
+    model.components.back() = scaled(std::move(model.components.back()), factor);
     return model;
 }
 
@@ -81,10 +75,10 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     if (chosen.substeps == 0)
         chosen.substeps = substepsFor(model, record, options.simulationTolerance);
     const auto left = [&](const Model& candidate) { return costOf(candidate, quickError(candidate, record, sections, {}, withoutGradient(chosen))); };
-    Model best = scaled(model, 0.0);
+    Model best = newestScaled(model, 0.0);
     double lowest = left(best);
     for (const double factor : {1.0, 0.5, 0.2}) {
-        const Model candidate = scaled(model, factor);
+        const Model candidate = newestScaled(model, factor);
         const double cost = left(candidate);
         if (cost < lowest) {
             lowest = cost;

@@ -18,6 +18,12 @@ namespace {
 constexpr double dispensable = 1.05;   // times what is left: what costs no more than that is not needed
 constexpr double complete = 1.3;       // times the noise: nothing is needed beyond
 
+/// An effect that a model has.
+struct Tried {
+    Vote vote;
+    Model leaner;   ///< without it, fitted again; no components where that was not tried
+};
+
 /// The search for a whole: what all its steps share.
 class Search {
 public:
@@ -39,33 +45,28 @@ public:
         OutputErrorOptions plain;
         plain.gradient = false;
         plain.threads = quick_.threads;
-        NormalEquations sum;
-        for (const auto& section : quickError(model, record_, sections_, {}, plain)) {
-            if (!section.finite)
-                return std::numeric_limits<double>::infinity();
-            for (const auto& channel : section.channels)
-                sum.add(channel);
-        }
-        return sum.cost / std::max(1.0, sum.rows);
+        const auto sum = sumOf(quickError(model, record_, sections_, {}, plain));
+        return sum ? sum->cost / std::max(1.0, sum->rows) : std::numeric_limits<double>::infinity();
     }
 
-    /// The vote on every effect of a model. By derivatives it says little of an effect that has become a large part of the linear model, so one
+    /// Every effect of a model. By derivatives it says little of an effect that has become a large part of the linear model, so one
     /// that seems to be needed little is really taken out.
-    std::map<std::string, Vote> votes(const Model& model) const
+    std::map<std::string, Tried> tryWithout(const Model& model) const
     {
-        auto votes = votesOf(model, record_, test_);
+        std::map<std::string, Tried> tried;
         const double now = std::max(left(model), record_.noiseKnown ? 1.0 : 0.0);
-        for (auto& [effect, vote] : votes) {
+        for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
+            auto& one = tried[effect] = {vote, {}};
             if (vote.standsAlone())
                 continue;
-            auto leaner = without(model, effect);
+            auto leaner = withoutEffect(model, effect);
             if (!excursion::fit(leaner, record_, sections_, brief_).usable)
                 continue;
-            const double lost = 10.0 * std::log10(std::max(left(leaner), now) / now);
-            if (lost > vote.uniqueDb)
-                vote = {lost, effectNamed(effect).linear() ? 0.0 : vote.inconsistency};
+            if (const double lost = 10.0 * std::log10(std::max(left(leaner), now) / now); lost > vote.uniqueDb)
+                one.vote = {lost, effectNamed(effect).linear() ? 0.0 : vote.inconsistency};
+            one.leaner = std::move(leaner);
         }
-        return votes;
+        return tried;
     }
 
     /// Takes the effects out of which the others do not lose what `keeps` asks for, one at a time; true if there were any.
@@ -73,10 +74,10 @@ public:
     bool takeOut(Model& model, const Keeps& keeps) const
     {
         bool any = false;
-        for (const auto& [effect, vote] : votes(model)) {
-            if (keeps(vote))
+        for (auto& [effect, tried] : tryWithout(model)) {
+            if (keeps(tried.vote))
                 continue;
-            auto leaner = without(model, effect);
+            auto leaner = any || tried.leaner.components.empty() ? withoutEffect(model, effect) : std::move(tried.leaner);
             if (any && (!excursion::fit(leaner, record_, sections_, brief_).usable || left(leaner) > dispensable * left(model)))
                 continue;   // another one has gone that did its work
             model = std::move(leaner);
@@ -86,25 +87,11 @@ public:
     }
 
 private:
-    static Model without(Model model, const std::string& effect)
-    {
-        std::erase_if(model.components, [&](const Component& c) { return c.effect->id() == effect; });
-        return model;
-    }
-
     const Record& record_;
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
     FitOptions quick_, brief_;
 };
-
-Component atRest(Component component)
-{
-    for (auto& p : component.parameters)
-        if (p.strength)
-            p.value = 0.0;
-    return component;
-}
 
 /// The model with every effect that the vote backs. Laws are at no strength; linear effects, the best first, are found one after the other on the
 /// responses, and stay at rest where that leaves more.
@@ -123,7 +110,7 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
                 now = then;
                 continue;
             }
-        fuller.components.push_back(atRest(s.model.components.back()));
+        fuller.components.push_back(scaled(s.model.components.back(), 0.0));
     }
     return fuller;
 }
@@ -162,7 +149,8 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
             return unknownLeft ? vote.standsAlone() : whole.fit.costPerResidual * std::pow(10.0, vote.uniqueDb / 10.0) > complete;
         }))
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
-    whole.votes = search.votes(whole.model);
+    for (const auto& [effect, tried] : search.tryWithout(whole.model))
+        whole.votes[effect] = tried.vote;
     return whole;
 }
 

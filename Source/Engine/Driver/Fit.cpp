@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -95,12 +96,10 @@ FitSummary search(Model& model, const ErrorOf& errorOf, const FitOptions& option
     double variance = 0.0;  // of the residuals at the start
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
         place(at);
-        for (const auto& section : errorOf(active, gradient)) {
-            if (!section.finite)
-                return false;
-            for (const auto& channel : section.channels)
-                sum.add(channel);
-        }
+        auto total = sumOf(errorOf(active, gradient));
+        if (!total)
+            return false;
+        sum = std::move(*total);
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
@@ -244,8 +243,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
-    followBase(model);
-    followEffects(model);
+    followOthers(model);
     OutputErrorOptions run;
     run.threads = options.threads;
     if (options.fed && hasPeriods(record)) {

@@ -31,6 +31,14 @@ double lawValue(const Component& component, const std::vector<double>& values, d
 
 } // namespace
 
+Component scaled(Component component, double factor)
+{
+    for (auto& p : component.parameters)
+        if (p.strength)
+            p.value *= factor;
+    return component;
+}
+
 bool isAtWork(const Component& component)
 {
     const auto& parameters = component.parameters;
@@ -108,22 +116,18 @@ Model withEffect(Model model, const Effect& effect, const Extent& visited, std::
     return model;
 }
 
-void followBase(Model& model)
-{
-    for (auto& component : model.components)
-        if (const auto base = component.effect->sizedBy(); !base.empty())
-            component.extent.scale = model.baseParameter(base).value;
-}
-
-void followEffects(Model& model)
+void followOthers(Model& model)
 {
     const bool yields = relaxes(model);
-    for (auto& component : model.components)
+    for (auto& component : model.components) {
+        if (const auto base = component.effect->sizedBy(); !base.empty())
+            component.extent.scale = model.baseParameter(base).value;
         for (auto& p : component.parameters)
             if (p.relaxed) {
                 p.free = yields;
                 p.value = yields ? p.value : 0.0;
             }
+    }
 }
 
 Model withoutEffect(Model model, std::string_view effectId)

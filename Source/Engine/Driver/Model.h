@@ -31,6 +31,9 @@ std::vector<T> valuesOf(const Component& component)
 /// Whether any of its strengths is not zero; a component without strengths always is.
 bool isAtWork(const Component&);
 
+/// The component with its strengths times a factor; zero puts it at rest.
+Component scaled(Component, double factor);
+
 /// The coefficients that its effect makes of such parameters (Effect::prepare).
 template <class T>
 std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& parameters)
@@ -70,11 +73,9 @@ Model makeModel(std::string_view baseId);
 bool movable(const Model&, const Parameter&);
 /// The model with that effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
-/// Extent::scale of every effect as its base parameter is now.
-void followBase(Model&);
-
-/// Parameters that mean something beside other effects only are free, or zero, as these are there or not.
-void followEffects(Model&);
+/// Every component as the others are now: Extent::scale of an effect as its base parameter is, and parameters that mean something beside
+/// other effects only are free, or zero, as these are there or not.
+void followOthers(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
 Model linearPart(Model);

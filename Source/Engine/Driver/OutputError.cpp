@@ -152,6 +152,18 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     return fits;
 }
 
+std::optional<NormalEquations> sumOf(const std::vector<SectionFit>& fits)
+{
+    NormalEquations sum;
+    for (const auto& section : fits) {
+        if (!section.finite)
+            return std::nullopt;
+        for (const auto& channel : section.channels)
+            sum.add(channel);
+    }
+    return sum;
+}
+
 void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum, double variance)
 {
     const auto all = parametersOf(model);
