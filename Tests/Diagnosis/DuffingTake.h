@@ -14,7 +14,8 @@ namespace excursion::test {
 
 /// What an electronic Duffing oscillator, x'' + 2 d w x' + w^2 (1 + hardening x^2) x = w^2 u, gives when a multisine u of 1 V rms is read as a
 /// force and its output as a displacement: two levels with white noise (20 dB less of it on the input), solved by the classical Runge-Kutta method.
-inline Measurement duffingTake(double hardening, double noiseDb, std::uint64_t seed)
+/// @param wander  relative rms by which w^2 wanders, with a time constant of 50 ms
+inline Measurement duffingTake(double hardening, double noiseDb, std::uint64_t seed, double wander = 0.0)
 {
     constexpr int steps = 16;   // a sample
     constexpr double omega = 440.0, damping = 0.1;
@@ -33,8 +34,12 @@ inline Measurement duffingTake(double hardening, double noiseDb, std::uint64_t s
     const auto N = static_cast<std::size_t>(e.period), fineLength = 2 * steps * N;
     const double h = 1.0 / (tones.sampleRate * steps);
     double x = 0.0, v = 0.0;
+    double stiffness = 1.0;
+    std::mt19937_64 wanders(seed + 1);
+    std::normal_distribution<double> step(0.0, 1.0);
+    const double keeps = std::exp(-1.0 / (0.05 * tones.sampleRate));
     const auto acceleration = [&](double position, double velocity, double u) {
-        return omega * omega * (u - (1.0 + hardening * position * position) * position) - 2.0 * damping * omega * velocity;
+        return omega * omega * (u - (stiffness + hardening * position * position) * position) - 2.0 * damping * omega * velocity;
     };
     for (const double level : e.levels)
         for (int realization = 0; realization < e.realizations; ++realization) {
@@ -48,6 +53,8 @@ inline Measurement duffingTake(double hardening, double noiseDb, std::uint64_t s
                 const std::size_t at = n % N * 2 * steps;
                 force.samples.push_back(u[at]);
                 displacement.samples.push_back(x);
+                if (wander > 0.0)
+                    stiffness = 1.0 + keeps * (stiffness - 1.0) + wander * std::sqrt(1.0 - keeps * keeps) * step(wanders);
                 for (std::size_t k = at; k < at + 2 * steps; k += 2) {
                     const double u1 = u[k], u2 = u[k + 1], u3 = u[(k + 2) % fineLength];
                     const double v1 = v, a1 = acceleration(x, v, u1);

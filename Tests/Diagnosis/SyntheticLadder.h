@@ -90,7 +90,7 @@ inline Comparison syntheticComparison(std::size_t rung)
     } curves[] = {{"force", "N", "x", "m", 6e-3, 2.0},  {"force", "N", "v", "m/s", 1.1, 0.4},  {"force", "N", "i", "A", 2.0, 0.5},
                   {"voltage", "V", "x", "m", 6e-3, 0.3}, {"voltage", "V", "v", "m/s", 1.1, 0.6}, {"voltage", "V", "i", "A", 2.0, 0.2}};
     for (const auto& k : curves) {
-        ResidualCurve r {k.residual, k.unit, k.against, k.againstUnit, {}, {}, {}};
+        ResidualCurve r {k.residual, k.unit, k.against, k.againstUnit, {}, {}, {}, k.size > 1.0 ? -20.0 : -40.0};
         for (int n = -20; n <= 20; ++n) {
             const double q = n / 20.0, left = std::pow(0.12, static_cast<double>(rung));
             r.argument.push_back(q * k.range);
@@ -121,6 +121,7 @@ inline LadderFile syntheticLadder()
         rung.fit.iterations = 7;
         rung.fit.reason = "the cost no longer falls";
         rung.diagnosis.error = errorByChannel(rung.comparison);
+        rung.diagnosis.remainder = remainderOf(rung.comparison);
         rung.diagnosis.verdict = k < 3 ? Verdict::missingEffect : Verdict::complete;
         rung.diagnosis.sentence = k < 3 ? "Missing: " + catalogue()[k]->title() + "." : ladder.sentence;
         if (k > 0) {

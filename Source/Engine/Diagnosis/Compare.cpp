@@ -115,6 +115,14 @@ ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& s
 
 } // namespace
 
+ErrorByChannel errorByChannel(const Comparison& comparison)
+{
+    ErrorByChannel errors;
+    for (const auto& channel : comparison.channels)
+        errors[channel.quantity] = channel.total;
+    return errors;
+}
+
 Comparison compare(const Model& model, const Record& record, const CompareOptions& options, const Progress& progress)
 {
     const auto sections = validationSections(record);
@@ -132,11 +140,14 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
     result.levels = record.levels.empty() ? std::vector<double> {0.0} : record.levels;
     result.noiseKnown = record.noiseKnown;
     result.validated = std::any_of(record.sections.begin(), record.sections.end(), [](const Section& s) { return s.validation; });
+    const bool drifts = std::any_of(model.components.begin(), model.components.end(), [](const Component& part) { return part.effect->slow(); });
     NormalEquations everything;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         ChannelComparison channel;
         channel.quantity = record.channels[c];
         channel.unit = record.units[c];
+        if (!drifts)
+            channel.wanderDb = record.wanderDb[c];
         std::vector<LevelSums> sums(result.levels.size());
         LevelSums total;
         for (std::size_t n = 0; n < fits.size(); ++n) {

@@ -5,6 +5,7 @@
 #include "Engine/Driver/Record.h"
 #include "Engine/Progress.h"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -41,16 +42,20 @@ struct ResidualCurve {
     std::string against;               ///< "x", "v" or "i"
     std::string againstUnit;
     std::vector<double> argument, mean, scatter;   ///< mean and standard deviation in each bin
+    double db = 0.0;                   ///< the residual's rms over that of what drives: the voltage, the force Bl i
 };
 
 struct ChannelComparison {
     Quantity quantity = Quantity::current;
     std::string unit;
     ErrorLevel total;                       ///< all validation sections
+    std::optional<double> wanderDb;         ///< of the take (Wander.h); none where the model has an effect that drifts, or where it is not known
     std::vector<ErrorLevel> byLevel;        ///< one a level of the excitation
     std::vector<ErrorKinds> kindsByLevel;
     std::vector<ErrorSpectrum> spectrumByLevel;
 };
+
+using ErrorByChannel = std::map<Quantity, ErrorLevel>;
 
 /// "current"; "impedance" where the channel is the impedance of a take that is a frequency response.
 std::string titleOf(const ChannelComparison&);
@@ -63,6 +68,9 @@ struct Comparison {
     bool noiseKnown = false;
     bool validated = false;                 ///< on sections that no fit saw
 };
+
+/// The error of each channel over all levels.
+ErrorByChannel errorByChannel(const Comparison&);
 
 struct CompareOptions {
     int substeps = 0;          ///< 0: chosen

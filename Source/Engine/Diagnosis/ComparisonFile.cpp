@@ -13,29 +13,6 @@ using Json = nlohmann::ordered_json;
 constexpr auto formatName = "excursion-comparison";
 constexpr int formatVersion = 1;
 
-Json optionalNumber(const std::optional<double>& value) { return value ? numberOrNull(*value) : Json(nullptr); }
-
-std::optional<double> optionalNumberFrom(const JsonField& field)
-{
-    if (field.isNull())
-        return std::nullopt;
-    return field.number();
-}
-
-Json kindsJson(const ErrorKinds& kinds)
-{
-    return {{"linear", optionalNumber(kinds.linear)},
-            {"odd", optionalNumber(kinds.odd)},
-            {"even", optionalNumber(kinds.even)},
-            {"noise", optionalNumber(kinds.noise)}};
-}
-
-ErrorKinds kindsFrom(const JsonField& field)
-{
-    return {optionalNumberFrom(field.at("linear")), optionalNumberFrom(field.at("odd")),
-            optionalNumberFrom(field.at("even")), optionalNumberFrom(field.at("noise"))};
-}
-
 Json spectrumJson(const ErrorSpectrum& s)
 {
     return {{"frequency", curveJson(s.frequency)},
@@ -67,12 +44,15 @@ ErrorSpectrum spectrumFrom(const JsonField& field)
 
 Json channelJson(const ChannelComparison& channel, const std::vector<double>& levels)
 {
-    Json document {{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"error", toJson(channel.total)}};
+    Json document {{"quantity", name(channel.quantity)},
+                   {"unit", channel.unit},
+                   {"error", toJson(channel.total)},
+                   {"wanderDb", optionalNumber(channel.wanderDb)}};
     auto& list = document["levels"] = Json::array();
     for (std::size_t k = 0; k < channel.byLevel.size(); ++k) {
         Json level {{"rms", k < levels.size() ? numberOrNull(levels[k]) : Json(nullptr)},
                     {"error", toJson(channel.byLevel[k])}};
-        level["kinds"] = k < channel.kindsByLevel.size() ? kindsJson(channel.kindsByLevel[k]) : Json(nullptr);
+        level["kinds"] = k < channel.kindsByLevel.size() ? toJson(channel.kindsByLevel[k]) : Json(nullptr);
         level["spectrum"] = k < channel.spectrumByLevel.size() ? spectrumJson(channel.spectrumByLevel[k]) : Json(nullptr);
         list.push_back(std::move(level));
     }
@@ -85,10 +65,12 @@ ChannelComparison channelFrom(const JsonField& field)
     channel.quantity = quantityFromJson(field.at("quantity"));
     channel.unit = field.at("unit").text();
     channel.total = errorLevelFromJson(field.at("error"));
+    if (field.has("wanderDb"))   // files from before have none
+        channel.wanderDb = field.at("wanderDb").number();
     for (const auto& level : field.at("levels").items()) {
         channel.byLevel.push_back(errorLevelFromJson(level.at("error")));
         if (level.has("kinds"))
-            channel.kindsByLevel.push_back(kindsFrom(level.at("kinds")));
+            channel.kindsByLevel.push_back(errorKindsFromJson(level.at("kinds")));
         if (level.has("spectrum"))
             channel.spectrumByLevel.push_back(spectrumFrom(level.at("spectrum")));
     }
@@ -100,7 +82,7 @@ Json residualJson(const ResidualCurve& r)
     return {{"residual", r.residual},       {"unit", r.unit},
             {"against", r.against},         {"againstUnit", r.againstUnit},
             {"at", curveJson(r.argument)},  {"mean", curveJson(r.mean)},
-            {"scatter", curveJson(r.scatter)}};
+            {"scatter", curveJson(r.scatter)}, {"db", numberOrNull(r.db)}};
 }
 
 ResidualCurve residualFrom(const JsonField& field)
@@ -113,10 +95,35 @@ ResidualCurve residualFrom(const JsonField& field)
     r.argument = field.at("at").numbers();
     r.mean = curveFrom(field.at("mean"), r.argument.size());
     r.scatter = curveFrom(field.at("scatter"), r.argument.size());
+    if (field.has("db"))   // files from before have none
+        r.db = field.at("db").numberOrNaN();
     return r;
 }
 
 } // namespace
+
+Json optionalNumber(const std::optional<double>& value) { return value ? numberOrNull(*value) : Json(nullptr); }
+
+std::optional<double> optionalNumberFrom(const JsonField& field)
+{
+    if (field.isNull())
+        return std::nullopt;
+    return field.number();
+}
+
+Json toJson(const ErrorKinds& kinds)
+{
+    return {{"linear", optionalNumber(kinds.linear)},
+            {"odd", optionalNumber(kinds.odd)},
+            {"even", optionalNumber(kinds.even)},
+            {"noise", optionalNumber(kinds.noise)}};
+}
+
+ErrorKinds errorKindsFromJson(const JsonField& field)
+{
+    return {optionalNumberFrom(field.at("linear")), optionalNumberFrom(field.at("odd")),
+            optionalNumberFrom(field.at("even")), optionalNumberFrom(field.at("noise"))};
+}
 
 Json toJson(const ErrorLevel& error)
 {
@@ -170,14 +177,6 @@ std::map<Quantity, double> decibelsFromJson(const JsonField& field)
         if (const auto quantity = quantityNamed(key))
             decibels[*quantity] = field.at(key.c_str()).numberOrNaN();
     return decibels;
-}
-
-std::map<Quantity, ErrorLevel> errorByChannel(const Comparison& comparison)
-{
-    std::map<Quantity, ErrorLevel> errors;
-    for (const auto& channel : comparison.channels)
-        errors[channel.quantity] = channel.total;
-    return errors;
 }
 
 Json toJson(const Comparison& comparison)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <map>
+#include <optional>
 
 namespace excursion {
 
@@ -27,8 +28,13 @@ std::map<Quantity, ErrorLevel> errorByChannelFromJson(const JsonField&);
 nlohmann::ordered_json toJson(const std::map<Quantity, double>&);
 std::map<Quantity, double> decibelsFromJson(const JsonField&);
 
-/// The error of each channel over all levels.
-std::map<Quantity, ErrorLevel> errorByChannel(const Comparison&);
+/// {"linear": -41.0, "odd": -60.2, "even": null, "noise": -80.1}
+nlohmann::ordered_json toJson(const ErrorKinds&);
+ErrorKinds errorKindsFromJson(const JsonField&);
+
+/// null where it is not known
+nlohmann::ordered_json optionalNumber(const std::optional<double>&);
+std::optional<double> optionalNumberFrom(const JsonField&);
 
 Quantity quantityFromJson(const JsonField&);
 

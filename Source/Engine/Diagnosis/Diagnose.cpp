@@ -17,14 +17,6 @@ namespace {
 /// What of the residual is not noise; never quite zero, as two models at the noise are equally good.
 double excess(double chi, bool noiseKnown) { return noiseKnown ? std::max(chi - 1.0, 0.02) : std::max(chi, 1e-12); }
 
-ErrorByChannel errorOf(const Comparison& comparison)
-{
-    ErrorByChannel error;
-    for (const auto& channel : comparison.channels)
-        error[channel.quantity] = channel.total;
-    return error;
-}
-
 /// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that can. Of these the ones
 /// come first that the catalogue as a whole speaks for: others only borrow what belongs to one that is not in yet.
 bool better(const RankedEffect& a, const RankedEffect& b)
@@ -68,7 +60,7 @@ void judge(std::vector<RankedEffect>& ranking, double chi, bool noiseKnown, Diag
                                 "share a curve part where the cone moves farther.";
 }
 
-std::string sentenceFor(const Diagnosis& d, const Comparison& comparison)
+std::string sentenceFor(const Diagnosis& d)
 {
     switch (d.verdict) {
     case Verdict::complete: return "The model is complete: what is left is the noise of the measurement.";
@@ -78,10 +70,7 @@ std::string sentenceFor(const Diagnosis& d, const Comparison& comparison)
             sentence += ", or " + effectNamed(other).title() + ", which this take cannot tell from it";
         return sentence + ".";
     }
-    case Verdict::unknownEffect:
-        return std::string(comparison.noiseKnown ? "Something is left that no effect of the catalogue explains: "
-                                                 : "No effect of the catalogue lowers the error further, and the take does not tell its noise: ")
-               + signatureOf(comparison) + ".";
+    case Verdict::unknownEffect: return unexplained(d.remainder);
     case Verdict::badMeasurement: return "The measurement is at fault.";
     }
     return "";
@@ -118,7 +107,7 @@ Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& co
     constexpr double onlyNoise = 1.6;   // mean squared error over the noise's, 2 dB
     bool clean = comparison.noiseKnown;
     for (const auto& channel : comparison.channels)
-        clean = clean && channel.total.chi <= onlyNoise;
+        clean = clean && channel.total.chi <= onlyNoise && !channel.wanderDb;
     return clean ? Verdict::complete : Verdict::unknownEffect;
 }
 
@@ -146,6 +135,17 @@ bool DiagnoseOptions::isValid(std::string* reason) const
     return true;
 }
 
+RankedEffect promisedBy(const Score& score)
+{
+    RankedEffect entry;
+    entry.effect = score.effect->id();
+    entry.predictedChi = score.chi;
+    entry.predictedErrorDb = score.errorDb;
+    entry.vote = score.vote;
+    entry.model = score.model;
+    return entry;
+}
+
 Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptions& options, const Progress& progress)
 {
     std::string reason;
@@ -156,7 +156,8 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     quick.substeps = substepsFor(model, record, options.fit.simulationTolerance);
     quick.search = {10, 3e-3};
     const auto before = compare(model, record, {quick.substeps, true}, progress.part(0.0, 0.1));
-    diagnosis.error = errorOf(before);
+    diagnosis.error = errorByChannel(before);
+    diagnosis.remainder = remainderOf(before);
 
     ScoreOptions test;
     test.substeps = quick.substeps;
@@ -166,22 +167,17 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     int tried = 0;
     double bestLeft = std::numeric_limits<double>::infinity();
     for (const auto& candidate : scores.scores) {
-        RankedEffect entry;
-        entry.effect = candidate.effect->id();
-        entry.predictedChi = candidate.chi;
-        entry.predictedErrorDb = candidate.errorDb;
-        entry.vote = candidate.vote;
-        entry.model = candidate.model;
+        auto entry = promisedBy(candidate);
         auto errorAfter = candidate.errorDb;
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
         // It is not wrong by twenty times, though: the work is spared when another has already left so much less.
         const bool promising = candidate.chi < scores.chi * (1.0 - 0.5 * options.significantFall)
                             && excess(candidate.chi, before.noiseKnown) < 20.0 * bestLeft;
         if (promising && tried < options.trials) {
-            progress.at(0.3 + 0.7 * tried / options.trials, "trying " + entry.effect);
+            const double share = 0.7 / options.trials, begun = 0.3 + share * tried++;
+            progress.at(begun, "trying " + entry.effect);
             Model trial;
-            const auto summary = tryFit(trial, candidate, record, sections, quick, progress.part(0.3 + 0.7 * tried / options.trials, 0.3 + 0.7 * (tried + 1) / options.trials));
-            ++tried;
+            const auto summary = tryFit(trial, candidate, record, sections, quick, progress.part(begun, begun + share));
             if (summary.usable) {
                 const auto after = compare(trial, record, {quick.substeps, false});
                 entry.model = trial;
@@ -216,7 +212,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     }
     if (diagnosis.verdict != Verdict::missingEffect)
         diagnosis.indistinguishable.clear();
-    diagnosis.sentence = sentenceFor(diagnosis, before);
+    diagnosis.sentence = sentenceFor(diagnosis);
     progress.at(1.0, "diagnosed");
     return diagnosis;
 }
@@ -225,7 +221,8 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
 {
     Diagnosis diagnosis;
     const auto before = compare(model, spectra);
-    diagnosis.error = errorOf(before);
+    diagnosis.error = errorByChannel(before);
+    diagnosis.remainder = remainderOf(before);
     const auto targets = responsesOf(spectra);
     const auto cost = [&](const Model& m) {
         double sum = 0.0;
@@ -261,7 +258,7 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     judge(diagnosis.ranking, now, false, diagnosis);
     const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, false);
     diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
-    diagnosis.sentence = sentenceFor(diagnosis, before) + caveatsOf(model, targets);
+    diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
     static_cast<void>(options);
     return diagnosis;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/Compare.h"
+#include "Engine/Diagnosis/Remainder.h"
 #include "Engine/Diagnosis/Vote.h"
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/Model.h"
@@ -21,8 +22,6 @@ enum class Verdict {
     badMeasurement     ///< the take is at fault
 };
 std::string_view name(Verdict);   ///< "missing-effect", as in the files
-
-using ErrorByChannel = std::map<Quantity, ErrorLevel>;
 
 /// One effect that could be what is missing.
 struct RankedEffect {
@@ -45,6 +44,7 @@ struct Diagnosis {
     std::vector<RankedEffect> ranking;        ///< best first
     std::vector<std::string> indistinguishable;   ///< effects that this take cannot tell from the first
     std::string measureNext;                  ///< what would tell them apart
+    Remainder remainder;                      ///< what the model as it was given leaves
     std::vector<Problem> problems;            ///< of the take
 };
 
@@ -54,6 +54,10 @@ struct DiagnoseOptions {
     double significantFall = 0.02;   ///< smallest relative fall of chi on validation data that counts
     bool isValid(std::string* reason) const;
 };
+
+/// An effect as a score test promises it, not tried yet.
+struct Score;
+RankedEffect promisedBy(const Score&);
 
 /// What a model lacks, by (1) a score test of every effect of the catalogue that it does not have: the residual is projected
 /// on the sensitivities to the effect's parameters, after the model's own have taken what they can; (2) a refit with the best few,

@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/DiagnosisFile.h"
 
 #include "Engine/Diagnosis/ComparisonFile.h"
+#include "Engine/Diagnosis/RemainderFile.h"
 #include "Engine/Document/JsonText.h"
 
 #include <array>
@@ -114,6 +115,7 @@ Json toJson(const Diagnosis& diagnosis)
         document["ranking"].push_back(rankedJson(ranked));
     document["indistinguishable"] = diagnosis.indistinguishable;
     document["measureNext"] = diagnosis.measureNext;
+    document["remainder"] = toJson(diagnosis.remainder);
     document["problems"] = toJson(diagnosis.problems);
     return document;
 }
@@ -129,6 +131,8 @@ Diagnosis diagnosisFromJson(const JsonField& field)
         diagnosis.ranking.push_back(rankedFrom(item));
     diagnosis.indistinguishable = textsFromJson(field.at("indistinguishable"));
     diagnosis.measureNext = field.at("measureNext").text();
+    if (field.has("remainder"))   // files from before have none
+        diagnosis.remainder = remainderFromJson(field.at("remainder"));
     diagnosis.problems = problemsFromJson(field.at("problems"));
     return diagnosis;
 }

@@ -43,6 +43,8 @@ void withdrawDoubtful(Ladder& ladder)
         ladder.withdrawn.push_back(ladder.rungs.back().added);
         ladder.rungs.pop_back();
     }
+    if (!ladder.withdrawn.empty())
+        ladder.sentence = foundInWords(ladder) + unexplained(ladder.rungs.back().diagnosis.remainder);
 }
 
 } // namespace

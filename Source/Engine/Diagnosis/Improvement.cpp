@@ -139,19 +139,19 @@ void Improvement::add(const std::string& id, const Progress& progress)
 /// Compares and diagnoses the rung's model.
 void Improvement::push(Rung rung, const Progress& progress)
 {
-    const auto judge = [&] {
+    const auto judge = [&](const Progress& part) {
         rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
-        rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, progress); }, data_);
+        rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, part); }, data_);
     };
-    judge();
+    judge(progress.part(0.0, 0.5));
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
     if (const auto* record = std::get_if<Record>(&data_);
         record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0) {
         auto better = rung.model;
-        if (const auto run = fit(better, *record, estimationSections(*record), options_.diagnose.fit, progress); run.usable) {
+        if (const auto run = fit(better, *record, estimationSections(*record), options_.diagnose.fit, progress.part(0.5, 0.7)); run.usable) {
             rung.model = std::move(better);
             rung.fit = run;
-            judge();
+            judge(progress.part(0.7, 1.0));
         }
     }
     keep(std::move(rung));
@@ -161,9 +161,14 @@ void Improvement::keep(Rung rung)
 {
     rung.diagnosis.problems = report_.problems;
     ladder_.rungs.push_back(std::move(rung));
+    concludeFromLast();
+}
+
+void Improvement::concludeFromLast()
+{
     const auto& diagnosis = ladder_.rungs.back().diagnosis;
     ladder_.verdict = diagnosis.verdict;
-    ladder_.sentence = diagnosis.sentence;
+    ladder_.sentence = (diagnosis.verdict == Verdict::unknownEffect ? foundInWords(ladder_) : std::string()) + diagnosis.sentence;
 }
 
 void Improvement::undo()
@@ -171,8 +176,7 @@ void Improvement::undo()
     if (ladder_.rungs.size() < 2)
         return;
     ladder_.rungs.pop_back();
-    ladder_.verdict = ladder_.rungs.back().diagnosis.verdict;
-    ladder_.sentence = ladder_.rungs.back().diagnosis.sentence;
+    concludeFromLast();
 }
 
 std::vector<Waveform> Improvement::waveforms(int level) const

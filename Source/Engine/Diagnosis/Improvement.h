@@ -14,7 +14,7 @@ namespace excursion {
 struct ImproveOptions {
     DiagnoseOptions diagnose;
     std::vector<std::string> with;   ///< effects that the first model has already
-    int maximumRungs = 8;
+    int maximumRungs = 13;
     std::function<void(const Rung&)> finished;   ///< called by improve() with each rung once its diagnosis is known; may be empty
 };
 
@@ -49,6 +49,7 @@ public:
 private:
     void push(Rung, const Progress&);
     void keep(Rung);
+    void concludeFromLast();   ///< verdict and sentence, as the last rung's diagnosis says
 
     ImproveOptions options_;
     std::variant<Record, Spectra> data_;

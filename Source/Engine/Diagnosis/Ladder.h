@@ -7,6 +7,7 @@
 #include "Engine/Driver/Model.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,15 @@ struct Ladder {
 
     const Model& model() const { return rungs.back().model; }
 };
+
+/// The first part of a verdict: an effect of the last model.
+struct KnownEffect {
+    std::string effect;                 ///< id
+    std::optional<double> confidence;   ///< of the diagnosis that proposed it; none where it was put in by hand
+};
+std::vector<KnownEffect> knownEffects(const Ladder&);
+
+/// "Found: Stiffness K(x) and Force factor Bl(x). " Empty where the ladder found nothing.
+std::string foundInWords(const Ladder&);
 
 } // namespace excursion

@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
+#include "Engine/Diagnosis/RemainderFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Measurement/FindExcitation.h"
@@ -95,6 +96,14 @@ Rung rungFrom(const JsonField& field)
     rung.model = modelFromJson(field.at("model"));
     rung.fit = fitFrom(field.at("fit"));
     return rung;
+}
+
+Json knownJson(const Ladder& ladder)
+{
+    auto list = Json::array();
+    for (const auto& known : knownEffects(ladder))
+        list.push_back({{"effect", known.effect}, {"confidence", optionalNumber(known.confidence)}});
+    return list;
 }
 
 Json takeJson(const TakeSummary& take)
@@ -224,6 +233,8 @@ Json toJson(const LadderFile& file)
                    {"sentence", file.ladder.sentence},
                    {"problems", toJson(file.ladder.problems)},
                    {"withdrawn", file.ladder.withdrawn},
+                   {"known", knownJson(file.ladder)},
+                   {"remainder", file.ladder.rungs.empty() ? Json(nullptr) : toJson(file.ladder.rungs.back().diagnosis.remainder)},
                    {"take", takeJson(file.take)}};
     document["rungs"] = Json::array();
     for (std::size_t k = 0; k < file.ladder.rungs.size(); ++k)

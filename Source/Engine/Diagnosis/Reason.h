@@ -15,7 +15,4 @@ namespace excursion {
 std::string reasonFor(const Effect&, const Model& with, const Comparison& before,
                       const std::map<Quantity, double>& errorDbAfter);
 
-/// What is left when no effect explains it: channel, band, parity and growth with the level.
-std::string signatureOf(const Comparison&);
-
 } // namespace excursion

@@ -6,6 +6,7 @@
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Driver/StartState.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 
 #include <Eigen/LU>
 
@@ -68,7 +69,7 @@ private:
 };
 
 struct Motions {
-    std::vector<double> x, v, i, force, voltage;
+    std::vector<double> x, v, i, force, voltage, drive;
 };
 
 void bin(const std::vector<double>& argument, const std::vector<double>& value, ResidualCurve& curve)
@@ -141,6 +142,7 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
         if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run, from[n].value))
             return {};
         const auto append = [](std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); };
+        append(motions.drive, {drive.end() - static_cast<std::ptrdiff_t>(section.window), drive.end()});
         append(motions.x, run.displacement);
         append(motions.v, run.velocity);
         append(motions.i, run.current);
@@ -148,9 +150,10 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
         append(motions.voltage, inverseFft(voltage, section.window));
     }
     std::vector<ResidualCurve> curves;
-    const auto add = [&](const char* residual, const char* unit, const std::vector<double>& value) {
+    const auto add = [&](const char* residual, const char* unit, const std::vector<double>& value, double driveRms) {
+        const double db = 20.0 * std::log10(std::max(rmsOf(value), 1e-300) / std::max(driveRms, 1e-300));
         const auto against = [&](const char* name, const char* argumentUnit, const std::vector<double>& argument) {
-            ResidualCurve curve {residual, unit, name, argumentUnit, {}, {}, {}};
+            ResidualCurve curve {residual, unit, name, argumentUnit, {}, {}, {}, db};
             bin(argument, value, curve);
             if (!curve.argument.empty())
                 curves.push_back(std::move(curve));
@@ -161,9 +164,9 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
             against("i", "A", motions.i);
     };
     if (seesForce)
-        add("force", "N", motions.force);
+        add("force", "N", motions.force, model.electrical() ? model.baseParameter("Bl").value * rmsOf(motions.i) : rmsOf(motions.drive));
     if (seesVoltage)
-        add("voltage", "V", motions.voltage);
+        add("voltage", "V", motions.voltage, rmsOf(motions.drive));
     return curves;
 }
 

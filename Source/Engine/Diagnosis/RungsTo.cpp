@@ -32,15 +32,10 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
     Diagnosis diagnosis;
     diagnosis.verdict = Verdict::missingEffect;
     int others = -1;   // besides the next one
-    for (const auto& channel : rung.comparison.channels)
-        diagnosis.error[channel.quantity] = channel.total;
+    diagnosis.error = errorByChannel(rung.comparison);
+    diagnosis.remainder = remainderOf(rung.comparison);
     for (const auto& candidate : scores) {
-        RankedEffect entry;
-        entry.effect = candidate.effect->id();
-        entry.predictedChi = candidate.chi;
-        entry.predictedErrorDb = candidate.errorDb;
-        entry.vote = candidate.vote;
-        entry.model = candidate.model;
+        auto entry = promisedBy(candidate);
         auto errorAfter = candidate.errorDb;
         if (const auto needed = whole.votes.find(entry.effect); needed != whole.votes.end()) {
             entry.vote = needed->second;

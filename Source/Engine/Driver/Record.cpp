@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/Periods.h"
+#include "Engine/Measurement/Wander.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Validity.h"
 
@@ -192,6 +193,8 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
             record.sections.push_back(std::move(section));
         }
     }
+    for (const auto quantity : record.channels)
+        record.wanderDb.push_back(wanderDb(take, *take.find(quantity)));
     record.leadIn = static_cast<std::size_t>(e.period) / factor * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
 
@@ -326,6 +329,7 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
         record.sampleRate = take.sampleRate / static_cast<double>(factor);
         addPeriodicSections(take, options, factor, record);
     } else {
+        record.wanderDb.resize(record.channels.size());
         addAperiodicSections(take, options, record);
     }
     if (record.bandLow <= 0.0)

@@ -34,6 +34,7 @@ struct Record {
     std::vector<Quantity> channels;      ///< outputs
     std::vector<std::string> units;      ///< of the outputs
     std::vector<double> levels;          ///< V rms; empty when unknown
+    std::vector<std::optional<double>> wanderDb;   ///< [channel], of the take (Wander.h)
     std::vector<Section> sections;
     bool noiseKnown = false;
     double lowFrequency = 0.0, highFrequency = 0.0;   ///< Hz: lines outside are not compared
