@@ -93,8 +93,9 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
                 consider(withEffect(model, *effect, extent, start), {});
     }
     std::vector<Model> found(searched.size());
+    const auto still = searched.empty() ? Record {} : withoutLaws(model, record, options.threads);
     inParallel(searched.size(), options.threads, progress, [&](std::size_t k) {
-        if (auto shaped = searched[k]; fitNewestByResponse(shaped, record).usable)
+        if (auto shaped = searched[k]; fitNewestByResponse(shaped, still).usable)
             found[k] = std::move(shaped);
         return true;
     });

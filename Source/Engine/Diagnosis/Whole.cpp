@@ -78,12 +78,30 @@ public:
             if (keeps(tried.vote))
                 continue;
             auto leaner = any || tried.leaner.components.empty() ? withoutEffect(model, effect) : std::move(tried.leaner);
-            if (any && (!excursion::fit(leaner, record_, sections_, brief_).usable || left(leaner) > dispensable * left(model)))
-                continue;   // another one has gone that did its work
+            if (any) {   // another one has gone, whose work it may do now
+                if (!excursion::fit(leaner, record_, sections_, brief_).usable)
+                    continue;
+                if (keeps(Vote {10.0 * std::log10(left(leaner) / left(model)), tried.vote.inconsistency}))
+                    continue;
+            }
             model = std::move(leaner);
             any = true;
         }
         return any;
+    }
+
+    /// Finds linear effects that have several parts anew, now that the others are known: they may have uncovered more of them.
+    void findPartsAnew(Model& model) const
+    {
+        const auto still = withoutLaws(model, record_, quick_.threads);
+        for (std::size_t k = 1; k < model.components.size(); ++k) {
+            const auto& component = model.components[k];
+            auto anew = model;
+            if (!component.effect->linear() || component.effect->parts(component.extent).empty() || !fitByResponse(anew, k, still).usable)
+                continue;
+            if (excursion::fit(anew, record_, sections_, brief_).usable && left(anew) < left(model) / dispensable)
+                model = std::move(anew);
+        }
     }
 
 private:
@@ -98,13 +116,14 @@ private:
 Model withBacked(const Model& model, const Record& record, const std::vector<Score>& scores, const Search& search)
 {
     Model fuller = model;
+    const auto still = withoutLaws(model, record, search.test().threads);
     double now = search.left(model);
     for (const auto& s : scores) {   // lowest first
         if (!s.vote.backs())
             continue;
         auto next = fuller;
         next.components.push_back(s.model.components.back());
-        if (s.effect->linear() && fitNewestByResponse(next, record).usable)
+        if (s.effect->linear() && fitNewestByResponse(next, still).usable)
             if (const double then = search.left(next); then < now) {
                 fuller = std::move(next);
                 now = then;
@@ -133,6 +152,7 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable)
             break;
+        search.findPartsAnew(fuller);
         search.takeOut(fuller, [](const Vote& vote) { return vote.uniqueDb > 10.0 * std::log10(dispensable); });
         const double then = search.left(fuller);
         if (!(then < worthARound * now))

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace excursion {
 namespace {
@@ -172,6 +173,29 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
         return fits[s].finite;
     });
     return fits;
+}
+
+Record withoutLaws(const Model& model, const Record& record, unsigned threads)
+{
+    const auto still = linearPart(model);
+    if (!hasPeriods(record) || still.components.size() == model.components.size())
+        return record;
+    std::vector<std::size_t> every(record.sections.size());
+    std::iota(every.begin(), every.end(), std::size_t {0});
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.spectra = true;
+    run.threads = threads;
+    const auto with = quickError(model, record, every, {}, run), without = quickError(still, record, every, {}, run);
+    Record result = record;
+    for (std::size_t s = 0; s < every.size(); ++s) {
+        if (!with[s].finite || !without[s].finite)
+            return record;
+        for (std::size_t c = 0; c < record.channels.size(); ++c)
+            for (std::size_t k = 0; k < result.sections[s].measured[c].size(); ++k)
+                result.sections[s].measured[c][k] += without[s].predicted[c][k] - with[s].predicted[c][k];
+    }
+    return result;
 }
 
 std::vector<SectionFit> quickError(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<Eigen::Index>& active,

@@ -23,4 +23,8 @@ std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::ve
 std::vector<SectionFit> quickError(const Model&, const Record&, const std::vector<std::size_t>& sections, const std::vector<Eigen::Index>& active,
                                    const OutputErrorOptions&, const Progress& = {});
 
+/// The record as it would be if the laws of a model were not at work: every channel less what they add to it, so that its responses are those of the
+/// linear part, and of what the model lacks. The record itself where it has no periods, or where no law is at work.
+Record withoutLaws(const Model&, const Record&, unsigned threads = 2);
+
 } // namespace excursion

@@ -64,6 +64,9 @@ LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<Respo
 LeastSquaresSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 /// On the responses of a record, as finely as the effect asks for.
 LeastSquaresSummary fitNewestByResponse(Model&, const Record&);
+/// The same for component k.
+LeastSquaresSummary fitByResponse(Model&, std::size_t k, const std::vector<ResponseTarget>&);
+LeastSquaresSummary fitByResponse(Model&, std::size_t k, const Record&);
 
 /// Fits a model that has got a new effect. Those of the others that have several parts are found anew as well, as the new one may have uncovered
 /// more of them; the parts stay as they were where that brings little.

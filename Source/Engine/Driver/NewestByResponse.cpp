@@ -194,6 +194,29 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const Record& record)
     return fitNewestByResponse(model, linearResponsesOf(record, newest.effect->parts(newest.extent).empty() ? usual : fine));
 }
 
+namespace {
+
+template <class Targets>
+LeastSquaresSummary fitAsNewest(Model& model, std::size_t k, const Targets& targets)
+{
+    auto trial = model;
+    const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
+    std::rotate(place, place + 1, trial.components.end());
+    const auto summary = fitNewestByResponse(trial, targets);
+    if (!summary.usable)
+        return summary;
+    model = std::move(trial);
+    const auto back = model.components.begin() + static_cast<std::ptrdiff_t>(k);
+    std::rotate(back, model.components.end() - 1, model.components.end());
+    model.covariance.resize(0, 0);   // of another order
+    return summary;
+}
+
+} // namespace
+
+LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets) { return fitAsNewest(model, k, targets); }
+LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const Record& record) { return fitAsNewest(model, k, record); }
+
 LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
     const LeastSquaresOptions thoroughly {80, 1e-9};
@@ -203,12 +226,8 @@ LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTar
         if (!older.effect->linear() || older.effect->parts(older.extent).empty())
             continue;
         auto trial = model;
-        const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
-        std::rotate(place, place + 1, trial.components.end());   // as its newest
-        if (!fitNewestByResponse(trial, targets).usable)
+        if (!fitByResponse(trial, k, targets).usable)
             continue;
-        const auto back = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
-        std::rotate(back, trial.components.end() - 1, trial.components.end());
         const auto run = fitResponse(trial, targets, thoroughly);
         if (run.usable && summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets) && isSeen(trial, k)) {
             model = std::move(trial);
