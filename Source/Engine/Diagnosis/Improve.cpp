@@ -60,15 +60,18 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
             if (options.finished)
                 options.finished(work.ladder().rungs[told]);
     };
-    work.begin(progress.part(0.02, 0.15));
-    work.addTogether(progress.part(0.15, 0.6));
-    tell();
-    constexpr double begun = 0.6, done = 0.99;
-    const double share = (done - begun) / options.maximumRungs;
-    for (int n = static_cast<int>(work.ladder().rungs.size()) - 1; n < options.maximumRungs && work.ladder().verdict == Verdict::missingEffect; ++n) {
-        work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, progress.part(begun + share * n, begun + share * (n + 1)));
-        tell();
+    constexpr double begun = 0.15, done = 0.99;
+    work.begin(progress.part(0.02, begun));
+    const auto climbed = [&] { return static_cast<int>(work.ladder().rungs.size()) - 1; };
+    const auto at = [&](double rungs) { return begun + (done - begun) * rungs / options.maximumRungs; };
+    while (climbed() < options.maximumRungs && work.ladder().verdict == Verdict::missingEffect) {
+        const auto part = progress.part(at(climbed()), at(climbed() + 1));
+        if (!work.addTogether(part.part(0.0, 0.7))) {
+            tell();   // its diagnosis stands
+            work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, part.part(0.7, 1.0));
+        }
     }
+    tell();
     auto ladder = work.ladder();
     withdrawDoubtful(ladder);
     if (std::holds_alternative<Measurement>(take))   // the diagnosis of a frequency response has told them

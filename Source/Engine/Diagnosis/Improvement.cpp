@@ -88,20 +88,20 @@ void Improvement::begin(const Progress& progress)
 bool Improvement::addTogether(const Progress& progress)
 {
     const auto* record = std::get_if<Record>(&data_);
-    const auto& base = ladder_.rungs.front();
+    const auto& base = ladder_.rungs.back();
     const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(), [](const RankedEffect& r) { return r.vote.backs(); });
-    if (!record || !hasPeriods(*record) || backed < 2 || ladder_.rungs.size() > 1 || base.model.components.size() > 1)
+    if (!record || !hasPeriods(*record) || backed < 2)
         return false;
     const auto whole = fitWhole(base.model, *record, options_.diagnose.fit, progress.part(0.0, 0.5));
-    if (whole.votes.size() < 2 || static_cast<int>(whole.votes.size()) > options_.maximumRungs)
+    if (whole.votes.size() < 2 || ladder_.rungs.size() - 1 + whole.votes.size() > static_cast<std::size_t>(options_.maximumRungs))
         return false;
     auto rungs = rungsTo(whole, base, *record, options_.diagnose, progress.part(0.5, 0.8));
     if (!(rungs.back().comparison.chi < base.comparison.chi))
         return false;
     auto last = std::move(rungs.back());
     rungs.pop_back();
-    const auto before = std::exchange(ladder_, Ladder {});
-    ladder_.problems = before.problems;
+    const auto before = ladder_;
+    ladder_.rungs.pop_back();   // comes again, with its diagnosis
     try {
         for (auto& rung : rungs)
             keep(std::move(rung));
@@ -148,7 +148,9 @@ void Improvement::push(Rung rung, const Progress& progress)
     if (const auto* record = std::get_if<Record>(&data_);
         record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0) {
         auto better = rung.model;
-        if (const auto run = fit(better, *record, estimationSections(*record), options_.diagnose.fit, progress.part(0.5, 0.7)); run.usable) {
+        auto brief = options_.diagnose.fit;
+        brief.search = {10, 1e-3};
+        if (const auto run = fit(better, *record, estimationSections(*record), brief, progress.part(0.5, 0.7)); run.usable) {
             rung.model = std::move(better);
             rung.fit = run;
             judge(progress.part(0.7, 1.0));

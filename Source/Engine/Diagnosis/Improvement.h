@@ -31,8 +31,8 @@ public:
     /// The first rung: the base, with the effects asked for in ImproveOptions::with. Not for a take that is unfit for use.
     void begin(const Progress& = {});
 
-    /// Puts in at once what the catalogue explains together, where the first rung's diagnosis speaks for several effects: the rungs from the base to
-    /// there, the largest fall of the error first. False, and nothing done, where it speaks for one at most, and of a take without periods.
+    /// Puts in at once what the catalogue explains together, where the last rung's diagnosis speaks for several effects: the rungs from there to all
+    /// of them, the largest fall of the error first. False, and nothing done, where it speaks for one at most, and of a take without periods.
     bool addTogether(const Progress& = {});
 
     /// Another rung: the effect is put into the last model, everything is refitted. Throws Error (data) when the model has the effect

@@ -99,6 +99,29 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     return fitFed(model, record, sections, chosen, progress);
 }
 
+bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+{
+    if (!hasPeriods(record))
+        return false;
+    FitOptions fed = options;
+    fed.fed = true;
+    const auto left = [&](const Model& m) { return costOf(m, quickError(m, record, sections, {}, withoutGradient(options))); };
+    constexpr double worthIt = 0.95;
+    const auto still = withoutLaws(model, record, options.threads);
+    bool found = false;
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto& component = model.components[k];
+        if (!component.effect->linear() || component.effect->parts(component.extent).empty())
+            continue;
+        auto anew = model;
+        if (fitByResponse(anew, k, still).usable && fit(anew, record, sections, fed).usable && left(anew) < worthIt * left(model)) {
+            model = std::move(anew);
+            found = true;
+        }
+    }
+    return found;
+}
+
 void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options, const Progress& progress)
 {
     ScoreOptions test;
@@ -130,6 +153,9 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
         summary = fitFed(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
     if (hasPeriods(record)) {
+        constexpr double clean = 1.3;
+        if (record.noiseKnown && summary.costPerResidual > clean)
+            findPartsAnew(model, record, sections, quick);
         quick.search = {15, 1e-4};
         summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
         // While more is missing a simulation tells little more than laws that are fed.
@@ -137,6 +163,8 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.costPerResidual > nearNoise)
             return summary;
     }
+    // Along a valley the cost may fall by next to nothing for long.
+    chosen.search.costTolerance = std::max(chosen.search.costTolerance, 5e-5);
     return fit(model, record, sections, chosen, progress.part(0.75, 1.0));
 }
 

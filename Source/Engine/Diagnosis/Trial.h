@@ -20,6 +20,10 @@ FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& section
 FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
                   const Progress& = {});
 
+/// Finds linear effects that have several parts anew, as others that are known now may have uncovered more of them. True where that left less; the
+/// model is fitted with laws that are fed, then. Nothing is done of a record without periods.
+bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
+
 /// Puts an effect into the model where the score test says that it starts, and fits that quickly. Throws Error (data) when the
 /// model has the effect already or can't have it.
 void tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});

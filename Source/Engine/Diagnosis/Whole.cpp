@@ -27,7 +27,8 @@ struct Tried {
 /// The search for a whole: what all its steps share.
 class Search {
 public:
-    Search(const Record& record, const FitOptions& options) : record_(record), sections_(trialSections(record, 2)), quick_(options)
+    Search(const Model& base, const Record& record, const FitOptions& options)
+        : base_(base), record_(record), sections_(trialSections(record, 2)), quick_(options)
     {
         test_.threads = options.threads;
         quick_.fed = true;
@@ -49,13 +50,15 @@ public:
         return sum ? sum->cost / std::max(1.0, sum->rows) : std::numeric_limits<double>::infinity();
     }
 
-    /// Every effect of a model. By derivatives it says little of an effect that has become a large part of the linear model, so one
+    /// Every effect of a model but those of the base. By derivatives it says little of an effect that has become a large part of the linear model, so one
     /// that seems to be needed little is really taken out.
     std::map<std::string, Tried> tryWithout(const Model& model) const
     {
         std::map<std::string, Tried> tried;
         const double now = std::max(left(model), record_.noiseKnown ? 1.0 : 0.0);
         for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
+            if (base_.has(effect))
+                continue;
             auto& one = tried[effect] = {vote, {}};
             if (vote.standsAlone())
                 continue;
@@ -90,21 +93,10 @@ public:
         return any;
     }
 
-    /// Finds linear effects that have several parts anew, now that the others are known: they may have uncovered more of them.
-    void findPartsAnew(Model& model) const
-    {
-        const auto still = withoutLaws(model, record_, quick_.threads);
-        for (std::size_t k = 1; k < model.components.size(); ++k) {
-            const auto& component = model.components[k];
-            auto anew = model;
-            if (!component.effect->linear() || component.effect->parts(component.extent).empty() || !fitByResponse(anew, k, still).usable)
-                continue;
-            if (excursion::fit(anew, record_, sections_, brief_).usable && left(anew) < left(model) / dispensable)
-                model = std::move(anew);
-        }
-    }
+    void findPartsAnew(Model& model) const { excursion::findPartsAnew(model, record_, sections_, brief_); }
 
 private:
+    const Model& base_;
     const Record& record_;
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
@@ -140,7 +132,7 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
 {
     Whole whole {base, {}, {}};
     whole.fit.usable = false;
-    const Search search(record, options);
+    const Search search(base, record, options);
     constexpr int rounds = 4;
     constexpr double worthARound = 0.8, nearNoise = 4.0;
     double now = search.left(whole.model);

@@ -8,6 +8,8 @@
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
+#include <deque>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -36,7 +38,7 @@ public:
     /// @param atStart  the normal equations at theta = scale .* start, which need not be computed again
     CompressedResidual(const NormalEvaluation& evaluate, const Eigen::VectorXd& scale, const Eigen::VectorXd& start,
                        const NormalEquations& atStart)
-        : evaluate_(evaluate), scale_(scale), start_(start), atStart_(atStart)
+        : evaluate_(evaluate), scale_(scale), known_ {{start, true, atStart}}
     {
         const auto P = static_cast<int>(scale.size());
         set_num_residuals(P + 1);
@@ -48,11 +50,14 @@ public:
         const auto P = scale_.size();
         const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], P);
         const bool gradient = jacobians && jacobians[0];
-        NormalEquations normal;
-        if (scaled == start_)
-            normal = atStart_;
-        else if (!evaluate_(scaled.cwiseProduct(scale_), gradient, normal))
-            return false;
+        const auto* known = recall(scaled, gradient);
+        if (!known) {
+            Known fresh {scaled, gradient, {}};
+            if (!evaluate_(scaled.cwiseProduct(scale_), gradient, fresh.normal))
+                return false;
+            known = &keep(std::move(fresh));
+        }
+        const auto& normal = known->normal;
         if (!std::isfinite(normal.cost))
             return false;
         Eigen::Map<Eigen::VectorXd> r(residuals, P + 1);
@@ -83,10 +88,32 @@ public:
     }
 
 private:
+    struct Known {
+        Eigen::VectorXd scaled;
+        bool gradient = false;
+        NormalEquations normal;
+    };
+
+    const Known* recall(const Eigen::VectorXd& scaled, bool gradient) const
+    {
+        for (const auto& known : known_)
+            if ((known.gradient || !gradient) && known.scaled == scaled)
+                return &known;
+        return nullptr;
+    }
+
+    const Known& keep(Known fresh) const
+    {
+        constexpr std::size_t most = 4;
+        if (known_.size() == most)
+            known_.pop_front();
+        known_.push_back(std::move(fresh));
+        return known_.back();
+    }
+
     const NormalEvaluation& evaluate_;
     const Eigen::VectorXd& scale_;
-    const Eigen::VectorXd start_;
-    const NormalEquations& atStart_;
+    mutable std::deque<Known> known_;   // beside bounds the solver asks again for where it is and where it has just been
 };
 
 class Watch final : public ceres::IterationCallback {
@@ -159,6 +186,7 @@ LeastSquaresSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& 
     solver.function_tolerance = options.costTolerance;
     solver.parameter_tolerance = 1e-10;
     solver.gradient_tolerance = 1e-30;
+    solver.line_search_interpolation_type = ceres::QUADRATIC;   // beside bounds: from costs, which are had far cheaper than gradients
     solver.initial_trust_region_radius = 1e3;
     solver.num_threads = 1;
     solver.logging_type = ceres::SILENT;
