@@ -4,6 +4,7 @@
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FeedbackError.h"
 #include "Engine/Driver/Fit.h"
+#include "Engine/Driver/FitResponse.h"
 
 #include <catch2/catch.hpp>
 
@@ -166,5 +167,23 @@ TEST_CASE("The memories that no parameter moves are just those that say so", "[f
         }
         INFO(law->id());
         CHECK(law->remembersMotionAlone() == (size > 0 && !moved));
+    }
+}
+
+TEST_CASE("Less what the laws add, a take shows the responses of its linear part", "[fed]")
+{
+    auto [record, model, sections] = ready({{"force-factor", 0.3}, {"stiffness", 0.3}});
+    CHECK(withoutLaws(model, record).sections.front().measured == record.sections.front().measured);   // no law yet
+    const auto extent = visitedExtent(model, record, 10);
+    for (const auto* id : {"force-factor", "stiffness"})
+        model = withEffect(model, effectNamed(id), extent);
+    FitOptions options;
+    options.fed = true;
+    fit(model, record, sections, options);
+    const auto before = responsesOf(record, -1), after = responsesOf(withoutLaws(model, record), -1);
+    REQUIRE(before.size() == after.size());
+    for (std::size_t c = 0; c < before.size(); ++c) {
+        INFO(name(before[c].quantity));
+        CHECK(responseErrorDb(model, after[c]) < responseErrorDb(model, before[c]) - 15.0);
     }
 }

@@ -140,7 +140,9 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
     result.levels = record.levels.empty() ? std::vector<double> {0.0} : record.levels;
     result.noiseKnown = record.noiseKnown;
     result.validated = std::any_of(record.sections.begin(), record.sections.end(), [](const Section& s) { return s.validation; });
-    const bool drifts = std::any_of(model.components.begin(), model.components.end(), [](const Component& part) { return part.effect->slow(); });
+    // What is slow, or still relaxes when the periods begin that count, differs from period to period by itself.
+    const bool drifts = std::any_of(model.components.begin(), model.components.end(),
+                                    [](const Component& part) { return part.effect->slow() || part.effect->relaxes(); });
     NormalEquations everything;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         ChannelComparison channel;

@@ -148,9 +148,7 @@ void Improvement::push(Rung rung, const Progress& progress)
     if (const auto* record = std::get_if<Record>(&data_);
         record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0) {
         auto better = rung.model;
-        auto brief = options_.diagnose.fit;
-        brief.search = {10, 1e-3};
-        if (const auto run = fit(better, *record, estimationSections(*record), brief, progress.part(0.5, 0.7)); run.usable) {
+        if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, progress.part(0.5, 0.7)); run.usable) {
             rung.model = std::move(better);
             rung.fit = run;
             judge(progress.part(0.7, 1.0));

@@ -14,6 +14,8 @@
 namespace excursion {
 namespace {
 
+constexpr double nearNoise = 4.0;   // mean squared residual, in units of the noise
+
 /// The cost of a model that leaves this, infinite where it runs away.
 double costOf(const Model& model, const std::vector<SectionFit>& fits)
 {
@@ -99,6 +101,25 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     return fitFed(model, record, sections, chosen, progress);
 }
 
+FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
+{
+    const auto sections = estimationSections(record);
+    constexpr double clean = 1.2;
+    auto rough = options;
+    rough.search = {15, 1e-3};
+    auto summary = fit(model, record, sections, rough, progress.part(0.0, 0.3));
+    if (!summary.usable || (record.noiseKnown && summary.costPerResidual > nearNoise))
+        return summary;
+    auto fine = options;
+    fine.exactGradient = true;
+    fine.search.costTolerance = std::max(fine.search.costTolerance, 5e-5);
+    summary = fit(model, record, sections, fine, progress.part(0.3, 0.6));
+    if (record.noiseKnown && summary.usable && summary.costPerResidual < clean)
+        return summary;   // along a valley at the noise the cost falls by next to nothing for long
+    fine.search = options.search;
+    return fit(model, record, sections, fine, progress.part(0.6, 1.0));
+}
+
 bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
 {
     if (!hasPeriods(record))
@@ -159,13 +180,10 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         quick.search = {15, 1e-4};
         summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
         // While more is missing a simulation tells little more than laws that are fed.
-        constexpr double nearNoise = 4.0;
         if (record.noiseKnown && summary.costPerResidual > nearNoise)
             return summary;
     }
-    // Along a valley the cost may fall by next to nothing for long.
-    chosen.search.costTolerance = std::max(chosen.search.costTolerance, 5e-5);
-    return fit(model, record, sections, chosen, progress.part(0.75, 1.0));
+    return fitBySimulation(model, record, chosen, progress.part(0.75, 1.0));
 }
 
 } // namespace excursion

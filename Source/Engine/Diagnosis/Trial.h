@@ -8,6 +8,9 @@
 
 namespace excursion {
 
+/// A fit by simulation on all that is not held out, as thorough as it pays: rough far above the noise, to the end where it comes near and is not there yet.
+FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, const Progress& = {});
+
 /// Sections for a quick fit: of each level up to `realizations` of those not held out.
 std::vector<std::size_t> trialSections(const Record&, int realizations);
 

@@ -272,6 +272,8 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     }
     run.substeps = std::max(stableSubsteps(model, record.sampleRate),
                             options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));
+    if (options.exactGradient)
+        run.gradientSubsteps = run.substeps;
     auto summary = search(model, [&](const std::vector<Eigen::Index>& active, bool gradient) {
         run.gradient = gradient;
         return outputError(model, record, sections, active, run, progress);

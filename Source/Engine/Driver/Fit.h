@@ -15,6 +15,7 @@ struct FitOptions {
     double simulationTolerance = 0.0;    ///< relative accuracy of the integration; 0: a seventh of the noise, at most 1e-4
     int substeps = 0;                    ///< integration steps a sample; 0: chosen from the tolerance
     unsigned threads = 2;
+    bool exactGradient = false;   ///< sensitivities as finely as the simulation: slower steps, fewer of them where some directions hardly count
     bool fed = false;                    ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast and nearly as
                                          ///< good, for starts and trials; a take without periods is simulated all the same
 

@@ -186,7 +186,6 @@ LeastSquaresSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& 
     solver.function_tolerance = options.costTolerance;
     solver.parameter_tolerance = 1e-10;
     solver.gradient_tolerance = 1e-30;
-    solver.line_search_interpolation_type = ceres::QUADRATIC;   // beside bounds: from costs, which are had far cheaper than gradients
     solver.initial_trust_region_radius = 1e3;
     solver.num_threads = 1;
     solver.logging_type = ceres::SILENT;

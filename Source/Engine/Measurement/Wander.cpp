@@ -122,6 +122,16 @@ std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
             quietly = {quietly.scatter + quiet[b].scatter, quietly.power + quiet[b].power, 0};
         }
     constexpr double leastRise = 0.3, follows = 0.5;   // decades; a share of that
+    // A transient that has not quite died away is not worth a word, nor is what noise hides.
+    constexpr double worthAWord = 0.1;   // of all that is scattered within the band
+    double wander = 0.0, all = 0.0;
+    for (const auto& band : loud)
+        wander += band.lines * split.share * band.power;
+    const auto scatter = periodNoise(take, channel, static_cast<int>(e.levels.size()) - 1).variance;
+    for (int k = e.lines.front(); k <= e.lines.back(); ++k)
+        all += scatter[static_cast<std::size_t>(k)];
+    if (wander < worthAWord * all)
+        return std::nullopt;
     const double rise = std::log10(loudly.power / std::max(quietly.power, 1e-300));
     if (!(loudly.scatter > 0.0) || rise < leastRise || std::log10(loudly.scatter / std::max(quietly.scatter, 1e-300)) < follows * rise)
         return std::nullopt;
