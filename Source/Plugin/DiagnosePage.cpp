@@ -158,7 +158,10 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     truth_.setVisible(truth_.isVisible() && !findings.truth.empty() && ladder.rungs.size() > 1);
     truth_.setText("Hidden: " + words(findings.truth), juce::dontSendNotification);
     const bool fit = findings.report.fitForUse();
-    verdict_.setText(words(!ladder.rungs.empty() ? ladder.sentence : fit ? "The first model is being fitted." : findings.report.verdict()), juce::dontSendNotification);
+    const bool unknown = !ladder.rungs.empty() && ladder.verdict == Verdict::unknownEffect;
+    const auto verdict = unknown ? foundInWords(ladder) + "Left unexplained: " + inFewWords(ladder.rungs.back().diagnosis.remainder) + "." : ladder.sentence;
+    verdict_.setTooltip(words(ladder.sentence));
+    verdict_.setText(words(!ladder.rungs.empty() ? verdict : fit ? "The first model is being fitted." : findings.report.verdict()), juce::dontSendNotification);
     verdict_.setColour(juce::Label::textColourId, !ladder.rungs.empty() || !fit ? toneOf(fit ? ladder.verdict : Verdict::badMeasurement) : look::dim);
     if (!ladder.rungs.empty()) {
         const auto& diagnosis = ladder.rungs.back().diagnosis;

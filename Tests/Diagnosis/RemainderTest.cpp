@@ -73,6 +73,8 @@ TEST_CASE("What is left is told by channel, band, kind and growth", "[remainder]
     CHECK(part.growth.value() == Approx(6.0 / (20.0 * std::log10(4.0))));
     REQUIRE(remainder.looksLike.size() == 1);   // a narrow band of the excited lines
     CHECK_THAT(remainder.looksLike.front(), Catch::StartsWith("another resonance near"));
+    CHECK_THAT(inWords(remainder), Catch::StartsWith("current error at -40.0 dB") && Catch::EndsWith(remainder.looksLike.front()));
+    CHECK(inFewWords(remainder) == "current error at -40.0 dB over noise at -60.0 dB; it looks like " + remainder.looksLike.front());
     CHECK_THAT(inWords(remainder), Catch::Contains("current error at -40.0 dB over noise at -60.0 dB"));
 }
 

@@ -152,23 +152,42 @@ Remainder remainderOf(const Comparison& comparison)
     return remainder;
 }
 
+namespace {
+
+std::string amountOf(const ChannelRemainder& part)
+{
+    return part.title + " error at " + figure(part.db) + " dB"
+           + (part.noiseFloorDb ? " over noise at " + figure(*part.noiseFloorDb) + " dB" : std::string());
+}
+
+std::string likeness(const Remainder& remainder)
+{
+    std::string text;
+    for (std::size_t k = 0; k < remainder.looksLike.size(); ++k)
+        text += (k == 0 ? "; it looks like " : ", or ") + remainder.looksLike[k];
+    return text;
+}
+
+} // namespace
+
+std::string inFewWords(const Remainder& remainder)
+{
+    return remainder.channels.empty() ? std::string() : amountOf(remainder.channels.front()) + likeness(remainder);
+}
+
 std::string inWords(const Remainder& remainder)
 {
     if (remainder.channels.empty())
         return "";
     const auto& first = remainder.channels.front();
-    std::string text = first.title + " error at " + figure(first.db) + " dB";
-    if (first.noiseFloorDb)
-        text += " over noise at " + figure(*first.noiseFloorDb) + " dB";
+    auto text = amountOf(first);
     if (first.high > 0.0)
         text += ", mostly from " + frequencyText(first.low) + " to " + frequencyText(first.high);
     if (const auto kinds = kindsText(first.kinds); !kinds.empty())
         text += "; " + kinds;
     if (first.growth)
         text += "; it grows by " + figure(*first.growth, "%.2f") + " dB a dB of level";
-    for (std::size_t k = 0; k < remainder.looksLike.size(); ++k)
-        text += (k == 0 ? "; it looks like " : ", or ") + remainder.looksLike[k];
-    return text;
+    return text + likeness(remainder);
 }
 
 std::string unexplained(const Remainder& remainder)

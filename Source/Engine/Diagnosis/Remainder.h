@@ -43,6 +43,8 @@ Remainder remainderOf(const Comparison&);
 
 /// Channel, band, parity, growth, place and likeness of the first channel as a part of a sentence.
 std::string inWords(const Remainder&);
+/// The same without band, parity and growth, where there is little room.
+std::string inFewWords(const Remainder&);
 /// The sentence for something that no effect explains.
 std::string unexplained(const Remainder&);
 
