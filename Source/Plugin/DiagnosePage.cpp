@@ -161,7 +161,8 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     const bool unknown = !ladder.rungs.empty() && ladder.verdict == Verdict::unknownEffect;
     const auto verdict = unknown ? foundInWords(ladder) + "Left unexplained: " + inFewWords(ladder.rungs.back().diagnosis.remainder) + "." : ladder.sentence;
     verdict_.setTooltip(words(ladder.sentence));
-    verdict_.setText(words(!ladder.rungs.empty() ? verdict : fit ? "The first model is being fitted." : findings.report.verdict()), juce::dontSendNotification);
+    verdict_.setText(words(!ladder.rungs.empty() ? verdict : fit ? "The first model is being fitted." : findings.report.verdict()),
+                     juce::dontSendNotification);
     verdict_.setColour(juce::Label::textColourId, !ladder.rungs.empty() || !fit ? toneOf(fit ? ladder.verdict : Verdict::badMeasurement) : look::dim);
     if (!ladder.rungs.empty()) {
         const auto& diagnosis = ladder.rungs.back().diagnosis;

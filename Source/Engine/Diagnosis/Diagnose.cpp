@@ -135,6 +135,12 @@ bool DiagnoseOptions::isValid(std::string* reason) const
     return true;
 }
 
+const RankedEffect* Diagnosis::find(std::string_view effect) const
+{
+    const auto found = std::find_if(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == effect; });
+    return found == ranking.end() ? nullptr : &*found;
+}
+
 RankedEffect promisedBy(const Score& score)
 {
     RankedEffect entry;

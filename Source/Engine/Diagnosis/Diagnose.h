@@ -11,6 +11,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace excursion {
@@ -46,6 +47,8 @@ struct Diagnosis {
     std::string measureNext;                  ///< what would tell them apart
     Remainder remainder;                      ///< what the model as it was given leaves
     std::vector<Problem> problems;            ///< of the take
+
+    const RankedEffect* find(std::string_view effect) const;   ///< of the ranking; null when it is not there
 };
 
 struct DiagnoseOptions {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Improve.h"
 
+#include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
 
 #include <algorithm>
@@ -26,8 +27,8 @@ double worth(const Comparison& before, const Comparison& after, const Comparison
 /// Whether the diagnosis that proposed a rung's effect said that it explains what nothing else does.
 bool stoodAlone(const Rung& before, const Rung& rung)
 {
-    const auto& ranking = before.diagnosis.ranking;
-    return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == rung.added && r.vote.standsAlone(); });
+    const auto* ranked = before.diagnosis.find(rung.added);
+    return ranked && ranked->vote.standsAlone();
 }
 
 /// When something unknown is left in the end, effects that removed little more than that may have explained a symptom of it: they are
@@ -62,10 +63,10 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
     };
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
-    const auto climbed = [&] { return static_cast<int>(work.ladder().rungs.size()) - 1; };
-    const auto at = [&](double rungs) { return begun + (done - begun) * rungs / options.maximumRungs; };
-    while (climbed() < options.maximumRungs && work.ladder().verdict == Verdict::missingEffect) {
-        const auto part = progress.part(at(climbed()), at(climbed() + 1));
+    const double share = (done - begun) / static_cast<double>(catalogue().size());   // of a rung: none has an effect twice
+    while (work.ladder().verdict == Verdict::missingEffect) {
+        const double at = begun + share * static_cast<double>(work.ladder().rungs.size() - 1);
+        const auto part = progress.part(at, at + share);
         if (!work.addTogether(part.part(0.0, 0.7))) {
             tell();   // its diagnosis stands
             work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, part.part(0.7, 1.0));

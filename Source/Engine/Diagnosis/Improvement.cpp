@@ -93,7 +93,7 @@ bool Improvement::addTogether(const Progress& progress)
     if (!record || !hasPeriods(*record) || backed < 2)
         return false;
     const auto whole = fitWhole(base.model, *record, options_.diagnose.fit, progress.part(0.0, 0.5));
-    if (whole.votes.size() < 2 || ladder_.rungs.size() - 1 + whole.votes.size() > static_cast<std::size_t>(options_.maximumRungs))
+    if (whole.votes.size() < 2)
         return false;
     auto rungs = rungsTo(whole, base, *record, options_.diagnose, progress.part(0.5, 0.8));
     if (!(rungs.back().comparison.chi < base.comparison.chi))
@@ -124,11 +124,10 @@ void Improvement::add(const std::string& id, const Progress& progress)
     Rung rung;
     rung.added = id;
     rung.model = last.model;
-    const auto& ranking = last.diagnosis.ranking;
-    const auto ranked = std::find_if(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == id; });
-    if (ranked != ranking.end())
+    const auto* ranked = last.diagnosis.find(id);
+    if (ranked)
         rung.predictedErrorDb = ranked->predictedErrorDb;
-    if (ranked != ranking.end() && !ranked->model.components.empty())
+    if (ranked && !ranked->model.components.empty())
         rung.model = ranked->model;
     else
         std::visit([&](const auto& d) { tryOne(rung.model, d, effect, options_.diagnose.fit, progress.part(0.0, 0.25)); }, data_);

@@ -14,7 +14,6 @@ namespace excursion {
 struct ImproveOptions {
     DiagnoseOptions diagnose;
     std::vector<std::string> with;   ///< effects that the first model has already
-    int maximumRungs = 13;
     std::function<void(const Rung&)> finished;   ///< called by improve() with each rung once its diagnosis is known; may be empty
 };
 

@@ -13,11 +13,8 @@ std::vector<KnownEffect> knownEffects(const Ladder& ladder)
     for (const auto& id : ladder.rungs.front().model.effectIds())
         known.push_back({id, {}});
     for (std::size_t n = 1; n < ladder.rungs.size(); ++n) {
-        KnownEffect one {ladder.rungs[n].added, {}};
-        for (const auto& ranked : ladder.rungs[n - 1].diagnosis.ranking)
-            if (ranked.effect == one.effect)
-                one.confidence = ranked.confidence;
-        known.push_back(std::move(one));
+        const auto* ranked = ladder.rungs[n - 1].diagnosis.find(ladder.rungs[n].added);
+        known.push_back({ladder.rungs[n].added, ranked ? std::optional(ranked->confidence) : std::nullopt});
     }
     return known;
 }

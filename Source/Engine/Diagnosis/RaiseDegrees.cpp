@@ -27,16 +27,10 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
         return raised;
     std::vector<Eigen::Index> old;
     std::vector<std::vector<Eigen::Index>> added(higher.components.size());
-    Eigen::Index position = 0, index = 0;
+    Eigen::Index position = 0;
     const auto visit = [&](const Parameter& p, bool isNew, std::size_t k) {
-        if (p.free) {
-            if (isNew)
-                added[k].push_back(position);
-            else
-                old.push_back(position);
-            ++position;
-        }
-        ++index;
+        if (p.free)
+            (isNew ? added[k] : old).push_back(position++);
     };
     for (std::size_t k = 0; k < higher.components.size(); ++k)
         for (const auto& p : higher.components[k].parameters) {
@@ -52,7 +46,6 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
     const double price = 2.4 * unit;
     // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
-    constexpr double nearNoise = 4.0;
     const double least = record.noiseKnown && unit < nearNoise ? 0.0 : 0.02 * now;
     Model result = model;
     for (const auto k : candidates) {

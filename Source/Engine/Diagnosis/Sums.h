@@ -9,6 +9,9 @@
 
 namespace excursion {
 
+/// Mean squared residuals in units of the noise: where a model is near enough for details to count, and where nothing is needed beyond.
+inline constexpr double nearNoise = 4.0, atNoise = 1.3;
+
 struct ScoreOptions {
     int substeps = 1;
     unsigned threads = 2;

@@ -14,8 +14,6 @@
 namespace excursion {
 namespace {
 
-constexpr double nearNoise = 4.0;   // mean squared residual, in units of the noise
-
 /// The cost of a model that leaves this, infinite where it runs away.
 double costOf(const Model& model, const std::vector<SectionFit>& fits)
 {
@@ -33,6 +31,11 @@ OutputErrorOptions withoutGradient(const FitOptions& options)
     run.substeps = options.substeps;
     run.threads = options.threads;
     return run;
+}
+
+double quickCost(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+{
+    return costOf(model, quickError(model, record, sections, {}, withoutGradient(options)));
 }
 
 /// The strengths of the newest component times a factor.
@@ -76,7 +79,7 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     FitOptions chosen = options;
     if (chosen.substeps == 0)
         chosen.substeps = substepsFor(model, record, options.simulationTolerance);
-    const auto left = [&](const Model& candidate) { return costOf(candidate, quickError(candidate, record, sections, {}, withoutGradient(chosen))); };
+    const auto left = [&](const Model& candidate) { return quickCost(candidate, record, sections, chosen); };
     Model best = newestScaled(model, 0.0);
     double lowest = left(best);
     for (const double factor : {1.0, 0.5, 0.2}) {
@@ -126,7 +129,6 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
         return false;
     FitOptions fed = options;
     fed.fed = true;
-    const auto left = [&](const Model& m) { return costOf(m, quickError(m, record, sections, {}, withoutGradient(options))); };
     constexpr double worthIt = 0.95;
     const auto still = withoutLaws(model, record, options.threads);
     bool found = false;
@@ -135,7 +137,8 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
         if (!component.effect->linear() || component.effect->parts(component.extent).empty())
             continue;
         auto anew = model;
-        if (fitByResponse(anew, k, still).usable && fit(anew, record, sections, fed).usable && left(anew) < worthIt * left(model)) {
+        if (fitByResponse(anew, k, still).usable && fit(anew, record, sections, fed).usable
+            && quickCost(anew, record, sections, options) < worthIt * quickCost(model, record, sections, options)) {
             model = std::move(anew);
             found = true;
         }
@@ -174,8 +177,7 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
         summary = fitFed(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
     if (hasPeriods(record)) {
-        constexpr double clean = 1.3;
-        if (record.noiseKnown && summary.costPerResidual > clean)
+        if (record.noiseKnown && summary.costPerResidual > atNoise)
             findPartsAnew(model, record, sections, quick);
         quick.search = {15, 1e-4};
         summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));

@@ -16,7 +16,6 @@ namespace excursion {
 namespace {
 
 constexpr double dispensable = 1.05;   // times what is left: what costs no more than that is not needed
-constexpr double complete = 1.3;       // times the noise: nothing is needed beyond
 
 /// An effect that a model has.
 struct Tried {
@@ -134,9 +133,9 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     whole.fit.usable = false;
     const Search search(base, record, options);
     constexpr int rounds = 4;
-    constexpr double worthARound = 0.8, nearNoise = 4.0;
+    constexpr double worthARound = 0.8;
     double now = search.left(whole.model);
-    for (int n = 0; n < rounds && !(record.noiseKnown && now < complete); ++n) {
+    for (int n = 0; n < rounds && !(record.noiseKnown && now < atNoise); ++n) {
         const auto part = progress.part(0.7 * n / rounds, 0.7 * (n + 1) / rounds);
         auto fuller = withBacked(whole.model, record, score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, search);
         if (fuller.components.size() == whole.model.components.size())
@@ -158,7 +157,7 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
     const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
     if (search.takeOut(whole.model, [&](const Vote& vote) {
-            return unknownLeft ? vote.standsAlone() : whole.fit.costPerResidual * std::pow(10.0, vote.uniqueDb / 10.0) > complete;
+            return unknownLeft ? vote.standsAlone() : whole.fit.costPerResidual * std::pow(10.0, vote.uniqueDb / 10.0) > atNoise;
         }))
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
     for (const auto& [effect, tried] : search.tryWithout(whole.model))

@@ -30,9 +30,9 @@ std::vector<double> powerOf(const Measurement& take, const Channel& channel, int
 }
 
 /// Means in bands of a third of an octave, or of as many lines as it takes to know a variance.
-std::vector<Band> bandsOf(const Measurement& take, const Channel& channel, int level)
+std::vector<Band> bandsOf(const Measurement& take, const Channel& channel, int level, const PeriodNoise& noise)
 {
-    const auto noise = periodNoise(take, channel, level), inputNoise = periodNoise(take, take.input(), level);
+    const auto inputNoise = periodNoise(take, take.input(), level);
     if (noise.variance.empty() || inputNoise.variance.empty())
         return {};
     const auto output = powerOf(take, channel, level), input = powerOf(take, take.input(), level);
@@ -109,7 +109,9 @@ std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
     const auto& e = periodicExcitation(take);
     if (e.periods < 2 || e.levels.size() < 2)
         return std::nullopt;
-    const auto loud = bandsOf(take, channel, static_cast<int>(e.levels.size()) - 1), quiet = bandsOf(take, channel, 0);
+    const int loudest = static_cast<int>(e.levels.size()) - 1;
+    const auto scatter = periodNoise(take, channel, loudest);
+    const auto loud = bandsOf(take, channel, loudest, scatter), quiet = bandsOf(take, channel, 0, periodNoise(take, channel, 0));
     constexpr std::size_t fewest = 4;
     if (loud.size() < fewest || quiet.size() != loud.size() || !std::all_of(loud.begin(), loud.end(), [](const Band& b) { return b.scatter > 0.0; }))
         return std::nullopt;
@@ -127,9 +129,8 @@ std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
     double wander = 0.0, all = 0.0;
     for (const auto& band : loud)
         wander += band.lines * split.share * band.power;
-    const auto scatter = periodNoise(take, channel, static_cast<int>(e.levels.size()) - 1).variance;
     for (int k = e.lines.front(); k <= e.lines.back(); ++k)
-        all += scatter[static_cast<std::size_t>(k)];
+        all += scatter.variance[static_cast<std::size_t>(k)];
     if (wander < worthAWord * all)
         return std::nullopt;
     const double rise = std::log10(loudly.power / std::max(quietly.power, 1e-300));
