@@ -38,6 +38,7 @@ void addRank(CLI::App&, Terminal&);
 void addReport(CLI::App&, Terminal&);
 void addEffects(CLI::App&, Terminal&);
 void addSimulate(CLI::App&, Terminal&);
+void addWhatIf(CLI::App&, Terminal&);
 void addPredistort(CLI::App&, Terminal&);
 
 } // namespace excursion::cli

@@ -128,6 +128,7 @@ int main(int argc, char** argv)
     addReport(app, terminal);
     cli::addEffects(app, terminal);
     cli::addSimulate(app, terminal);
+    cli::addWhatIf(app, terminal);
     cli::addPredistort(app, terminal);
 
     app.footer(footer);   // last, as the verbs would inherit it

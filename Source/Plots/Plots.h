@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Design/WhatIf.h"
 #include "Engine/Diagnosis/Ladder.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Plots/Plot.h"
@@ -23,6 +24,9 @@ std::vector<Plot> lawPlots(const Model&);
 
 /// How a channel's error fell from rung to rung.
 Plot fallPlot(const Ladder&, Quantity);
+
+/// Distortion of each channel against frequency: of the whole model, and of the four effects that alone make most.
+std::vector<Plot> distortionPlots(const DistortionByEffect&);
 
 /// Measured frequency responses with those of the first and the last model.
 std::vector<Plot> responsePlots(const Ladder&, const std::vector<ResponseTarget>&);

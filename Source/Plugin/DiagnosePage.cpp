@@ -11,7 +11,7 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr int rowHeight = 118;
+constexpr int rowHeight = 118, lineHeight = 42;
 
 juce::Colour toneOf(Verdict verdict)
 {
@@ -54,6 +54,26 @@ Plot evidenceOf(const RankedEffect& ranked, const Findings& findings)
     return plots.empty() ? Plot {} : plots.front();
 }
 
+/// What the last model's effects do to the sound.
+Plot soundOf(const Findings& findings)
+{
+    if (!findings.file.whatIf)
+        return {};
+    auto plot = distortionPlots(findings.file.whatIf->distortion).back();
+    plot.title = "Distortion of the sound";
+    return plot;
+}
+
+void paintCard(juce::Graphics& g, juce::Rectangle<float> area, bool chosen)
+{
+    g.setColour(look::panel);
+    g.fillRoundedRectangle(area, 4.0f);
+    if (chosen) {
+        g.setColour(look::accent);
+        g.fillRect(area.withWidth(3.0f));
+    }
+}
+
 } // namespace
 
 /// One effect that competes.
@@ -73,23 +93,24 @@ public:
         repaint();
     }
     void enable(bool on) { add_.setEnabled(on); }
+    int height() const { return speaksFor() ? rowHeight : lineHeight; }
     void mouseDown(const juce::MouseEvent&) override { selected_(); }
 
     void paint(juce::Graphics& g) override
     {
         auto area = getLocalBounds().toFloat().reduced(1.0f, 3.0f);
-        g.setColour(look::panel);
-        g.fillRoundedRectangle(area, 4.0f);
-        if (chosen_) {
-            g.setColour(look::accent);
-            g.fillRect(area.withWidth(3.0f));
-        }
+        paintCard(g, area, chosen_);
         area.reduce(12.0f, 6.0f);
         auto head = area.removeFromTop(22.0f).withTrimmedRight(78.0f);
         g.setFont(15.0f);
         g.setColour(look::text);
         g.drawText(title_, head, juce::Justification::left);
         g.setFont(12.5f);
+        if (!speaksFor()) {
+            g.setColour(look::dim);
+            g.drawText("takes nothing away", head, juce::Justification::right);
+            return;
+        }
         auto bar = area.removeFromTop(17.0f);
         auto gauge = bar.removeFromLeft(60.0f).withSizeKeepingCentre(60.0f, 6.0f);
         g.setColour(look::background);
@@ -103,14 +124,53 @@ public:
         g.drawFittedText(reason_, area.getSmallestIntegerContainer(), juce::Justification::topLeft, 4, 1.0f);
     }
 
-    void resized() override { add_.setBounds(getWidth() - 84, 8, 72, 24); }
+    void resized() override { add_.setBounds(getWidth() - 84, 9, 72, 24); }
 
 private:
+    bool speaksFor() const { return confidence_ >= 0.005; }   // else all of it would be about nothing
+
     juce::String title_, fall_, reason_;
     double confidence_;
     bool chosen_ = false;
     std::function<void()> selected_;
     juce::TextButton add_ {"Add"};
+};
+
+/// What the model's effects do to the sound, and what to change in the driver.
+class DiagnosePage::Advice : public juce::Component {
+public:
+    Advice(const WhatIf& whatIf, std::function<void()> selected) : selected_(std::move(selected))
+    {
+        text_.append("What makes the distortion, and what limits the stroke\n", juce::Font(15.0f), look::text);
+        text_.append(words(advice(whatIf)), juce::Font(13.5f), look::text.withAlpha(0.85f));
+        text_.setLineSpacing(3.0f);
+    }
+
+    int heightFor(int width) const
+    {
+        juce::TextLayout layout;
+        layout.createLayout(text_, static_cast<float>(width) - 2.0f * margin);
+        return static_cast<int>(std::ceil(layout.getHeight())) + 2 * static_cast<int>(margin);
+    }
+    void choose(bool chosen)
+    {
+        chosen_ = chosen;
+        repaint();
+    }
+    void mouseDown(const juce::MouseEvent&) override { selected_(); }
+
+    void paint(juce::Graphics& g) override
+    {
+        const auto area = getLocalBounds().toFloat().reduced(1.0f, 3.0f);
+        paintCard(g, area, chosen_);
+        text_.draw(g, area.reduced(margin, margin - 3.0f));
+    }
+
+private:
+    static constexpr float margin = 12.0f;
+    juce::AttributedString text_;
+    bool chosen_ = false;
+    std::function<void()> selected_;
 };
 
 DiagnosePage::DiagnosePage(Window& window) : Page(window)
@@ -153,6 +213,7 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     const auto& findings = *fresh;
     const auto& ladder = findings.file.ladder;
     candidates_.clear();
+    advice_.reset();
     falls_.clear();
     reveal_.setVisible(!findings.truth.empty());
     truth_.setVisible(truth_.isVisible() && !findings.truth.empty() && ladder.rungs.size() > 1);
@@ -166,6 +227,10 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     verdict_.setColour(juce::Label::textColourId, !ladder.rungs.empty() || !fit ? toneOf(fit ? ladder.verdict : Verdict::badMeasurement) : look::dim);
     if (!ladder.rungs.empty()) {
         const auto& diagnosis = ladder.rungs.back().diagnosis;
+        if (findings.file.whatIf && ladder.verdict != Verdict::missingEffect) {
+            advice_ = std::make_unique<Advice>(*findings.file.whatIf, [this] { select(noCandidate); });
+            rows_.addAndMakeVisible(*advice_);
+        }
         for (std::size_t k = 0; k < diagnosis.ranking.size(); ++k) {
             candidates_.push_back(std::make_unique<Candidate>(diagnosis.ranking[k], diagnosis.error, k, [this, k] { select(k); }, [this, k] { add(k); }));
             rows_.addAndMakeVisible(*candidates_.back());
@@ -178,7 +243,7 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
             addAndMakeVisible(*falls_.back());
         }
     }
-    select(0);
+    select(advice_ ? noCandidate : 0);
     resized();
     repaint();
 }
@@ -193,9 +258,11 @@ void DiagnosePage::add(std::size_t place)
 void DiagnosePage::select(std::size_t place)
 {
     selected_ = place;
+    if (advice_)
+        advice_->choose(place == noCandidate);
     for (std::size_t k = 0; k < candidates_.size(); ++k)
         candidates_[k]->choose(k == place);
-    evidence_.show(place < candidates_.size() ? evidenceOf(findings_->file.ladder.rungs.back().diagnosis.ranking[place], *findings_) : Plot {});
+    evidence_.show(place < candidates_.size() ? evidenceOf(findings_->file.ladder.rungs.back().diagnosis.ranking[place], *findings_) : soundOf(*findings_));
 }
 
 void DiagnosePage::tick()
@@ -211,7 +278,7 @@ void DiagnosePage::tick()
 
 void DiagnosePage::paint(juce::Graphics& g)
 {
-    if (findings_ && candidates_.empty() && !findings_->file.ladder.rungs.empty()) {
+    if (findings_ && candidates_.empty() && !advice_ && !findings_->file.ladder.rungs.empty()) {
         g.setColour(look::dim);
         g.setFont(14.0f);
         g.drawFittedText("No effect of the catalogue competes.", list_.getBounds().removeFromTop(60), juce::Justification::centred, 2);
@@ -231,9 +298,15 @@ void DiagnosePage::resized()
     area.removeFromBottom(8);
     list_.setBounds(area.removeFromLeft(area.getWidth() * 11 / 20));
     area.removeFromLeft(8);
-    rows_.setSize(list_.getMaximumVisibleWidth(), std::max(1, rowHeight * static_cast<int>(candidates_.size())));
-    for (std::size_t k = 0; k < candidates_.size(); ++k)
-        candidates_[k]->setBounds(0, rowHeight * static_cast<int>(k), rows_.getWidth(), rowHeight);
+    const int width = list_.getMaximumVisibleWidth(), head = advice_ ? advice_->heightFor(width) : 0;
+    if (advice_)
+        advice_->setBounds(0, 0, width, head);
+    int below = head;
+    for (auto& candidate : candidates_) {
+        candidate->setBounds(0, below, width, candidate->height());
+        below += candidate->height();
+    }
+    rows_.setSize(width, std::max(1, below));
     auto top = area.removeFromTop(area.getHeight() / 2);
     evidence_.setBounds(top);
     const int columns = falls_.size() > 2 ? 2 : 1, rows = std::max(1, (static_cast<int>(falls_.size()) + columns - 1) / columns);

@@ -25,12 +25,15 @@ public:
 
 private:
     class Candidate;
+    class Advice;
+    static constexpr auto noCandidate = static_cast<std::size_t>(-1);   ///< selects the advice
     void select(std::size_t place);
 
     std::shared_ptr<const Findings> findings_;
     juce::Label verdict_, truth_;
     juce::Viewport list_;
     juce::Component rows_;
+    std::unique_ptr<Advice> advice_;
     std::vector<std::unique_ptr<Candidate>> candidates_;
     std::size_t selected_ = 0;
     PlotView evidence_;

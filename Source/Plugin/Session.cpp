@@ -135,8 +135,10 @@ void Session::publishLadder()
     auto fresh = std::make_shared<Findings>(*findings());
     if (fresh->file.responses.empty())
         fresh->file = makeLadderFile(improvement_->ladder(), *fresh->take, fresh->source);
-    else
+    else {
         fresh->file.ladder = improvement_->ladder();
+        fresh->file.whatIf = whatIfOf(fresh->file.ladder.model(), *fresh->take);
+    }
     fresh->waveforms.clear();
     const auto& levels = improvement_->ladder().rungs.back().comparison.levels;
     for (std::size_t level = 0; level < levels.size(); ++level)

@@ -19,6 +19,7 @@ std::string reportHtml(const LadderFile& file)
     if (!file.ladder.rungs.empty()) {
         addRungs(page, file);
         addLaws(page, file);
+        addWhatIf(page, file);
         addResponses(page, file);
         addSpectra(page, file);
         addResiduals(page, file);

@@ -75,6 +75,31 @@ TEST_CASE("add puts an effect into the model; simulate plays it; the two agree",
     CHECK(take.at("excitation").at("realizations") == 2);
 }
 
+TEST_CASE("whatif tells the distortion that was measured, and whose it is", "[cli]")
+{
+    const auto& chain = Chain::get();
+    const Scratch scratch;
+    const auto model = (scratch / "better.json").string();
+    REQUIRE(runProgram(scratch.folder(), {"add", chain.take(), "--model", chain.model(), "stiffness", "--out", model}).code == 0);
+    const auto told = runProgram(scratch.folder(), {"whatif", model, chain.take(), "--json"});
+    REQUIRE(told.code == 0);
+    const auto document = documentOf(told, "excursion-whatif");
+    const auto measured = documentOf(runProgram(scratch.folder(), {"bla", chain.take(), "--output", "current", "--json"}), "excursion-bla");
+    for (const auto& channel : document.at("whole"))
+        if (channel.at("channel") == "current") {   // which holds little below the band, where detection lines do not reach
+            CHECK(channel.at("oddDb").get<double>() == Approx(measured.at("odd").at("db").get<double>()).margin(1.0));
+            CHECK(channel.at("evenDb").get<double>() == Approx(measured.at("even").at("db").get<double>()).margin(1.0));
+        }
+    REQUIRE(document.at("effects").size() == 1);
+    for (const auto& channel : document.at("effects").at(0).at("without"))
+        CHECK(channel.at("oddDb") == -120.0);
+    CHECK_THAT(document.at("advice").get<std::string>(), Catch::Contains("All of it is made by: Stiffness K(x)"));
+
+    const auto person = runProgram(scratch.folder(), {"whatif", model, chain.take()});
+    for (const auto* text : {"Stimulus: the loudest", "without stiffness", "compliance 1/K(x) falls to 75 %", "All of it"})
+        CHECK_THAT(person.out, Catch::Contains(text));
+}
+
 TEST_CASE("simulate plays a WAV at a full scale", "[cli]")
 {
     const auto& chain = Chain::get();

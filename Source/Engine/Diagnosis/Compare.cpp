@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/Compare.h"
 
 #include "Engine/Diagnosis/ResidualCurves.h"
+#include "Engine/Document/Figures.h"
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Linearize.h"
@@ -114,6 +115,21 @@ ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& s
 }
 
 } // namespace
+
+std::string inWords(const ErrorKinds& kinds)
+{
+    std::string text;
+    const auto add = [&](const char* what, const std::optional<double>& level) {
+        if (level)
+            text += (text.empty() ? "" : ", ") + std::string(what) + " at " + figure(*level) + " dB";
+    };
+    add("excited lines", kinds.linear);
+    add("odd detection lines", kinds.odd);
+    add("even ones", kinds.even);
+    if (!text.empty() && kinds.noise)
+        text += ", noise at " + figure(*kinds.noise) + " dB";
+    return text;
+}
 
 ErrorByChannel errorByChannel(const Comparison& comparison)
 {

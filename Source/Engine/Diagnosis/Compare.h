@@ -28,6 +28,9 @@ struct ErrorKinds {
     std::optional<double> noise;    ///< expected on as many lines by the scatter over the periods
 };
 
+/// "excited lines at -41.0 dB, odd detection lines at -60.2 dB, even ones at ...": empty where nothing is known.
+std::string inWords(const ErrorKinds&);
+
 /// Error of one channel against frequency, in bands of 1/24 octave or finer; rms per band, in the channel's unit.
 struct ErrorSpectrum {
     std::vector<double> frequency, measured, model, error, noise;

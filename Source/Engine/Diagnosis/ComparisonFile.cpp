@@ -102,15 +102,6 @@ ResidualCurve residualFrom(const JsonField& field)
 
 } // namespace
 
-Json optionalNumber(const std::optional<double>& value) { return value ? numberOrNull(*value) : Json(nullptr); }
-
-std::optional<double> optionalNumberFrom(const JsonField& field)
-{
-    if (field.isNull())
-        return std::nullopt;
-    return field.number();
-}
-
 Json toJson(const ErrorKinds& kinds)
 {
     return {{"linear", optionalNumber(kinds.linear)},
@@ -121,8 +112,8 @@ Json toJson(const ErrorKinds& kinds)
 
 ErrorKinds errorKindsFromJson(const JsonField& field)
 {
-    return {optionalNumberFrom(field.at("linear")), optionalNumberFrom(field.at("odd")),
-            optionalNumberFrom(field.at("even")), optionalNumberFrom(field.at("noise"))};
+    return {field.at("linear").optionalNumber(), field.at("odd").optionalNumber(),
+            field.at("even").optionalNumber(), field.at("noise").optionalNumber()};
 }
 
 Json toJson(const ErrorLevel& error)
@@ -134,15 +125,7 @@ Json toJson(const ErrorLevel& error)
 
 ErrorLevel errorLevelFromJson(const JsonField& field)
 {
-    return {field.at("db").numberOrNaN(), optionalNumberFrom(field.at("noiseFloorDb")), field.at("chi").numberOrNaN()};
-}
-
-Quantity quantityFromJson(const JsonField& field)
-{
-    const auto quantity = quantityNamed(field.text());
-    if (!quantity)
-        field.refuse("voltage, current, displacement, velocity, acceleration, pressure or force");
-    return *quantity;
+    return {field.at("db").numberOrNaN(), field.at("noiseFloorDb").optionalNumber(), field.at("chi").numberOrNaN()};
 }
 
 Json toJson(const std::map<Quantity, ErrorLevel>& errors)

@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Document/JsonField.h"
+#include "Engine/Measurement/MeasurementJson.h"
 
 #include <nlohmann/json.hpp>
 
@@ -31,11 +32,5 @@ std::map<Quantity, double> decibelsFromJson(const JsonField&);
 /// {"linear": -41.0, "odd": -60.2, "even": null, "noise": -80.1}
 nlohmann::ordered_json toJson(const ErrorKinds&);
 ErrorKinds errorKindsFromJson(const JsonField&);
-
-/// null where it is not known
-nlohmann::ordered_json optionalNumber(const std::optional<double>&);
-std::optional<double> optionalNumberFrom(const JsonField&);
-
-Quantity quantityFromJson(const JsonField&);
 
 } // namespace excursion

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/LadderFile.h"
 
+#include "Engine/Design/WhatIfFile.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Diagnosis/RemainderFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Measurement/FindExcitation.h"
+
+#include <algorithm>
 
 namespace excursion {
 namespace {
@@ -204,6 +207,22 @@ TakeSummary summarize(const Take& take, const std::string& path)
     return summary;
 }
 
+std::optional<WhatIf> whatIfOf(const Model& model, const Take& given, const Progress& progress)
+{
+    const auto* measurement = std::get_if<Measurement>(&given);
+    if (!measurement || std::all_of(model.components.begin(), model.components.end(), [](const Component& c) { return c.effect->linear(); }))
+        return std::nullopt;
+    auto take = *measurement;
+    completeExcitation(take);
+    try {
+        return whatIf(model, makeRecord(take), progress);
+    } catch (const Error& e) {
+        if (e.kind() != Error::Kind::numerical)
+            throw;
+        return std::nullopt;   // the ladder stands without it
+    }
+}
+
 LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& path)
 {
     Take take = given;
@@ -215,6 +234,7 @@ LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& p
         if (const auto* measurement = std::get_if<Measurement>(&take)) {
             const auto record = makeRecord(*measurement);
             file.responses = responsesOf(record, record.levels.empty() ? -1 : 0, 24);
+            file.whatIf = whatIfOf(ladder.model(), take);
         } else {
             file.responses = responsesOf(std::get<Spectra>(take));
         }
@@ -242,6 +262,7 @@ Json toJson(const LadderFile& file)
     document["responses"] = Json::array();
     for (const auto& response : file.responses)
         document["responses"].push_back(responseJson(response));
+    document["whatIf"] = file.whatIf ? toJson(*file.whatIf) : Json(nullptr);
     return document;
 }
 
@@ -259,6 +280,8 @@ LadderFile ladderFromJson(const nlohmann::json& document, const std::string& whe
         file.ladder.rungs.push_back(rungFrom(rung));
     for (const auto& response : root.at("responses").items())
         file.responses.push_back(responseFrom(response));
+    if (root.has("whatIf"))   // ladders of before have none
+        file.whatIf = whatIfFromJson(root.at("whatIf"));
     return file;
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Design/WhatIf.h"
 #include "Engine/Diagnosis/Ladder.h"
 #include "Engine/Driver/FitResponse.h"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +32,12 @@ struct LadderFile {
     Ladder ladder;
     TakeSummary take;
     std::vector<ResponseTarget> responses;   ///< measured at the quietest level; of an electrical driver the impedance is among them
+    std::optional<WhatIf> whatIf;            ///< of the last model, where it has an effect that distorts and the take is one in time
 };
+
+/// What the model's effects make of a take: of its loudest level. Nothing where no effect distorts, the take is a frequency response, or
+/// the model cannot be played.
+std::optional<WhatIf> whatIfOf(const Model&, const Take&, const Progress& = {});
 
 /// @throws Error (data) when the take has no channel to compare
 LadderFile makeLadderFile(Ladder, const Take&, const std::string& path);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Reason.h"
 
-#include "Engine/Diagnosis/Figures.h"
+#include "Engine/Document/Figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +69,7 @@ std::string reasonFor(const Effect& effect, const Model& with, const Comparison&
     if (const auto shape = law(with, effect, isAnalogue(before)); !shape.empty())
         text += shape + "; ";
     text += "look for " + effect.symptoms();
-    if (const auto kinds = channel.kindsByLevel.empty() ? std::string() : kindsText(channel.kindsByLevel.back()); !kinds.empty())
+    if (const auto kinds = channel.kindsByLevel.empty() ? std::string() : inWords(channel.kindsByLevel.back()); !kinds.empty())
         text += "; the error before: " + kinds;
     return text + ".";
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Remainder.h"
 
-#include "Engine/Diagnosis/Figures.h"
+#include "Engine/Document/Figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -183,7 +183,7 @@ std::string inWords(const Remainder& remainder)
     auto text = amountOf(first);
     if (first.high > 0.0)
         text += ", mostly from " + frequencyText(first.low) + " to " + frequencyText(first.high);
-    if (const auto kinds = kindsText(first.kinds); !kinds.empty())
+    if (const auto kinds = inWords(first.kinds); !kinds.empty())
         text += "; " + kinds;
     if (first.growth)
         text += "; it grows by " + figure(*first.growth, "%.2f") + " dB a dB of level";

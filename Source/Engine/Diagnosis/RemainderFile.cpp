@@ -29,10 +29,10 @@ ChannelRemainder partFrom(const JsonField& field)
     part.quantity = quantityFromJson(field.at("channel"));
     part.title = field.at("title").text();
     part.db = field.at("db").numberOrNaN();
-    part.noiseFloorDb = optionalNumberFrom(field.at("noiseFloorDb"));
-    part.aboveNoiseDb = optionalNumberFrom(field.at("aboveNoiseDb"));
-    part.wanderDb = optionalNumberFrom(field.at("wanderDb"));
-    part.repeats = optionalNumberFrom(field.at("repeats"));
+    part.noiseFloorDb = field.at("noiseFloorDb").optionalNumber();
+    part.aboveNoiseDb = field.at("aboveNoiseDb").optionalNumber();
+    part.wanderDb = field.at("wanderDb").optionalNumber();
+    part.repeats = field.at("repeats").optionalNumber();
     if (field.has("band")) {
         const auto band = field.at("band").numbers();
         if (band.size() != 2)
@@ -41,7 +41,7 @@ ChannelRemainder partFrom(const JsonField& field)
         part.high = band[1];
     }
     part.kinds = errorKindsFromJson(field.at("kinds"));
-    part.growth = optionalNumberFrom(field.at("growth"));
+    part.growth = field.at("growth").optionalNumber();
     return part;
 }
 

@@ -103,6 +103,13 @@ double JsonField::number() const
     return value_.get<double>();
 }
 
+std::optional<double> JsonField::optionalNumber() const
+{
+    if (isNull())
+        return std::nullopt;
+    return number();
+}
+
 double JsonField::numberOrNaN() const
 {
     if (isNull())

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,7 @@ public:
     bool flag() const;
     double number() const;                            ///< finite
     double numberOrNaN() const;                       ///< null is NaN: a number that is not known
+    std::optional<double> optionalNumber() const;     ///< null is none
     double numberWithin(double least, double most) const;
     int count(int least, int most) const;
     std::vector<double> numbers() const;              ///< array of numbers or nulls

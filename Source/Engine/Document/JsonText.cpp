@@ -59,6 +59,8 @@ void writeJson(const Json& document, const std::filesystem::path& path) { publis
 
 Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json optionalNumber(const std::optional<double>& value) { return value ? numberOrNull(*value) : Json(nullptr); }
+
 Json numbersOrNulls(const std::vector<double>& values)
 {
     auto list = Json::array();

@@ -46,15 +46,10 @@ std::vector<JsonField> atLeastOne(const JsonField& field, const std::string& exp
 Channel parseChannel(const JsonField& field)
 {
     Channel channel;
-    const auto quantityField = field.at("quantity");
-    constexpr auto known = "voltage, current, displacement, velocity, acceleration, pressure or force";
-    const auto quantity = quantityNamed(quantityField.text(known));
-    if (!quantity)
-        quantityField.refuse(known);
-    channel.quantity = *quantity;
+    channel.quantity = quantityFromJson(field.at("quantity"));
     const auto unitField = field.at("unit");
-    const auto accepted = acceptedUnits(*quantity) + " for a " + std::string(name(*quantity));
-    const auto scale = unitNamed(*quantity, unitField.text(accepted));
+    const auto accepted = acceptedUnits(channel.quantity) + " for a " + std::string(name(channel.quantity));
+    const auto scale = unitNamed(channel.quantity, unitField.text(accepted));
     if (!scale)
         unitField.refuse(accepted);
     channel.unit = scale->unit;
@@ -150,6 +145,15 @@ DriverInfo parseDriver(const JsonField& field)
 }
 
 } // namespace
+
+Quantity quantityFromJson(const JsonField& field)
+{
+    constexpr auto known = "voltage, current, displacement, velocity, acceleration, pressure or force";
+    const auto quantity = quantityNamed(field.text(known));
+    if (!quantity)
+        field.refuse(known);
+    return *quantity;
+}
 
 MeasurementHeader parseMeasurementJson(std::string_view text, const std::string& source)
 {

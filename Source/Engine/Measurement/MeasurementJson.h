@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Document/JsonField.h"
 #include "Engine/Measurement/Measurement.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,6 +22,9 @@ struct MeasurementHeader {
 /// known are left alone; those that are must have the right type and a possible value.
 /// Throws Error (input): "'source': field 'channels[1].unit' is ..., expected ...".
 MeasurementHeader parseMeasurementJson(std::string_view text, const std::string& source);
+
+/// "current", ...; throws Error (input) for anything that is no quantity.
+Quantity quantityFromJson(const JsonField&);
 
 nlohmann::ordered_json measurementJson(const Measurement&, const std::string& audio);
 

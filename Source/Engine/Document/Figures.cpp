@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Diagnosis/Figures.h"
+#include "Engine/Document/Figures.h"
 
 #include <cstdio>
 
@@ -20,21 +20,6 @@ std::string frequencyText(double hertz)
 std::string placeText(double value, const std::string& unit)
 {
     return unit == "m" ? figure(1e3 * value, "%+.2g") + " mm" : figure(value, "%+.2g") + " " + unit;
-}
-
-std::string kindsText(const ErrorKinds& kinds)
-{
-    std::string text;
-    const auto add = [&](const char* what, const std::optional<double>& level) {
-        if (level)
-            text += (text.empty() ? "" : ", ") + std::string(what) + " at " + figure(*level) + " dB";
-    };
-    add("excited lines", kinds.linear);
-    add("odd detection lines", kinds.odd);
-    add("even ones", kinds.even);
-    if (!text.empty() && kinds.noise)
-        text += ", noise at " + figure(*kinds.noise) + " dB";
-    return text;
 }
 
 } // namespace excursion

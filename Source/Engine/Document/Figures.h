@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Diagnosis/Compare.h"
-
 #include <string>
 
 namespace excursion {
@@ -11,7 +9,5 @@ namespace excursion {
 std::string figure(double value, const char* format = "%.1f");
 std::string frequencyText(double hertz);                              ///< "47 Hz", "1.2 kHz"
 std::string placeText(double value, const std::string& unit);         ///< "+3.1 mm", "-0.4 m/s"
-/// "excited lines at -41.0 dB, odd detection lines at -60.2 dB, even ones at ...": empty where nothing is known.
-std::string kindsText(const ErrorKinds&);
 
 } // namespace excursion

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/OpenTake.h"
+#include "Cli/Terminal.h"
+#include "Cli/Verbs.h"
+
+#include "Engine/Design/WhatIfFile.h"
+#include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/ModelFile.h"
+#include "Engine/Error.h"
+#include "Plots/Engineering.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <memory>
+
+namespace excursion::cli {
+namespace {
+
+struct WhatIfArguments {
+    std::string model, take;
+};
+
+/// "-31.2", or "<-100" where there is none to speak of.
+std::string levelText(double db)
+{
+    constexpr double least = -100.0;
+    return !std::isfinite(db) ? "-" : db < least ? "<" + fixed(least, 0) : fixed(db, 1);
+}
+
+std::string placeOf(const std::optional<double>& metres, double atEnd)
+{
+    return metres ? significant(1e3 * *metres, 3) + " mm" : "not reached (" + significant(atEnd, 3) + " %)";
+}
+
+/// A channel of each variant: even, odd, and what is gone without the effect.
+void printChannel(const DistortionByEffect& distortion, std::size_t channel, Terminal& terminal)
+{
+    const auto& whole = distortion.whole[channel];
+    std::vector<std::vector<std::string>> rows {
+        {"as it is", levelText(whole.evenDb), levelText(whole.oddDb), fixed(whole.gainDb, 2), "", "", ""}};
+    for (const auto& effect : distortion.effects) {
+        const auto* without = effect.without.empty() ? nullptr : &effect.without[channel];
+        const auto* alone = effect.alone.empty() ? nullptr : &effect.alone[channel];
+        rows.push_back({"without " + effect.effect, without ? levelText(without->evenDb) : "-", without ? levelText(without->oddDb) : "-",
+                        without ? fixed(without->gainDb, 2) : "-",
+                        without ? fixed(fallWithout(distortion, effect, whole.quantity), 1) : "-",
+                        alone ? levelText(alone->evenDb) : "", alone ? levelText(alone->oddDb) : ""});
+    }
+    terminal.say("");
+    terminal.say(std::string(name(whole.quantity)) + ", distortion in dB of its power");
+    terminal.table({"", "even dB", "odd dB", "gain dB", "falls by dB", "alone: even dB", "odd dB"}, rows);
+}
+
+void printLimits(const StrokeLimits& stroke, Terminal& terminal)
+{
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& limit : stroke.limits)
+        rows.push_back({limit.name + " " + limit.criterion, placeOf(limit.inward, limit.inwardEnd), placeOf(limit.outward, limit.outwardEnd)});
+    terminal.say("");
+    terminal.say("Stroke, within the measured " + significant(1e3 * stroke.range, 3) + " mm either way; impedance and Doppler shift at "
+                 + significant(stroke.tone, 3) + " Hz, 8.5 times the resonance");
+    terminal.table({"limit", "inward", "outward"}, rows);
+}
+
+void run(const WhatIfArguments& options, Terminal& terminal)
+{
+    const auto model = readModel(options.model);
+    const auto open = openTake(options.take);
+    requireSameKind(model, open);
+    if (open.spectra())
+        throw Error(Error::Kind::data, "'" + options.take + "' is a frequency response: it has no stimulus that could be played. Give a take or a plan.");
+    const auto result = whatIf(model, recordFor(model, open), terminal.progress());
+    terminal.say("Stimulus: the loudest of the take, " + significant(result.distortion.level, 3) + " " + open.measurement().input().unit + " rms.");
+    for (std::size_t c = 0; c < result.distortion.whole.size(); ++c)
+        printChannel(result.distortion, c, terminal);
+    terminal.say("Gain: the level against that of the linear part. Alone: the effect beside the linear ones only.");
+    printLimits(result.stroke, terminal);
+    terminal.say("");
+    terminal.say(wrapped(advice(result)));
+    nlohmann::ordered_json document {{"format", "excursion-whatif"}, {"version", 1}, {"model", options.model}, {"take", options.take}};
+    document.update(toJson(result));
+    terminal.document(document);
+}
+
+} // namespace
+
+void addWhatIf(CLI::App& app, Terminal& terminal)
+{
+    auto o = std::make_shared<WhatIfArguments>();
+    auto* verb = app.add_subcommand("whatif", "Which effect makes which distortion, how far the coil may go, and what to change")->group(step::use);
+    verb->add_option("MODEL", o->model, "the model, a .json")->required();
+    verb->add_option("TAKE", o->take, "what is played: the loudest of a take")->required();
+    verb->callback([o, &terminal] { run(*o, terminal); });
+}
+
+} // namespace excursion::cli
