@@ -14,8 +14,29 @@
 namespace excursion {
 namespace {
 
-/// What of the residual is not noise; never quite zero, as two models at the noise are equally good.
-double excess(double chi, bool noiseKnown) { return noiseKnown ? std::max(chi - 1.0, 0.02) : std::max(chi, 1e-12); }
+/// Whether nothing but noise is left in a channel: line by line, and in power, as a few lines with much of it hardly count among thousands.
+bool isNoise(const ChannelComparison& channel)
+{
+    constexpr double mostLines = 1.6, mostDb = 3.0;   // 2 dB of mean squared error over the noise's
+    return channel.total.chi <= mostLines && channel.total.db <= channel.total.noiseFloorDb.value_or(-std::numeric_limits<double>::infinity()) + mostDb
+        && !channel.wanderDb;
+}
+
+bool isNoise(const Comparison& comparison)
+{
+    return comparison.noiseKnown && std::all_of(comparison.channels.begin(), comparison.channels.end(), [](const auto& c) { return isNoise(c); });
+}
+
+/// What of a mean squared residual is not noise; never quite zero, as two models at the noise are equally good.
+class Excess {
+public:
+    explicit Excess(const Comparison& comparison) : noiseKnown_(comparison.noiseKnown), least_(isNoise(comparison) ? 0.02 : 0.002) {}
+    double operator()(double chi) const { return noiseKnown_ ? std::max(chi - 1.0, least_) : std::max(chi, 1e-12); }
+
+private:
+    bool noiseKnown_;
+    double least_;
+};
 
 /// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that can. Of these the ones
 /// come first that the catalogue as a whole speaks for: others only borrow what belongs to one that is not in yet.
@@ -32,18 +53,18 @@ bool better(const RankedEffect& a, const RankedEffect& b)
 }
 
 /// Confidence of the tried effects: the first is sure when it explains at least half of the excess and the second leaves much more.
-void judge(std::vector<RankedEffect>& ranking, double chi, bool noiseKnown, Diagnosis& diagnosis)
+void judge(std::vector<RankedEffect>& ranking, double chi, const Excess& excess, Diagnosis& diagnosis)
 {
-    const double before = excess(chi, noiseKnown);
+    const double before = excess(chi);
     for (std::size_t k = 0; k < ranking.size(); ++k) {
         auto& entry = ranking[k];
         if (entry.confirmedChi <= 0.0 || !entry.significant)
             continue;
-        const double left = excess(entry.confirmedChi, noiseKnown);
+        const double left = excess(entry.confirmedChi);
         double rival = before;
         for (std::size_t j = 0; j < ranking.size(); ++j)
             if (j != k)
-                rival = std::min(rival, excess(ranking[j].confirmedChi > 0.0 ? ranking[j].confirmedChi : ranking[j].predictedChi, noiseKnown));
+                rival = std::min(rival, excess(ranking[j].confirmedChi > 0.0 ? ranking[j].confirmedChi : ranking[j].predictedChi));
         const double explained = std::clamp(1.0 - left / before, 0.0, 1.0);
         entry.confidence = std::min(1.0, 2.0 * explained) * rival / (rival + left);
     }
@@ -51,7 +72,7 @@ void judge(std::vector<RankedEffect>& ranking, double chi, bool noiseKnown, Diag
         return;
     // Two effects that each explain most of the same residual, and leave about as much, cannot be told apart.
     for (std::size_t k = 1; k < ranking.size() && ranking[k].significant; ++k) {
-        const double first = excess(ranking[0].confirmedChi, noiseKnown), other = excess(ranking[k].confirmedChi, noiseKnown);
+        const double first = excess(ranking[0].confirmedChi), other = excess(ranking[k].confirmedChi);
         if (other < 1.25 * first && other < 0.4 * before && ranking[k].vote.backs() == ranking[0].vote.backs())
             diagnosis.indistinguishable.push_back(ranking[k].effect);
     }
@@ -89,26 +110,23 @@ double leastLeft(const std::vector<double>& before, const std::vector<double>& a
 }
 
 /// Whether something that cannot be it does far better than the first: then it is not the first whose shape is missing.
-bool outdone(const std::vector<RankedEffect>& ranking, bool noiseKnown)
+bool outdone(const std::vector<RankedEffect>& ranking, const Excess& excess)
 {
     constexpr double far = 4.0;
     return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& other) {
-        return !other.significant && other.confirmedChi > 0.0 && far * excess(other.confirmedChi, noiseKnown) < excess(ranking.front().confirmedChi, noiseKnown);
+        return !other.significant && other.confirmedChi > 0.0 && far * excess(other.confirmedChi) < excess(ranking.front().confirmedChi);
     });
 }
 
 /// The verdict once the ranking is made.
 Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& comparison, double smallestShare)
 {
-    const double before = excess(comparison.chi, comparison.noiseKnown);
-    if (!ranking.empty() && ranking.front().significant && !outdone(ranking, comparison.noiseKnown)
-        && (ranking.front().vote.standsAlone() || 1.0 - excess(ranking.front().confirmedChi, comparison.noiseKnown) / before >= smallestShare))
+    const Excess excess(comparison);
+    const double before = excess(comparison.chi);
+    if (!ranking.empty() && ranking.front().significant && !outdone(ranking, excess)
+        && (ranking.front().vote.standsAlone() || 1.0 - excess(ranking.front().confirmedChi) / before >= smallestShare))
         return Verdict::missingEffect;
-    constexpr double onlyNoise = 1.6;   // mean squared error over the noise's, 2 dB
-    bool clean = comparison.noiseKnown;
-    for (const auto& channel : comparison.channels)
-        clean = clean && channel.total.chi <= onlyNoise && !channel.wanderDb;
-    return clean ? Verdict::complete : Verdict::unknownEffect;
+    return isNoise(comparison) ? Verdict::complete : Verdict::unknownEffect;
 }
 
 } // namespace
@@ -170,6 +188,10 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     test.threads = options.fit.threads;
     const auto scores = score(model, record, test, progress.part(0.1, 0.3));
     const auto sections = trialSections(record, 2);
+    const Excess excess(before);
+    // Falls are shares of what is left beside what is noise for sure.
+    const double sure = before.noiseKnown && !isNoise(before) ? sureNoise : 0.0;
+    const auto falls = [&](double from, double to, double share) { return to - sure < (from - sure) * (1.0 - share); };
     int tried = 0;
     double bestLeft = std::numeric_limits<double>::infinity();
     for (const auto& candidate : scores.scores) {
@@ -177,8 +199,8 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         auto errorAfter = candidate.errorDb;
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
         // It is not wrong by twenty times, though: the work is spared when another has already left so much less.
-        const bool promising = candidate.chi < scores.chi * (1.0 - 0.5 * options.significantFall)
-                            && excess(candidate.chi, before.noiseKnown) < 20.0 * bestLeft;
+        const bool promising = falls(scores.chi, candidate.chi, 0.5 * options.significantFall)
+                            && excess(candidate.chi) < 20.0 * bestLeft;
         if (promising && tried < options.trials) {
             const double share = 0.7 / options.trials, begun = 0.3 + share * tried++;
             progress.at(begun, "trying " + entry.effect);
@@ -191,18 +213,18 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
                 for (const auto& channel : after.channels)
                     entry.confirmedErrorDb[channel.quantity] = channel.total.db;
                 const auto& added = trial.components.back();
-                entry.significant = after.chi < before.chi * (1.0 - options.significantFall)
+                entry.significant = falls(before.chi, after.chi, options.significantFall)
                                     && added.effect->plausible(added.extent, added.parameters, trial.base().parameters);
                 errorAfter = entry.confirmedErrorDb;
                 if (entry.significant)
-                    bestLeft = std::min(bestLeft, excess(after.chi, before.noiseKnown));
+                    bestLeft = std::min(bestLeft, excess(after.chi));
             }
         }
         entry.reason = reasonFor(*candidate.effect, entry.model, before, errorAfter);
         diagnosis.ranking.push_back(std::move(entry));
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
-    judge(diagnosis.ranking, before.chi, before.noiseKnown, diagnosis);
+    judge(diagnosis.ranking, before.chi, excess, diagnosis);
     constexpr double smallestShare = 0.15;   // of what is not noise; less is a symptom of something else
     constexpr double mostLeft = 0.15;        // by all effects together
     diagnosis.verdict = verdictOf(diagnosis.ranking, before, smallestShare);
@@ -210,7 +232,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     // with something unknown.
     if (diagnosis.verdict == Verdict::missingEffect && before.noiseKnown) {
         const auto& first = diagnosis.ranking.front();
-        if (!first.vote.standsAlone() && excess(first.confirmedChi, true) > mostLeft * excess(before.chi, true)) {
+        if (!first.vote.standsAlone() && excess(first.confirmedChi) > mostLeft * excess(before.chi)) {
             const auto beyond = score(first.model, record, test, {});
             if (leastLeft(scores.chiByChannel, beyond.togetherChi) > mostLeft)
                 diagnosis.verdict = Verdict::unknownEffect;
@@ -261,8 +283,8 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
         diagnosis.ranking.push_back(std::move(entry));
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
-    judge(diagnosis.ranking, now, false, diagnosis);
-    const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, false);
+    judge(diagnosis.ranking, now, Excess(before), diagnosis);
+    const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, Excess(before));
     diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
     diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
     static_cast<void>(options);

@@ -145,9 +145,10 @@ void Improvement::push(Rung rung, const Progress& progress)
     judge(progress.part(0.0, 0.5));
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
     if (const auto* record = std::get_if<Record>(&data_);
-        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable && rung.fit.substeps == 0) {
+        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable
+        && (rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.costPerResidual < nearNoise))) {
         auto better = rung.model;
-        if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, progress.part(0.5, 0.7)); run.usable) {
+        if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, true, progress.part(0.5, 0.7)); run.usable) {
             rung.model = std::move(better);
             rung.fit = run;
             judge(progress.part(0.7, 1.0));

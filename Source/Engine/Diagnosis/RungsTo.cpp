@@ -73,7 +73,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
     test.threads = options.fit.threads;
     test.shapes = &whole.model;
     FitOptions brief = options.fit;
-    brief.search = {8, 1e-3};
+    brief.search = {4, 1e-2};
     std::vector<Rung> rungs {std::move(base)};
     for (double n = 0.0; n < count; ++n) {
         const auto part = progress.part(n / count, (n + 1.0) / count);

@@ -7,6 +7,11 @@
 
 namespace excursion {
 
+bool Sums::areNoise() const
+{
+    return std::all_of(power.begin(), power.end(), [](const ErrorPower& p) { return p.overNoise() <= ErrorPower::most; });
+}
+
 Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active,
             const ScoreOptions& options, const Progress& progress)
 {
@@ -36,8 +41,7 @@ Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> s
             if (validates) {
                 sums.validation.add(fits[k].channels[c]);
                 sums.byChannel[c].add(fits[k].channels[c]);
-                sums.power[c].error += fits[k].power[c].error;
-                sums.power[c].measured += fits[k].power[c].measured;
+                sums.power[c].add(fits[k].power[c]);
             }
         }
     }

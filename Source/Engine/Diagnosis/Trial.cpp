@@ -104,23 +104,31 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     return fitFed(model, record, sections, chosen, progress);
 }
 
-FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
+FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, bool toTheEnd, const Progress& progress)
 {
     const auto sections = estimationSections(record);
     constexpr double clean = 1.2;
-    auto rough = options;
-    rough.search = {15, 1e-3};
-    auto summary = fit(model, record, sections, rough, progress.part(0.0, 0.3));
-    if (!summary.usable || (record.noiseKnown && summary.costPerResidual > nearNoise))
+    const auto near = [&](const FitSummary& s) { return s.usable && !(record.noiseKnown && s.costPerResidual > nearNoise); };
+    const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
+        auto chosen = options;
+        chosen.search = {iterations, tolerance};
+        chosen.fedGradient = fedGradient && hasPeriods(record);
+        chosen.exactGradient = !fedGradient;
+        return fit(model, record, sections, chosen, progress.part(from, to));
+    };
+    auto summary = stage(15, 1e-3, true, 0.0, 0.2);
+    if (summary.usable && !near(summary))   // where laws rule the motion the slopes of fed ones may lead nowhere
+        summary = stage(15, 1e-3, false, 0.2, 0.3);
+    if (!near(summary))
         return summary;
-    auto fine = options;
-    fine.exactGradient = true;
-    fine.search.costTolerance = std::max(fine.search.costTolerance, 5e-5);
-    summary = fit(model, record, sections, fine, progress.part(0.3, 0.6));
-    if (record.noiseKnown && summary.usable && summary.costPerResidual < clean)
-        return summary;   // along a valley at the noise the cost falls by next to nothing for long
-    fine.search = options.search;
-    return fit(model, record, sections, fine, progress.part(0.6, 1.0));
+    summary = stage(30, 5e-5, true, 0.3, 0.5);
+    // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the noise the cost falls by next to
+    // nothing for long.
+    if (near(summary) && summary.onlyNoise && summary.costPerResidual < clean)
+        return stage(1, 5e-5, false, 0.5, 1.0);
+    if (!record.noiseKnown)
+        return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
+    return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);
 }
 
 bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
@@ -177,7 +185,7 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
         summary = fitFed(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
     if (hasPeriods(record)) {
-        if (record.noiseKnown && summary.costPerResidual > atNoise)
+        if (record.noiseKnown && (summary.costPerResidual > atNoise || !summary.onlyNoise))
             findPartsAnew(model, record, sections, quick);
         quick.search = {15, 1e-4};
         summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
@@ -185,7 +193,7 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.costPerResidual > nearNoise)
             return summary;
     }
-    return fitBySimulation(model, record, chosen, progress.part(0.75, 1.0));
+    return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));
 }
 
 } // namespace excursion

@@ -8,8 +8,9 @@
 
 namespace excursion {
 
-/// A fit by simulation on all that is not held out, as thorough as it pays: rough far above the noise, to the end where it comes near and is not there yet.
-FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, const Progress& = {});
+/// A fit by simulation on all that is not held out, as thorough as it pays: rough far above the noise, with slopes of fed laws near it.
+/// @param toTheEnd  as far as it goes, where something is left: before that is called unknown
+FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, bool toTheEnd, const Progress& = {});
 
 /// Sections for a quick fit: of each level up to `realizations` of those not held out.
 std::vector<std::size_t> trialSections(const Record&, int realizations);

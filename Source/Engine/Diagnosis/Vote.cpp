@@ -36,8 +36,10 @@ Vote voteOn(const Sums& sums, const std::vector<Eigen::Index>& together, std::ve
     auto gone = sums.estimation;
     gone.g += gone.N * away;
     const Eigen::VectorXd without = away + gaussNewtonStep(gone, rest), all = gaussNewtonStep(sums.estimation, together);
-    const double floor = std::max(noiseKnown ? sums.validation.rows : 0.0, 1e-300);
-    const auto left = [&](const Eigen::VectorXd& d) { return std::max(predictedCost(sums.validation, d), floor); };
+    constexpr double fewestRows = 300.0;   // half a decibel of so many is what no chance gives
+    const double rows = noiseKnown ? sums.validation.rows : 0.0, sure = sums.areNoise() ? 0.0 : sureNoise * rows;
+    const double floor = std::max({rows - sure, std::min(rows, fewestRows), 1e-300});
+    const auto left = [&](const Eigen::VectorXd& d) { return std::max(predictedCost(sums.validation, d) - sure, floor); };
     const double explained = predictedCost(sums.estimation, without) - predictedCost(sums.estimation, all);
     return {10.0 * std::log10(left(without) / left(all)), gainByLevel(sums, all, strengths) / std::max(explained, 1e-300)};
 }

@@ -58,6 +58,7 @@ struct Extent {
     int degree = 6;                ///< of a law's expansion
     double scale = 1.0;            ///< the base parameter that the effect is sized by, in its unit: what is large for a law
     double duration = 10.0;        ///< s, of the take: what a slow memory had time for
+    bool relaxed = true;           ///< parameters that are relaxed may differ from zero: false spares the memory that they stand for
 };
 
 struct Parameter {

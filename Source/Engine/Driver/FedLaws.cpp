@@ -50,17 +50,56 @@ std::vector<MemoryStart> startsOf(const Component& law, const Record& record, co
     return starts;
 }
 
+/// Lines from the first to the last, all of them until they are denser than a two-hundredth of an octave.
+std::vector<std::size_t> sparseLines(std::size_t first, std::size_t last)
+{
+    constexpr double step = 1.00347;
+    std::vector<std::size_t> lines;
+    for (std::size_t k = first; k < last; k = std::max(k + 1, static_cast<std::size_t>(step * static_cast<double>(k))))
+        lines.push_back(k);
+    lines.push_back(last);
+    return lines;
+}
+
+/// Rows of lines, on straight lines between those that are known.
+Eigen::MatrixXcd between(const Eigen::MatrixXcd& known, const std::vector<std::size_t>& lines)
+{
+    Eigen::MatrixXcd all(static_cast<Eigen::Index>(lines.back() - lines.front() + 1), known.cols());
+    for (Eigen::Index c = 0; c < known.cols(); ++c) {
+        Eigen::Index row = 0;
+        for (std::size_t n = 0; n + 1 < lines.size(); ++n) {
+            const auto here = known(static_cast<Eigen::Index>(n), c), next = known(static_cast<Eigen::Index>(n) + 1, c);
+            const auto count = static_cast<double>(lines[n + 1] - lines[n]);
+            for (double k = 0.0; k < count; ++k)
+                all(row++, c) = here + (next - here) * (k / count);
+        }
+        all(row, c) = known(known.rows() - 1, c);
+    }
+    return all;
+}
+
 } // namespace
 
 Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::size_t first, std::size_t last, double resolution, bool withGradient,
               unsigned threads)
 {
     constexpr double nearlyRest = 1e-3;
-    std::vector<double> frequency;
+    const auto frequencyOf = [&](std::size_t line) { return resolution * (line > 0 ? static_cast<double>(line) : nearlyRest); };
+    const std::vector<Drives> drives {Drives::terminals, Drives::cone};
+    std::vector<double> frequency, sparse;
     for (std::size_t k = first; k <= last; ++k)
-        frequency.push_back(resolution * (k > 0 ? static_cast<double>(k) : nearlyRest));
+        frequency.push_back(frequencyOf(k));
     Paths paths {{}, {}, first, linearize(model).lateness};
-    auto responses = respondToEach(model, quantities, frequency, {Drives::terminals, Drives::cone}, withGradient, threads);
+    auto responses = respondToEach(model, quantities, frequency, drives, false, threads);
+    if (withGradient) {   // slopes are dear, and smooth from line to line at high frequencies
+        const auto lines = sparseLines(first, last);
+        for (const auto k : lines)
+            sparse.push_back(frequencyOf(k));
+        const auto slopes = respondToEach(model, quantities, sparse, drives, true, threads);
+        for (std::size_t d = 0; d < drives.size(); ++d)
+            for (std::size_t q = 0; q < quantities.size(); ++q)
+                responses[d][q].gradient = between(slopes[d][q].gradient, lines);
+    }
     paths.fromVoltage = std::move(responses[0]);
     paths.fromForce = std::move(responses[1]);
     return paths;

@@ -25,20 +25,21 @@ public:
     {
     }
 
-    SectionFit run(const std::vector<Eigen::Index>& active, const OutputErrorOptions& options)
+    /// @param played  null: residuals are those of the fed laws
+    SectionFit run(const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const SectionFit* played)
     {
         SectionFit fit;
         fit.finite = true;
         for (std::size_t c = 0; c < record_.channels.size(); ++c) {
             auto predicted = sum(c, fed_.voltage, fed_.force);
             const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted);
-            const auto r = residual_.of(c, predicted);
+            const auto r = residual_.of(c, played ? played->predicted[c] : predicted);
             NormalEquations normal(r);
             fit.finite = fit.finite && std::isfinite(normal.cost);
             if (options.gradient && !active.empty())
                 normal.differentiateBy(columns(c, active, heard), r);
             fit.channels.push_back(std::move(normal));
-            fit.power.push_back(residual_.power(c, predicted));
+            fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted));
             if (options.spectra)
                 fit.predicted.push_back(std::move(predicted));
         }
@@ -147,7 +148,8 @@ private:
 } // namespace
 
 std::vector<SectionFit> feedbackError(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const ShownMotions& motions,
-                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& progress)
+                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& progress,
+                                      const std::vector<SectionFit>* played)
 {
     const bool gradient = options.gradient && !active.empty();
     std::vector<std::vector<bool>> wanted;
@@ -169,7 +171,7 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
     inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];
         const auto fed = feed(model, record, section, motions[s], histories, s, wanted);
-        fits[s] = FedSection(model, record, section, fed, paths.at(section.window)).run(active, options);
+        fits[s] = FedSection(model, record, section, fed, paths.at(section.window)).run(active, options, played ? &(*played)[s] : nullptr);
         return fits[s].finite;
     });
     return fits;

@@ -16,8 +16,12 @@ namespace excursion {
 /// that is true the error is the noise, as far as that of the shown motion is small; a model that is not is told by what its equations lack, not
 /// by where its simulation goes. `options` count as far as they are not about steps.
 /// @param motions  one a section of `sections`
+/// @param played   when given, what a simulation left of these sections, with spectra: the residuals are its own, and only the slopes are those of fed laws.
+///                 These differ from a simulation's by what a law's change does to the motion that it is fed. With the residuals being exact the search
+///                 arrives where they are noise all the same.
 std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::vector<std::size_t>& sections, const ShownMotions& motions,
-                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& = {});
+                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& = {},
+                                      const std::vector<SectionFit>* played = nullptr);
 
 /// What is quickest told of a model: with laws that are fed the settled motion where the record has periods, else by simulation.
 std::vector<SectionFit> quickError(const Model&, const Record&, const std::vector<std::size_t>& sections, const std::vector<Eigen::Index>& active,

@@ -40,7 +40,8 @@ using ErrorOf = std::function<std::vector<SectionFit>(const std::vector<Eigen::I
 /// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of relaxations that
 /// has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others. Of an effect that is not at work yet nothing
 /// can be said: its shapes are kept.
-std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf)
+/// @param fits  of the model, when they had to be known and no parameter is left out; else none
+std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, std::vector<SectionFit>& fits)
 {
     const auto active = freeParameters(model);
     const auto all = parametersOf(model);
@@ -55,7 +56,8 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf)
     if (std::none_of(active.begin(), active.end(), isShape))
         return active;
     NormalEquations sum;
-    for (const auto& section : errorOf(active, true))
+    fits = errorOf(active, true);
+    for (const auto& section : fits)
         for (const auto& channel : section.channels)
             if (section.finite)
                 sum.add(channel);
@@ -70,14 +72,22 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf)
         if (!isShape(active[j]) || sum.N(k, k) * prior * prior > fewTimes * variance)
             kept.push_back(active[j]);
     }
+    if (kept.size() < active.size())
+        fits.clear();
     return kept;
 }
 
+bool areFinite(const std::vector<SectionFit>& fits)
+{
+    return std::all_of(fits.begin(), fits.end(), [](const SectionFit& fit) { return fit.finite; });
+}
+
 /// The search of the model's parameters for the least error.
-FitSummary search(Model& model, const ErrorOf& errorOf, const FitOptions& options, const Progress& progress)
+FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const FitOptions& options, const Progress& progress)
 {
     FitSummary summary;
-    const auto active = telling(model, errorOf);
+    std::vector<SectionFit> atStart;
+    const auto active = telling(model, errorOf, atStart);
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size());
     Eigen::VectorXd theta(P), lower(P), upper(P);
@@ -96,15 +106,20 @@ FitSummary search(Model& model, const ErrorOf& errorOf, const FitOptions& option
     double variance = 0.0;  // of the residuals at the start
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
         place(at);
-        auto total = sumOf(errorOf(active, gradient));
+        const auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});   // asked for there first
+        auto total = sumOf(fits);
         if (!total)
             return false;
         sum = std::move(*total);
+        const bool onlyNoise = noiseKnown && worstPower(fits) <= ErrorPower::most;
+        sum.sure = noiseKnown && !onlyNoise ? sureNoise * sum.rows : 0.0;
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
-        if (gradient)
+        if (gradient) {
             last = sum;
+            summary.onlyNoise = onlyNoise;
+        }
         return true;
     };
     static_cast<LeastSquaresSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
@@ -260,7 +275,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         for (int n = 0; n < mostRounds; ++n) {
             if (n > 0)
                 motions = shownMotions(model, record, sections, motions, options.threads);
-            const auto round = search(model, errorOf, options, progress);
+            const auto round = search(model, errorOf, record.noiseKnown, options, progress);
             if (n > 0 && !round.usable)
                 break;
             summary = round;
@@ -274,10 +289,19 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
                             options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));
     if (options.exactGradient)
         run.gradientSubsteps = run.substeps;
+    const bool slopesFed = options.fedGradient && hasPeriods(record);
+    const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
     auto summary = search(model, [&](const std::vector<Eigen::Index>& active, bool gradient) {
-        run.gradient = gradient;
-        return outputError(model, record, sections, active, run, progress);
-    }, options, progress);
+        run.gradient = gradient && !slopesFed;
+        run.spectra = gradient && slopesFed;
+        auto played = outputError(model, record, sections, active, run, progress);
+        if (!run.spectra || !areFinite(played))
+            return played;
+        auto slopes = run;
+        slopes.gradient = true;
+        slopes.spectra = false;
+        return feedbackError(model, record, sections, motions, active, slopes, progress, &played);
+    }, record.noiseKnown, options, progress);
     summary.substeps = run.substeps;
     return summary;
 }

@@ -16,6 +16,7 @@ struct FitOptions {
     int substeps = 0;                    ///< integration steps a sample; 0: chosen from the tolerance
     unsigned threads = 2;
     bool exactGradient = false;   ///< sensitivities as finely as the simulation: slower steps, fewer of them where some directions hardly count
+    bool fedGradient = false;     ///< sensitivities of fed laws around an exact simulation: steps at a tenth of the price, a few more of them
     bool fed = false;                    ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast and nearly as
                                          ///< good, for starts and trials; a take without periods is simulated all the same
 
@@ -25,6 +26,7 @@ struct FitOptions {
 struct FitSummary : LeastSquaresSummary {
     int substeps = 0;
     double costPerResidual = 0.0;   ///< 1 when nothing but noise is left
+    bool onlyNoise = false;         ///< no channel's error stands above its noise
 };
 
 /// What the take visits: the peaks of displacement, velocity and current, measured where a channel tells them, else

@@ -38,7 +38,7 @@ public:
     /// @param atStart  the normal equations at theta = scale .* start, which need not be computed again
     CompressedResidual(const NormalEvaluation& evaluate, const Eigen::VectorXd& scale, const Eigen::VectorXd& start,
                        const NormalEquations& atStart)
-        : evaluate_(evaluate), scale_(scale), known_ {{start, true, atStart}}
+        : evaluate_(evaluate), scale_(scale), sure_(atStart.sure), known_ {{start, true, atStart}}
     {
         const auto P = static_cast<int>(scale.size());
         set_num_residuals(P + 1);
@@ -63,7 +63,7 @@ public:
         Eigen::Map<Eigen::VectorXd> r(residuals, P + 1);
         r.setZero();
         if (!gradient) {
-            r[P] = std::sqrt(normal.cost);
+            r[P] = std::sqrt(std::max(0.0, normal.cost - sure_));
             return true;
         }
         if (!normal.N.allFinite() || !normal.g.allFinite())
@@ -83,7 +83,7 @@ public:
             for (Eigen::Index j = 0; j < P; ++j)
                 J(k, j) = spectrum.scale[j] > 0.0 ? root * v[j] / spectrum.scale[j] : 0.0;
         }
-        r[P] = std::sqrt(std::max(0.0, normal.cost - r.squaredNorm()));
+        r[P] = std::sqrt(std::max(0.0, normal.cost - sure_ - r.squaredNorm()));
         return true;
     }
 
@@ -113,6 +113,7 @@ private:
 
     const NormalEvaluation& evaluate_;
     const Eigen::VectorXd& scale_;
+    double sure_;
     mutable std::deque<Known> known_;   // beside bounds the solver asks again for where it is and where it has just been
 };
 
@@ -197,7 +198,7 @@ LeastSquaresSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& 
         progress.at(0.0, "");
 
     result.iterations = static_cast<int>(summary.iterations.size());
-    result.finalCost = 2.0 * summary.final_cost;
+    result.finalCost = 2.0 * summary.final_cost + atStart.sure;
     result.usable = summary.IsSolutionUsable();
     result.converged = summary.termination_type == ceres::CONVERGENCE;
     result.reason = result.converged ? "the cost no longer falls"

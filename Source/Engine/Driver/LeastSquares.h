@@ -12,7 +12,7 @@ namespace excursion {
 
 struct LeastSquaresOptions {
     int maximumIterations = 30;
-    double costTolerance = 1e-6;   ///< stop when an accepted step lowers the cost by less than this fraction
+    double costTolerance = 1e-6;   ///< stop when an accepted step lowers the cost, without NormalEquations::sure, by less than this fraction
 
     bool isValid(std::string* reason) const;
 };

@@ -122,6 +122,7 @@ void followOthers(Model& model)
     for (auto& component : model.components) {
         if (const auto base = component.effect->sizedBy(); !base.empty())
             component.extent.scale = model.baseParameter(base).value;
+        component.extent.relaxed = yields;
         for (auto& p : component.parameters)
             if (p.relaxed) {
                 p.free = yields;

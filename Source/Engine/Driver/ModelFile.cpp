@@ -120,7 +120,10 @@ std::vector<Parameter> parametersFrom(const JsonField& field, std::vector<Parame
 
 Component componentFrom(const JsonField& field, const Effect& effect, const Extent& extent)
 {
-    return {&effect, extent, parametersFrom(field.at("parameters"), effect.parameters(extent))};
+    Component component {&effect, extent, parametersFrom(field.at("parameters"), effect.parameters(extent))};
+    component.extent.relaxed = std::any_of(component.parameters.begin(), component.parameters.end(),
+                                           [](const Parameter& p) { return p.relaxed && p.value != 0.0; });
+    return component;
 }
 
 const Effect& effectFrom(const JsonField& field, const Model& model)

@@ -164,6 +164,20 @@ std::optional<NormalEquations> sumOf(const std::vector<SectionFit>& fits)
     return sum;
 }
 
+double worstPower(const std::vector<SectionFit>& fits)
+{
+    std::vector<ErrorPower> channels;
+    for (const auto& section : fits) {
+        channels.resize(section.power.size());
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            channels[c].add(section.power[c]);
+    }
+    double worst = 0.0;
+    for (const auto& channel : channels)
+        worst = std::max(worst, channel.overNoise());
+    return worst;
+}
+
 void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum, double variance)
 {
     const auto all = parametersOf(model);

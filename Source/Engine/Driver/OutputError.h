@@ -46,6 +46,9 @@ std::vector<SectionFit> outputError(const Model&, const Record&, const std::vect
 /// All sections and channels together; none where one of them is not finite.
 std::optional<NormalEquations> sumOf(const std::vector<SectionFit>&);
 
+/// The largest error power of a channel, over all sections, over that of its noise.
+double worstPower(const std::vector<SectionFit>&);
+
 /// Adds what is plausible beforehand: variance (parameter/prior)^2 for each active parameter that has a prior. The variance is that of the
 /// residuals: while something large is missing in the model, what is left says as little about a shape as noise of that size would.
 void addPrior(const Model&, const std::vector<Eigen::Index>& active, NormalEquations&, double variance = 1.0);

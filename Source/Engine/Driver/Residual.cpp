@@ -30,6 +30,13 @@ void NormalEquations::add(const NormalEquations& other)
     rows += other.rows;
 }
 
+void ErrorPower::add(const ErrorPower& other)
+{
+    error += other.error;
+    measured += other.measured;
+    noise += other.noise;
+}
+
 Residual::Residual(const Record& record, const Section& section) : section_(section)
 {
     std::tie(first_, last_) = record.lineRange(section);

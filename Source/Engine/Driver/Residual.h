@@ -7,6 +7,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace excursion {
@@ -14,7 +15,16 @@ namespace excursion {
 /// Error power and measured power of a channel, not weighted; noise power in the same window.
 struct ErrorPower {
     double error = 0.0, measured = 0.0, noise = 0.0;
+
+    static constexpr double most = 2.0;   ///< of error over noise that still is noise: 3 dB
+
+    void add(const ErrorPower&);
+    double overNoise() const { return noise > 0.0 ? error / noise : std::numeric_limits<double>::infinity(); }
 };
+
+/// The share of the noise's cost that is left out of account while a channel's error stands above its noise. Most lines of a take hold
+/// nothing but noise, and what a few with much power miss hardly moves a mean over all of them.
+inline constexpr double sureNoise = 0.9;
 
 /// The least-squares problem min |r + J d|^2 of residuals r (one channel, over some sections) in its normal form.
 /// Residuals are (model - measured)/deviation, real and imaginary part, each with unit variance if only noise is left.
@@ -23,6 +33,7 @@ struct NormalEquations {
     Eigen::VectorXd g;     ///< J^T r
     double cost = 0.0;     ///< r^T r
     double rows = 0.0;     ///< number of real residuals
+    double sure = 0.0;     ///< of the cost, what is noise for sure: a search takes no falls relative to it (sureNoise)
 
     NormalEquations() = default;
     explicit NormalEquations(const Eigen::VectorXd& r);

@@ -44,7 +44,7 @@ public:
     {
         return curve::valueAt(e.degree, p, x, e.displacement) + curve::beyond(p[0], e.degree > 1 ? p[1] : 0.0, x, e.displacement);
     }
-    int memorySize(const Extent&) const override { return yields; }
+    int memorySize(const Extent& e) const override { return e.relaxed ? yields : 0; }
     bool remembersMotionAlone() const override { return true; }
     int coefficientCount(const Extent& e) const override { return e.degree + 3 + 2 * yields; }
 
@@ -68,7 +68,7 @@ public:
     {
         T stretch = at.x;
         const T* yield = c + e.degree + 3;
-        for (int k = 0; k < yields; ++k, yield += 2) {
+        for (int k = 0; k < memorySize(e); ++k, yield += 2) {
             rate[k] = yield[0] * (at.x - memory[k]);
             stretch -= yield[1] * memory[k];
         }
