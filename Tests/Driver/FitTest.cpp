@@ -203,3 +203,49 @@ TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][s
     // On the bench the loops see k(x) i, in the model c(x) multiplies what they make of i: alike where the cone is slow against them.
     CHECK(without.costPerResidual > 50.0 * with.costPerResidual);
 }
+
+TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own slopes lead", "[fit]")
+{
+    auto setup = smallSetup();
+    setup.excitation.levels = {1.0, 3.0};
+    bench::Loudspeaker speaker;
+    speaker.stiffness = bench::Curve {bench::Curve::Shape::skewedSpring, 0.5e-3, 3e-3, 0.0, 0.5};
+    const auto take = bench::measure(speaker, setup);
+    auto record = makeRecord(take);
+    auto model = startModel(record);
+    adapt(record, model);
+    model = withEffect(model, effectNamed("stiffness"), visitedExtent(model, record));
+    const auto sections = estimationSections(record);
+    FitOptions fed;
+    fed.fed = true;
+    REQUIRE(fit(model, record, sections, fed).usable);
+
+    auto own = model, borrowed = model;
+    FitOptions options;
+    const auto exact = fit(own, record, sections, options);
+    options.fedGradient = true;
+    const auto quick = fit(borrowed, record, sections, options);
+    REQUIRE(exact.usable);
+    REQUIRE(quick.usable);
+    CHECK(exact.onlyNoise);
+    CHECK(quick.costPerResidual == Approx(exact.costPerResidual).epsilon(1e-3));
+    for (const char* name : {"Re", "Bl", "m", "K"}) {
+        const auto &a = own.baseParameter(name), &b = borrowed.baseParameter(name);
+        INFO(name);
+        CHECK(std::abs(a.value - b.value) < a.standardError);
+    }
+}
+
+TEST_CASE("The power of an error is judged channel by channel, over all sections", "[fit]")
+{
+    const auto section = [](ErrorPower first, ErrorPower second) {
+        SectionFit fit;
+        fit.finite = true;
+        fit.power = {first, second};
+        return fit;
+    };
+    // 16 times the noise in one section, none in the other: 8.5 times in all.
+    CHECK(worstPower({section({16.0, 100.0, 1.0}, {1.0, 100.0, 1.0}), section({1.0, 100.0, 1.0}, {1.0, 100.0, 1.0})}) == Approx(8.5));
+    CHECK(worstPower({section({1.0, 100.0, 1.0}, {0.5, 100.0, 1.0})}) == Approx(1.0));
+    CHECK(std::isinf(worstPower({section({1.0, 100.0, 0.0}, {0.5, 100.0, 1.0})})));
+}

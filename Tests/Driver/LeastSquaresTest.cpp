@@ -168,3 +168,28 @@ TEST_CASE("Search options that make no sense carry a reason", "[least-squares]")
     options.costTolerance = 1.0;
     CHECK(!options.isValid(&reason));
 }
+
+TEST_CASE("What is noise for sure neither stops a search early nor changes what it finds", "[least-squares]")
+{
+    // Beside a million residuals that are nothing but noise the misfit of fourteen is too little for a tolerance of the whole.
+    constexpr double noise = 1e6;
+    const auto beside = [](double sure) {
+        return [sure](const Eigen::VectorXd& b, bool gradient, NormalEquations& sum) {
+            misra::evaluate(b, gradient, sum);
+            sum.cost += noise;
+            sum.rows += noise;
+            sum.sure = sure;
+            return true;
+        };
+    };
+    LeastSquaresOptions options;
+    options.costTolerance = 1e-4;
+    const auto lower = two(-infinite, -infinite), upper = two(infinite, infinite);
+    auto lost = two(250.0, 5.0e-4), found = lost;
+    const auto early = minimize(beside(0.0), lost, lower, upper, options);
+    const auto late = minimize(beside(noise), found, lower, upper, options);
+    CHECK(early.finalCost - noise > 10.0 * misra::sumOfSquares);
+    CHECK(late.finalCost - noise == Approx(misra::sumOfSquares).epsilon(1e-3));
+    CHECK(found[0] == Approx(misra::b1).epsilon(1e-3));
+    CHECK(late.converged);
+}
