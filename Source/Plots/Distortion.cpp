@@ -14,7 +14,7 @@ std::vector<double> together(const ChannelDistortion& channel)
 {
     std::vector<double> sum;
     for (std::size_t k = 0; k < channel.even.size(); ++k)
-        sum.push_back(10.0 * std::log10(std::pow(10.0, channel.even[k] / 10.0) + std::pow(10.0, channel.odd[k] / 10.0)));
+        sum.push_back(addedDb(channel.even[k], channel.odd[k]));
     return sum;
 }
 

@@ -15,6 +15,7 @@ namespace excursion {
 namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
+using Simulated = std::vector<std::vector<Spectrum>>;   ///< [section][channel]; empty where the model runs away
 
 double db(double power, double reference)
 {
@@ -165,11 +166,20 @@ public:
         }
     }
 
-    Performance play(const Model& model) const
+    /// What a model plays as it is.
+    Simulated simulated(const Model& model) const
     {
         auto record = record_;
         adapt(record, model);
-        const auto straight = spectra(model, record), linear = spectra(linearPart(model), record);
+        return spectra(model, record);
+    }
+
+    /// @param linear  of the model's linear part
+    Performance play(const Model& model, const Simulated& linear) const
+    {
+        auto record = record_;
+        adapt(record, model);
+        const auto straight = spectra(model, record);
         for (auto& section : record.sections)
             for (auto& sample : section.input)
                 sample = -sample;
@@ -199,14 +209,13 @@ public:
     }
 
 private:
-    /// [section][channel]; empty where the model runs away.
-    std::vector<std::vector<Spectrum>> spectra(const Model& model, const Record& record) const
+    Simulated spectra(const Model& model, const Record& record) const
     {
         OutputErrorOptions options;
         options.gradient = false;
         options.spectra = true;
         options.substeps = substepsFor(model, record, tolerance);
-        std::vector<std::vector<Spectrum>> result;
+        Simulated result;
         for (auto& fit : outputError(model, record, sections_, {}, options)) {
             if (!fit.finite)
                 return {};
@@ -303,7 +312,8 @@ std::vector<std::size_t> loudestSections(const Record& record)
 DistortionByEffect distortionByEffect(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const Progress& progress)
 {
     const Player player(model, record, sections);
-    const auto whole = player.play(model);
+    const auto linear = player.simulated(linearPart(model));
+    const auto whole = player.play(model, linear);
     if (!whole)
         throw Error(Error::Kind::numerical, "The model runs away when it is simulated on this take; fit it to the take first.");
     DistortionByEffect result;
@@ -315,9 +325,10 @@ DistortionByEffect distortionByEffect(const Model& model, const Record& record, 
         progress.at(static_cast<double>(k) / static_cast<double>(model.components.size()), "without " + effect.id());
         EffectDistortion one;
         one.effect = effect.id();
-        one.without = player.judge(player.play(withoutEffect(model, one.effect)), whole);
+        const auto without = withoutEffect(model, one.effect);
+        one.without = player.judge(player.play(without, effect.linear() ? player.simulated(linearPart(without)) : linear), whole);
         if (!effect.linear())
-            one.alone = player.judge(player.play(alone(model, one.effect)), whole);
+            one.alone = player.judge(player.play(alone(model, one.effect), linear), whole);
         result.effects.push_back(std::move(one));
     }
     return result;

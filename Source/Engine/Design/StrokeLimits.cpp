@@ -69,7 +69,7 @@ Curve inPercent(Curve curve, bool reciprocal)
 ///     1/Z = (1 0 ...) (j w I - A)^-1 B.
 std::complex<double> blockedImpedance(const Model& model, const Dynamics<double>& dynamics, double x, double frequency)
 {
-    const double small = 1e-3 * model.base().extent.current;
+    const double small = 1e-3 * model.components.back().extent.current;   // what the take visited, once there is an effect
     const auto order = static_cast<std::size_t>(dynamics.order());
     std::vector<std::size_t> states {0};
     for (std::size_t k = 3; k < order; ++k)

@@ -109,10 +109,9 @@ WhatIf whatIf(const Model& model, const Record& record, const Progress& progress
     return {distortionByEffect(model, record, loudestSections(record), progress), strokeLimits(model)};
 }
 
-double distortionDb(const ChannelDistortion& channel)
-{
-    return 10.0 * std::log10(std::pow(10.0, channel.evenDb / 10.0) + std::pow(10.0, channel.oddDb / 10.0));
-}
+double addedDb(double evenDb, double oddDb) { return 10.0 * std::log10(std::pow(10.0, evenDb / 10.0) + std::pow(10.0, oddDb / 10.0)); }
+
+double distortionDb(const ChannelDistortion& channel) { return addedDb(channel.evenDb, channel.oddDb); }
 
 double fallWithout(const DistortionByEffect& distortion, const EffectDistortion& effect, Quantity quantity)
 {

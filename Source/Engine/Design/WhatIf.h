@@ -19,6 +19,8 @@ struct WhatIf {
 /// @throws Error (numerical) when the model runs away
 WhatIf whatIf(const Model&, const Record&, const Progress& = {});
 
+/// Powers added, dB.
+double addedDb(double evenDb, double oddDb);
 /// Even and odd distortion together, dB.
 double distortionDb(const ChannelDistortion&);
 

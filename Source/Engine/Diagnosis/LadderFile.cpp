@@ -181,6 +181,19 @@ ResponseTarget asImpedance(ResponseTarget response)
     return response;
 }
 
+std::optional<WhatIf> whatIfOn(const Model& model, const Record& record, const Progress& progress)
+{
+    if (std::all_of(model.components.begin(), model.components.end(), [](const Component& c) { return c.effect->linear(); }))
+        return std::nullopt;
+    try {
+        return whatIf(model, record, progress);
+    } catch (const Error& e) {
+        if (e.kind() != Error::Kind::numerical)
+            throw;
+        return std::nullopt;   // the ladder stands without it
+    }
+}
+
 } // namespace
 
 TakeSummary summarize(const Take& take, const std::string& path)
@@ -210,17 +223,11 @@ TakeSummary summarize(const Take& take, const std::string& path)
 std::optional<WhatIf> whatIfOf(const Model& model, const Take& given, const Progress& progress)
 {
     const auto* measurement = std::get_if<Measurement>(&given);
-    if (!measurement || std::all_of(model.components.begin(), model.components.end(), [](const Component& c) { return c.effect->linear(); }))
+    if (!measurement)
         return std::nullopt;
     auto take = *measurement;
     completeExcitation(take);
-    try {
-        return whatIf(model, makeRecord(take), progress);
-    } catch (const Error& e) {
-        if (e.kind() != Error::Kind::numerical)
-            throw;
-        return std::nullopt;   // the ladder stands without it
-    }
+    return whatIfOn(model, makeRecord(take), progress);
 }
 
 LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& path)
@@ -234,7 +241,7 @@ LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& p
         if (const auto* measurement = std::get_if<Measurement>(&take)) {
             const auto record = makeRecord(*measurement);
             file.responses = responsesOf(record, record.levels.empty() ? -1 : 0, 24);
-            file.whatIf = whatIfOf(ladder.model(), take);
+            file.whatIf = whatIfOn(ladder.model(), record, {});
         } else {
             file.responses = responsesOf(std::get<Spectra>(take));
         }
