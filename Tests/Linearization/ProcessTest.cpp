@@ -99,6 +99,60 @@ TEST_CASE("What is not finite resets, and what comes after is as before", "[line
     checkFaults(speaker);
 }
 
+/// everything(), with the laws of its coil and spring, in units of which volt, ampere and metre are so many.
+Model inUnits(double volts, double amperes, double metres)
+{
+    const double newtons = volts * amperes / metres;   // power is the same
+    auto model = makeModel("electrodynamic");
+    const std::pair<const char*, double> base[] {{"Re", 3.3 * volts / amperes}, {"Le", 266e-6 * volts / amperes}, {"Bl", 4.95 * newtons / amperes},
+                                                 {"m", 0.01435 * newtons / metres}, {"Rms", 0.786 * newtons / metres}, {"K", 1852.0 * newtons / metres}};
+    for (const auto& [name, value] : base)
+        model.baseParameter(name).value = value;
+    for (const char* const id : {"force-factor", "stiffness", "inductance-position"}) {
+        Extent extent;
+        extent.displacement = xmax * metres;
+        extent.velocity = 2.0 * metres;
+        extent.current = 10.0 * amperes;
+        extent.lowFrequency = 15.0;
+        extent.highFrequency = 8000.0;
+        model = withEffect(model, effectNamed(id), extent);
+        auto& added = model.components.back();
+        added.parameters[0].value = 0.05 * added.extent.scale;
+        added.parameters[1].value = 0.2 * added.extent.scale;
+    }
+    return model;
+}
+
+TEST_CASE("What is played does not depend on the units", "[linearization]")
+{
+    const auto played = [](double volts, double amperes, double metres) {
+        const auto model = inUnits(volts, amperes, metres);
+        Predistorter predistorter(model, {48000.0, 2}, {1.0, 3e-3 * metres, 12.0 * volts, 5.0 * volts * amperes});
+        Speaker speaker(model, {48000.0, 2});
+        auto bent = through(predistorter, burst(48000.0, 0.5, 10.0 * volts)), heard = through(speaker, burst(48000.0, 0.5, 10.0 * volts));
+        CHECK(predistorter.take().faults + speaker.take().faults == 0);
+        for (auto& u : bent)
+            u /= volts;
+        for (auto& a : heard)
+            a /= metres;
+        return std::pair {bent, heard};
+    };
+    const auto [bent, heard] = played(1.0, 1.0, 1.0);
+    REQUIRE(peak(bent) > 5.0);
+    const double factors[][3] = {{1e-6, 1e6, 1e6}, {1e6, 1e-3, 1e6}, {1e6, 1e6, 1e-6}, {3e5, 2.0, 7e-5}};
+    for (const auto& factor : factors) {
+        CAPTURE(factor[0], factor[1], factor[2]);
+        const auto [otherBent, otherHeard] = played(factor[0], factor[1], factor[2]);
+        double bentMiss = 0.0, heardMiss = 0.0;
+        for (std::size_t n = 0; n < bent.size(); ++n)
+            bentMiss = std::max(bentMiss, std::abs(otherBent[n] - bent[n]));
+        for (std::size_t n = 0; n < heard.size(); ++n)
+            heardMiss = std::max(heardMiss, std::abs(otherHeard[n] - heard[n]));
+        CHECK(bentMiss < 1e-6 * peak(bent));
+        CHECK(heardMiss < 1e-6 * peak(heard));
+    }
+}
+
 TEST_CASE("An empty block is nothing", "[linearization]")
 {
     auto engine = predistorter();

@@ -2,6 +2,7 @@
 #include "Engine/Driver/Simulate.h"
 
 #include "Engine/Driver/ExponentialStep.h"
+#include "Engine/Driver/Plausible.h"
 #include "Engine/Driver/Radiator.h"
 #include "Engine/Driver/SensitivityStep.h"
 #include "Engine/Driver/Sensors.h"
@@ -45,30 +46,6 @@ std::array<double, 7> Drive::polynomial(std::size_t halfStep) const
     Eigen::Map<Eigen::Matrix<double, count, 1>>(result.data()).noalias() = inverse * value;
     return result;
 }
-
-namespace {
-
-/// A runaway is recognized early instead of filling the record with infinities: so far beyond where its laws hold no model means anything.
-/// Without laws it is linear, and holds at any level.
-class Plausible {
-public:
-    explicit Plausible(const Model& model)
-    {
-        constexpr double far = 1e6;
-        Eigen::Array3d reach = Eigen::Array3d::Zero();
-        for (const auto& component : model.components)
-            if (!component.effect->linear())
-                reach = reach.max(Eigen::Array3d(component.extent.current, component.extent.displacement, component.extent.velocity));
-        most_ = (reach > 0.0).select(far * reach, std::numeric_limits<double>::infinity());
-    }
-
-    bool holds(double i, double x, double v) const { return (Eigen::Array3d(i, x, v).abs() < most_).all(); }   // never of what is not finite
-
-private:
-    Eigen::Array3d most_;
-};
-
-} // namespace
 
 const std::vector<double>& Trajectory::operator[](Trace trace) const
 {

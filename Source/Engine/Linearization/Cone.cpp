@@ -10,15 +10,14 @@
 namespace excursion {
 namespace {
 
-constexpr double implausibleState = 1e3;   // A, m, m/s, as in a simulation
-constexpr double shareTime = 0.003;        // s, see Glide
+constexpr double shareTime = 0.003;   // s, see Glide
 
 } // namespace
 
 Cone::Cone(const Model& model, double sampleRate)
     : corrected_(stableSubsteps(model, sampleRate, ExponentialAdams::stable) > 1),
       substeps_(corrected_ ? stableSubsteps(model, sampleRate, ExponentialAdams::stableCorrected) : 1),
-      motion_(model, 1.0 / (sampleRate * substeps_), corrected_),
+      motion_(model, 1.0 / (sampleRate * substeps_), corrected_), plausible_(model),
       reference_(model, sampleRate), radiator_(model), area_(radiator_.area()), share_(shareTime, sampleRate)
 {
     const auto linear = linearize(linearPart(model));   // as in Reference
@@ -56,8 +55,7 @@ bool Cone::step(double& sample)
     reference_.step(u);
     const double linear = linear_.dot(reference_.state()) + linearInput_ * u, share = share_.step();
     sample = radiator_.at(motion_.state().data(), acceleration).flow / area_ - share * linear;
-    if (std::abs(motion_.current()) < implausibleState && std::abs(motion_.displacement()) < implausibleState
-        && std::abs(motion_.velocity()) < implausibleState && std::isfinite(acceleration) && std::isfinite(linear))
+    if (plausible_.holds(motion_.current(), motion_.displacement(), motion_.velocity()) && std::isfinite(acceleration) && std::isfinite(linear))
         return true;
     rest();
     sample = 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Driver/ExponentialAdams.h"
+#include "Engine/Driver/Plausible.h"
 #include "Engine/Driver/Radiator.h"
 #include "Engine/Linearization/Glide.h"
 #include "Engine/Linearization/RealTime.h"
@@ -40,6 +41,7 @@ private:
     bool corrected_;              ///< the laws are so fast that they are asked twice a step; see ExponentialAdams
     int substeps_;
     ExponentialAdams motion_;
+    Plausible plausible_;
     Reference reference_;
     Radiator radiator_;
     double area_;                 ///< m^2 that the sound is referred to

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Foresight.h"
 
+#include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/Linearize.h"
-
-#include <unsupported/Eigen/MatrixFunctions>
 
 #include <algorithm>
 #include <cmath>
@@ -15,23 +14,28 @@ Foresight::Foresight(const Model& model, const Reference& reference, const Eigen
 {
     const auto linear = linearize(linearPart(model));
     const auto n = linear.A.rows();
-    Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(n + 1, n + 1);   // the input beside the state
-    chain.topLeftCorner(n, n) = linear.A;
-    chain.topRightCorner(n, 1) = linear.B;
-    const Eigen::MatrixXd onward = (chain * step).exp();
+    // The input beside the state.
+    const auto after = [&](double time) {
+        const auto [decay, phi] = exponential(linear.A, linear.B, time, 1);
+        Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
+        all.topLeftCorner(n, n) = decay;
+        all.topRightCorner(n, 1) = phi;
+        return all;
+    };
+    const Eigen::MatrixXd onward = after(step);
     for (Eigen::Index i = 0; i < times.size(); ++i) {
         // x after a time, per state at its start and per input that is held meanwhile
-        const Eigen::RowVectorXd all = (chain * times[i]).exp().row(1);
+        const Eigen::RowVectorXd all = after(times[i]).row(1);
         coasting.row(i) = all.head(n) * reference.basis();
         // From the end of the last step that has begun by then; the time grows by a step each round.
         const auto last = std::min(steps, static_cast<Eigen::Index>(std::floor((times[i] + since) / step)));
-        Eigen::RowVectorXd after = (chain * (times[i] + since - static_cast<double>(last) * step)).exp().row(1);
+        Eigen::RowVectorXd then = after(times[i] + since - static_cast<double>(last) * step).row(1);
         if (last < steps)
-            driven(i, last) = last > 0 ? after[n] : all[n];
+            driven(i, last) = last > 0 ? then[n] : all[n];
         for (Eigen::Index k = last - 1; k >= 0; --k) {
-            const double shorter = after[n];
-            after = (after * onward).eval();
-            driven(i, k) = (k > 0 ? after[n] : all[n]) - shorter;
+            const double shorter = then[n];
+            then = (then * onward).eval();
+            driven(i, k) = (k > 0 ? then[n] : all[n]) - shorter;
         }
     }
 }

@@ -11,9 +11,9 @@ namespace excursion {
 
 /// Keeps out of the filters what no amplifier puts out and what is no number: such a sample is played as silence, and remembered.
 struct InputGuard {
-    static constexpr double loudest = 1e6;   ///< V, far beyond any amplifier
+    double loudest;   ///< V (or N), see Plausible::input
 
-    std::array<bool, Oversampling::longestBlock> faultAt;   ///< for the samples of the latest block
+    std::array<bool, Oversampling::longestBlock> faultAt {};   ///< for the samples of the latest block
 
     /// @param n  <= Oversampling::longestBlock samples
     void pass(const double* in, std::size_t n, double* out)

@@ -38,6 +38,7 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
 {
     Balance<Tangent> atRest;
     double visited = 0.0;
+    std::vector<LinearMemory::Block> blocks;
     for (const auto& component : model.components) {
         const auto& effect = *component.effect;
         std::vector<double> parameters, coefficients(static_cast<std::size_t>(effect.coefficientCount(component.extent)));
@@ -48,28 +49,46 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
             visited = std::max(visited, component.extent.current);
 
         std::vector<Tangent> constants(coefficients.begin(), coefficients.end());
-        Memory memory(effect, component.extent, coefficients, sampleRate);
-        std::vector<Tangent> silent(memory.size(), Tangent(0.0)), unused = silent;
+        std::vector<Tangent> silent(static_cast<std::size_t>(effect.memorySize(component.extent)), Tangent(0.0)), unused = silent;
         const Motion<Tangent> rest {carrying(0.0, 0.0, 1.0), Tangent(0.0), Tangent(0.0)};
         effect.contribute(component.extent, constants.data(), rest, silent.data(), unused.data(), atRest);
-        if (auto form = linearForm(effect, component.extent, coefficients.data())) {
+        const auto form = linearForm(effect, component.extent, coefficients.data());
+        if (form) {
             linear_.inductance += form->inductance;
             linear_.mass += form->mass;
             for (std::size_t q = 0; q < 3; ++q) {
                 linear_.drop[q] += form->drop[q];
                 linear_.force[q] += form->force[q];
             }
-            dropByCurrent_ += form->drop[0] + sumOf(form->dropByMemory, memory.byCurrent());
-            forceByCurrent_ += form->force[0] + sumOf(form->forceByMemory, memory.byCurrent());
-            for (auto* weights : {&form->dropByMemory, &form->forceByMemory})
-                if (std::all_of(weights->begin(), weights->end(), [](double weight) { return weight == 0.0; }))
-                    weights->clear();
-            if (memory.size() > 0)
-                lagging_.push_back({std::move(memory), std::move(form->dropByMemory), std::move(form->forceByMemory)});
+            dropByCurrent_ += form->drop[0];
+            forceByCurrent_ += form->force[0];
         } else {
-            curved_.push_back({&effect, component.extent, std::move(constants), std::move(memory), std::move(silent), std::move(unused)});
+            curved_.push_back({&effect, component.extent, std::move(constants), std::nullopt, std::nullopt, silent, unused});
+        }
+        if (silent.empty())
+            continue;
+        const auto rates = linearRates(effect, component.extent, coefficients.data());
+        auto block = !rates ? std::nullopt
+                   : form   ? LinearMemory::summed(*rates, form->dropByMemory, form->forceByMemory, sampleRate)
+                            : LinearMemory::readable(*rates, sampleRate);
+        if (block) {
+            if (!form)
+                curved_.back().block = blocks.size();
+            blocks.push_back(std::move(*block));
+            continue;
+        }
+        Memory memory(effect, component.extent, coefficients, sampleRate);
+        if (form) {
+            dropByCurrent_ += sumOf(form->dropByMemory, memory.byCurrent());
+            forceByCurrent_ += sumOf(form->forceByMemory, memory.byCurrent());
+            lagging_.push_back({std::move(memory), form->dropByMemory, form->forceByMemory});
+        } else {
+            curved_.back().memory = std::move(memory);
         }
     }
+    together_ = LinearMemory(std::move(blocks));
+    dropByCurrent_ += together_.sumsByCurrent().drop;
+    forceByCurrent_ += together_.sumsByCurrent().force;
     if (visited > 0.0)
         largestCurrent_ = 10.0 * visited;
     forcePerCurrent_ = byCurrent(atRest.force);
@@ -77,10 +96,12 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
 
 void Inverse::reset()
 {
+    together_.reset();
     for (auto& part : lagging_)
         part.memory.reset();
     for (auto& part : curved_)
-        part.memory.reset();
+        if (part.memory)
+            part.memory->reset();
     now_ = past_ = {};
     ease_ = 1.0;
 }
@@ -108,10 +129,12 @@ double Inverse::again(const MotionPoint& to)
 
 void Inverse::takeBack()
 {
+    together_.stepBack();
     for (auto& part : lagging_)
         part.memory.stepBack();
     for (auto& part : curved_)
-        part.memory.stepBack();
+        if (part.memory)
+            part.memory->stepBack();
     now_ = past_;
 }
 
@@ -126,13 +149,15 @@ double Inverse::solve(const MotionPoint& to, double guess)
     const auto& [di, dx, dv] = linear_.drop;
     const auto& [fi, fx, fv] = linear_.force;
     double drop = di * guess + dx * to.x + dv * to.v, force = fi * guess + fx * to.x + fv * to.v, forceByTime = fx * to.v + fv * to.a;
+    const auto lag = together_.step(motion);
+    drop += lag.drop;
+    force += lag.force;
+    forceByTime += lag.forceByTime;
     for (auto& part : lagging_) {
         part.memory.step(motion);
         drop += sumOf(part.drop, part.memory.value());
-        if (!part.force.empty()) {
-            force += sumOf(part.force, part.memory.value());
-            forceByTime += sumOf(part.force, part.memory.findRate());
-        }
+        force += sumOf(part.force, part.memory.value());
+        forceByTime += sumOf(part.force, part.memory.findRate());
     }
     Balance<Tangent> sum;
     sum.inductance = Tangent(linear_.inductance);
@@ -141,8 +166,11 @@ double Inverse::solve(const MotionPoint& to, double guess)
     sum.force = carrying(force, forceByTime, forceByCurrent_);
     const Motion<Tangent> at {carrying(guess, 0.0, 1.0), carrying(to.x, to.v, 0.0), carrying(to.v, to.a, 0.0)};
     for (auto& part : curved_) {
-        auto& memory = part.memory;
-        if (memory.size() > 0) {
+        if (part.block) {
+            for (std::size_t k = 0; k < part.state.size(); ++k)
+                part.state[k] = carrying(together_.value(*part.block, k), together_.rate(*part.block, k), together_.byCurrent(*part.block, k));
+        } else if (part.memory) {
+            auto& memory = *part.memory;
             memory.step(motion);
             const double* const rate = memory.findRate();
             for (std::size_t k = 0; k < memory.size(); ++k)
@@ -161,10 +189,12 @@ double Inverse::solve(const MotionPoint& to, double guess)
     current = std::clamp(guess + missing / perCurrent, -largestCurrent_, largestCurrent_);
     const double off = current - guess;
     slope = (sum.mass.a * to.j + byTime(sum.mass) * to.a - byTime(sum.force)) / perCurrent;
+    together_.correct(off);
     for (auto& part : lagging_)
         part.memory.correct(off);
     for (auto& part : curved_)
-        part.memory.correct(off);
+        if (part.memory)
+            part.memory->correct(off);
     const double difference = current - to.i;
     // Where force and current have come apart there is no trend to follow.
     ahead = weak ? std::array {difference, difference, difference} : std::array {difference, ahead[0], ahead[1]};

@@ -3,10 +3,13 @@
 
 #include "Engine/Driver/Model.h"
 #include "Engine/Linearization/LinearForm.h"
+#include "Engine/Linearization/LinearMemory.h"
 #include "Engine/Linearization/Memory.h"
 #include "Engine/Linearization/Reference.h"
 
 #include <array>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace excursion {
@@ -18,12 +21,12 @@ namespace excursion {
 ///     di/dt = (M j - F_t)/F_i,        F_t = F_x v + F_v a + F_m dm/dt,
 ///     u = drop + L di/dt + fluxSlope v.
 /// Every effect contributes through the lines that simulate it (Effect::contribute), run on numbers that carry the derivatives
-/// by time and by current, and its memory is carried along (Memory.h). What is linear is asked once and summed up (LinearForm.h).
+/// by time and by current, and its memory is carried along (LinearMemory.h, Memory.h). What is linear is asked once and summed up (LinearForm.h).
 ///
 /// The current is extrapolated by its difference to the linear driver's, which is small and slow, to i_p, and
 /// one Newton step, i = i_p + (M a - F)/F_i, is exact but for the square of what the extrapolation missed (reluctance force
 /// alone is not linear in i); where that is much, as at an edge, a second one follows. F_i, at rest Bl, is kept from falling below a tenth of its value at rest, where a driver can no
-/// longer be made to follow; the current is bounded by ten times what the model was measured at.
+/// longer be made to follow; the current is bounded by ten times what its effects were measured at.
 /// A driver without a coil has u = M a - F.
 class Inverse {
 public:
@@ -51,20 +54,22 @@ private:
         const Effect* effect;
         Extent extent;
         std::vector<Tangent> coefficients;
-        Memory memory;
+        std::optional<std::size_t> block;   ///< of together_, where its memory is
+        std::optional<Memory> memory;       ///< or by itself
         std::vector<Tangent> state, rate;
     };
-    /// The memory of a linear one.
+    /// The memory of a linear one that is not among together_.
     struct Lagging {
         Memory memory;
-        std::vector<double> drop, force;   ///< what each state adds; empty: nothing
+        std::vector<double> drop, force;   ///< what each state adds
     };
 
     bool electrical_;
     double period_;
-    double largestCurrent_ = 1e3;         ///< A
+    double largestCurrent_ = std::numeric_limits<double>::infinity();   ///< A
     LinearForm linear_;   ///< of all that is linear, without the memories
     double dropByCurrent_ = 0.0, forceByCurrent_ = 0.0;   ///< of all that is linear, with what the current does to the memories
+    LinearMemory together_;
     std::vector<Lagging> lagging_;
     std::vector<Curved> curved_;
     double forcePerCurrent_ = 0.0;   ///< N/A, at rest

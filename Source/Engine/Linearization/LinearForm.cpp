@@ -62,4 +62,37 @@ std::optional<LinearForm> linearForm(const Effect& effect, const Extent& extent,
     return form;
 }
 
+std::optional<LinearRates> linearRates(const Effect& effect, const Extent& extent, const double* coefficients)
+{
+    const auto n = static_cast<Eigen::Index>(effect.memorySize(extent));
+    const Eigen::Vector3d visited(extent.current, extent.displacement, extent.velocity);
+    Eigen::VectorXd m = Eigen::VectorXd::Zero(n), r(n);
+    const auto ask = [&](const Eigen::Vector3d& q) -> const Eigen::VectorXd& {
+        Balance<double> unused;
+        effect.contribute(extent, coefficients, {q[0], q[1], q[2]}, m.data(), r.data(), unused);
+        return r;
+    };
+    LinearRates rates {Eigen::MatrixXd(n, n), Eigen::MatrixX3d(n, 3)};
+    const bool restsAtRest = ask(Eigen::Vector3d::Zero()).isZero(0.0);
+    for (Eigen::Index q = 0; q < 3; ++q)
+        rates.b.col(q) = ask(visited[q] * Eigen::Vector3d::Unit(q)) / visited[q];
+    for (Eigen::Index k = 0; k < n; ++k) {
+        m = Eigen::VectorXd::Unit(n, k);
+        rates.A.col(k) = ask(Eigen::Vector3d::Zero());
+    }
+    if (!(restsAtRest && rates.A.allFinite() && rates.b.allFinite()))
+        return std::nullopt;
+    for (int trial = 1; trial <= 4; ++trial) {
+        Eigen::Vector3d at;
+        for (int q = 0; q < 3; ++q)
+            at[q] = visited[q] * std::sin(1.0 + 2.3 * trial + 1.7 * q);
+        for (Eigen::Index k = 0; k < n; ++k)
+            m[k] = std::cos(0.9 * trial + 2.1 * static_cast<double>(k));
+        const Eigen::VectorXd size = rates.A.cwiseAbs() * m.cwiseAbs() + rates.b.cwiseAbs() * at.cwiseAbs();
+        if (!((ask(at) - rates.A * m - rates.b * at).array().abs() <= 1e-9 * size.array()).all())
+            return std::nullopt;
+    }
+    return rates;
+}
+
 } // namespace excursion

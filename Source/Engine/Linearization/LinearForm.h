@@ -3,6 +3,8 @@
 
 #include "Engine/Driver/Effect.h"
 
+#include <Eigen/Core>
+
 #include <array>
 #include <optional>
 #include <vector>
@@ -21,5 +23,15 @@ struct LinearForm {
 /// The linear form, or nothing when what the effect adds elsewhere does not agree with it.
 /// @param coefficients  of the effect, prepared
 std::optional<LinearForm> linearForm(const Effect&, const Extent&, const double* coefficients);
+
+/// The rates of an effect's memory where they are linear, dm/dt = A m + b (i, x, v).
+struct LinearRates {
+    Eigen::MatrixXd A;   ///< 1/s
+    Eigen::Matrix<double, Eigen::Dynamic, 3> b;
+};
+
+/// The linear rates, or nothing when the rates elsewhere do not agree with them.
+/// @param coefficients  of the effect, prepared
+std::optional<LinearRates> linearRates(const Effect&, const Extent&, const double* coefficients);
 
 } // namespace excursion

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Driver/Model.h"
-#include "Engine/Linearization/Cubic.h"
+#include "Engine/Linearization/LinearMemory.h"
 
 #include <algorithm>
 #include <array>
@@ -11,15 +11,12 @@
 
 namespace excursion {
 
-/// Current, position and velocity on one step.
-struct MotionCubic {
-    Cubic i, x, v;
-};
-
-/// Carries the memory m of one effect along a given motion, dm/dt = r(m; i, x, v) with r as the effect states it. Where r turns
-/// out to be linear, dm/dt = A m + b_i i + b_x x + b_v v (ladders, relaxations), the step is exact for cubic motions,
-///     m(1) = exp(A T) m(0) + sum_q sum_k G_qk c_qk,
-/// however fast the fastest cell; any other memory is stepped by the classical Runge-Kutta method.
+/// Carries the memory m of one effect along a given motion, dm/dt = r(m; i, x, v) with r as the effect states it, where LinearMemory does not
+/// do it. How it is stepped is found out by asking r:
+///   - dm/dt = A m + b (i, x, v): exact for cubic motions;
+///   - dm/dt = -diag(p) m + N(i, x, v), in which m hardly changes N within a step (what is slow, like heat): exact in m, with N a
+///     cubic through its values at the latest four samples. It is asked once a step;
+///   - anything else: the classical Runge-Kutta method.
 class Memory {
 public:
     /// @param coefficients  of the effect, prepared
@@ -31,7 +28,7 @@ public:
     /// One step of 1/sampleRate.
     void step(const MotionCubic&);
     /// Takes the latest step back.
-    void stepBack() { std::copy(before_.begin(), before_.end(), value_.begin()); }
+    void stepBack();
 
     const double* value() const { return value_.data(); }
     const double* findRate();   ///< dm/dt at the end of the latest step, 1/s
@@ -42,23 +39,29 @@ public:
     void correct(double current);
 
 private:
+    enum class Kind { linear, driven, any };
+
     void rates(double i, double x, double v, const double* m, double* out) const;
-    bool probe(double sampleRate);
+    bool findDriven(double sampleRate);
+    void prepareLinear(const LinearRates&, double sampleRate);
+    void stepLinear(const MotionCubic&);
+    void stepDriven();
+    void stepAny(const MotionCubic&);
 
     const Effect* effect_;
     Extent extent_;
     std::vector<double> coefficients_;
     double period_;
     std::size_t size_;
-    bool linear_ = false, diagonal_ = false;
+    Kind kind_ = Kind::any;
     std::vector<double> value_, rate_, byCurrent_, next_, before_;   ///< before_: the value before the latest step
-    std::array<double, 3> end_ {};        ///< i, x, v at the end of the latest step
-    std::vector<double> decay_;           ///< exp(A T): its diagonal, or all of it by columns
-    struct Drive {
-        std::array<std::vector<double>, 4> weight;   ///< G_k
-        bool present = false;
-    };
-    std::array<Drive, 3> drives_;   ///< by i, x and v
+    std::array<double, 3> end_ {};     ///< i, x, v at the end of the latest step
+    std::vector<double> decay_;        ///< exp(A T): by columns, or its diagonal when driven
+    std::array<std::vector<double>, 12> drive_;   ///< G: by the coefficients of i, x and v
+    std::vector<double> own_;          ///< -p
+    std::array<std::vector<double>, 4> weight_;   ///< of N at the latest four samples, the newest first
+    std::array<std::vector<double>, 4> N_;        ///< a ring
+    std::size_t newest_ = 0;
     std::array<std::vector<double>, 5> stages_;   ///< of the Runge-Kutta method
 };
 

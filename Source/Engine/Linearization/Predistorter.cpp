@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Predistorter.h"
 
-#include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/Subnormals.h"
 
 #include <algorithm>
@@ -24,7 +23,7 @@ double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(st
 
 Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const LinearizationControls& controls)
     : oversampling_((requireRunnable(model, options), options.oversampling)), protection_(undonePart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
-      linearizer_(undonePart(model), options.sampleRate * options.oversampling),
+      linearizer_(undonePart(model), options.sampleRate * options.oversampling), plausible_(model),
       recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
       ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), amount_(amountTime, options.sampleRate), near_(nearTime, options.sampleRate),
       effort_(nearTime, options.sampleRate, 1.0),
@@ -69,8 +68,9 @@ void Predistorter::bend(double& sample, double amount)
     const double asked = sample;
     outcome_.astray = outcome_.astray || amount < 1.0;
     double out = linearizer_.step(asked, amount, on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity());
-    const double x = std::abs(linearizer_.cone().motion().x), i = linearizer_.current();
-    if (!(std::abs(out) < InputGuard::loudest && x < InputGuard::loudest && std::abs(linearizer_.wanted()) < InputGuard::loudest)) {
+    const auto& motion = linearizer_.cone().motion();
+    const double x = std::abs(motion.x), i = linearizer_.current();
+    if (!(std::abs(out) < plausible_.input() && std::abs(linearizer_.wanted()) < plausible_.input() && plausible_.holds(i, x, motion.v))) {
         fault();
         out = 0.0;
     } else {
@@ -108,7 +108,7 @@ void Predistorter::begin(const double* in, std::size_t n)
         effort_.aim(protection_.effort());
     }
     for (std::size_t k = 0; k < n; ++k) {
-        const bool sound = std::abs(in[k]) < InputGuard::loudest;   // not for NaN
+        const bool sound = std::abs(in[k]) < plausible_.input();   // not for NaN
         if (!sound)
             faults_.fetch_add(1, std::memory_order_relaxed);
         block_[k] = recovery_.step() * protection_.step(in[k], sound);

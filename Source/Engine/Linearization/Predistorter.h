@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Driver/Plausible.h"
 #include "Engine/Linearization/Fade.h"
 #include "Engine/Linearization/Glide.h"
 #include "Engine/Linearization/Linearizer.h"
@@ -72,6 +73,7 @@ private:
     Oversampling oversampling_;
     Protection protection_;
     Linearizer linearizer_;
+    Plausible plausible_;
     Recovery recovery_;
     double ohms_;
     bool on_ = true;

@@ -2,65 +2,17 @@
 #include "Engine/Linearization/Reference.h"
 
 #include "Engine/Dispatch.h"
+#include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Linearization/Cubic.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
-#include <unsupported/Eigen/MatrixFunctions>
+#include "Engine/Linearization/Lanes.h"
+#include "Engine/Linearization/Modes.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace excursion {
 namespace {
-
-/// How many digits the change to the eigenvectors may cost.
-constexpr double worstCondition = 1e6;
-
-/// Sizes of the states with which rows and columns of A have like sums (Osborne, J. ACM 7, 1960), so that the condition of its
-/// eigenvectors does not hang on units.
-Eigen::VectorXd balance(Eigen::MatrixXd A)
-{
-    Eigen::VectorXd size = Eigen::VectorXd::Ones(A.rows());
-    for (int round = 0; round < 50; ++round)
-        for (Eigen::Index k = 0; k < A.rows(); ++k) {
-            const double own = std::abs(A(k, k));
-            const double column = A.col(k).cwiseAbs().sum() - own, row = A.row(k).cwiseAbs().sum() - own;
-            if (column <= 0.0 || row <= 0.0)
-                continue;
-            const double factor = std::sqrt(row / column);
-            A.col(k) *= factor;
-            A.row(k) /= factor;
-            size[k] *= factor;
-        }
-    return size;
-}
-
-/// Real eigenvectors, of unit length: first the pairs (real and imaginary part), then the real ones.
-Eigen::MatrixXd eigenvectors(const Eigen::MatrixXd& A, Eigen::Index& pairs)
-{
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
-    const auto n = A.rows();
-    Eigen::MatrixXd vectors(n, n);
-    Eigen::Index column = 0;
-    for (const bool complex : {true, false}) {
-        for (Eigen::Index k = 0; k < n; ++k) {
-            const double turn = solver.eigenvalues()[k].imag();
-            const Eigen::VectorXcd vector = solver.eigenvectors().col(k);
-            if (complex && turn > 0.0) {
-                vectors.col(column++) = vector.real();
-                vectors.col(column++) = vector.imag();
-            } else if (!complex && turn == 0.0) {
-                vectors.col(column++) = vector.real();
-            }
-        }
-        if (complex)
-            pairs = column / 2;
-    }
-    return vectors;
-}
 
 std::vector<double> padded(const Eigen::VectorXd& values, std::size_t rows)
 {
@@ -98,22 +50,15 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
     const auto& A = linear.A;
     const auto n = A.rows();
     order_ = static_cast<std::size_t>(n);
-    rows_ = (order_ + lanes - 1) / lanes * lanes;
+    rows_ = roundedUpToLanes(order_);
 
-    // The input on the step, s = 0 .. 1, is a chain of integrators beside the state: u and its derivatives with respect to s.
-    Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(n + 4, n + 4);
-    chain.topLeftCorner(n, n) = A / sampleRate;
-    chain.block(0, n, n, 1) = linear.B / sampleRate;
-    for (Eigen::Index k = 0; k < 3; ++k)
-        chain(n + k, n + k + 1) = 1.0;
-    const Eigen::MatrixXd solution = chain.exp();
-    Eigen::MatrixXd transition = solution.topLeftCorner(n, n), inputs(n, 4), outputs = Eigen::MatrixXd::Zero(5, n);
+    auto [transition, phi] = exponential(A, linear.B, 1.0 / sampleRate, 4);
+    Eigen::MatrixXd inputs(n, 4), outputs = Eigen::MatrixXd::Zero(5, n);
     for (std::size_t sample = 0; sample < 4; ++sample) {
         std::array<double, 4> u {};
         u[sample] = 1.0;
         const auto cubic = Cubic::through(u[3], u[2], u[1], u[0]);
-        inputs.col(static_cast<Eigen::Index>(sample)) = solution.block(0, n, n, 4)
-                                                      * Eigen::Vector4d(cubic.c[0], cubic.c[1], 2.0 * cubic.c[2], 6.0 * cubic.c[3]);
+        inputs.col(static_cast<Eigen::Index>(sample)) = phi * Eigen::Vector4d(cubic.c[0], cubic.c[1], 2.0 * cubic.c[2], 6.0 * cubic.c[3]);
     }
     outputs(0, 1) = outputs(1, 2) = outputs(4, 0) = 1.0;
     outputs.row(2) = A.row(2);
@@ -121,24 +66,20 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
     accelerationInput_ = linear.B[2];
     jerkInput_ = A.row(2).dot(linear.B);
 
-    const auto size = balance(A);
-    Eigen::MatrixXd vectors = eigenvectors(size.cwiseInverse().asDiagonal() * A * size.asDiagonal(), pairs_);
-    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(vectors).singularValues();
-    basis_ = Eigen::MatrixXd::Identity(n, n);
-    dense_ = !(singular[0] < worstCondition * singular[n - 1]);
+    const auto modes = modesOf(A);
+    dense_ = !modes.apart;
     if (dense_) {
-        pairs_ = 0;
+        basis_ = Eigen::MatrixXd::Identity(n, n);
         for (Eigen::Index column = 0; column < n; ++column) {
             const auto rows = padded(transition.col(column), rows_);
             transition_.insert(transition_.end(), rows.begin(), rows.end());
         }
     } else {
-        vectors = size.asDiagonal() * vectors;
-        basis_ = vectors;
-        const Eigen::FullPivLU<Eigen::MatrixXd> solver(vectors);
-        transition = solver.solve(transition * vectors).eval();
-        inputs = solver.solve(inputs).eval();
-        outputs = (outputs * vectors).eval();
+        basis_ = modes.basis;
+        pairs_ = modes.pairs;
+        transition = (modes.inverse * transition * basis_).eval();
+        inputs = (modes.inverse * inputs).eval();
+        outputs = (outputs * basis_).eval();
     }
     // A dense transition is made by itself, and leaves what is laid out with a diagonal of ones.
     Rows diagonal(rows_, dense_ ? 1.0 : 0.0), turn(rows_, 0.0);
@@ -155,9 +96,7 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
         laid.push_back(padded(inputs.col(k), rows_));
     for (Eigen::Index k = 0; k < outputs.rows(); ++k)
         laid.push_back(padded(outputs.row(k).transpose(), rows_));
-    for (std::size_t row = 0; row < rows_; row += lanes)
-        for (const auto& values : laid)
-            laid_.insert(laid_.end(), values.begin() + static_cast<std::ptrdiff_t>(row), values.begin() + static_cast<std::ptrdiff_t>(row + lanes));
+    laid_ = laidOut(laid);
     byNow_ = laid[2];
     const Eigen::VectorXd direct = outputs * inputs.col(0);
     byInput_ = {direct[0], direct[1], direct[2] + accelerationInput_, electrical_ ? direct[3] + jerkInput_ : 0.0, direct[4]};

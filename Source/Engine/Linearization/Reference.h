@@ -45,7 +45,6 @@ public:
     const Eigen::MatrixXd& basis() const { return basis_; }
 
 private:
-    static constexpr int lanes = 4;   ///< states at a time
     using Rows = std::vector<double>;
 
     std::size_t order_, rows_;        ///< rows_: the order, padded to a multiple of lanes

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Speaker.h"
 
-#include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/Subnormals.h"
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 namespace excursion {
 
 Speaker::Speaker(const Model& model, const RealTimeOptions& options)
-    : oversampling_((requireRunnable(model, options), options.oversampling)), cone_(model, options.sampleRate * options.oversampling),
+    : oversampling_((requireRunnable(model, options), options.oversampling)), cone_(model, options.sampleRate * options.oversampling), guard_ {Plausible(model).input()},
       recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate))
 {
 }
@@ -28,24 +27,23 @@ void Speaker::process(const double* in, double* out, std::size_t n)
     const auto factor = static_cast<std::size_t>(oversampling_.factor());
     while (n > 0) {
         const std::size_t count = std::min(n, Oversampling::longestBlock);
-        InputGuard guard;
-        guard.pass(in, count, block_.data());
+        guard_.pass(in, count, block_.data());
         oversampling_.up(block_.data(), count, fine_.data());
         for (std::size_t k = 0; k < count; ++k)
             for (std::size_t s = 0; s < factor; ++s) {
                 auto& sample = fine_[k * factor + s];
-                if (guard.faultAt[k]) {
+                if (guard_.faultAt[k]) {
                     cone_.rest();
                     sample = 0.0;
                 } else if (!cone_.step(sample)) {
-                    guard.faultAt[k] = true;
+                    guard_.faultAt[k] = true;
                 }
                 peak_.displacement = std::max(peak_.displacement, std::abs(cone_.displacement()));
                 peak_.current = std::max(peak_.current, std::abs(cone_.current()));
             }
         oversampling_.down(fine_.data(), count, block_.data());
         for (std::size_t k = 0; k < count; ++k) {
-            if (guard.faultAt[k]) {
+            if (guard_.faultAt[k]) {
                 recovery_.fault();
                 faults_.fetch_add(1, std::memory_order_relaxed);
             }

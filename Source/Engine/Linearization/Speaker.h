@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Linearization/Cone.h"
+#include "Engine/Linearization/InputGuard.h"
 #include "Engine/Linearization/Oversampling.h"
 #include "Engine/Linearization/Peak.h"
 #include "Engine/Linearization/RealTime.h"
@@ -44,6 +45,7 @@ public:
 private:
     Oversampling oversampling_;
     Cone cone_;
+    InputGuard guard_;
     Recovery recovery_;
     std::array<double, Oversampling::longestBlock> block_ {};
     std::array<double, 4 * Oversampling::longestBlock> fine_ {};
