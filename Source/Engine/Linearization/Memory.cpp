@@ -48,7 +48,7 @@ void Memory::prepareLinear(const LinearRates& linear, double sampleRate)
 /// Whether r = -diag(p) m + N, with an N that memories of their usual size hardly change while one is carried on by a step.
 bool Memory::findDriven(double sampleRate)
 {
-    constexpr double hardly = 1e-6;
+    constexpr double hardly = 1e-4;   // so much later the memory acts on itself, of a step
     const auto n = static_cast<Eigen::Index>(size_);
     Eigen::VectorXd m = Eigen::VectorXd::Zero(n), r(n), atRest(n);
     rates(0.0, 0.0, 0.0, m.data(), atRest.data());
