@@ -263,6 +263,36 @@ TEST_CASE("lost samples are a dropout")
     CHECK(find(report, "dropout", std::nullopt)->value == 1000.0);
 }
 
+TEST_CASE("a gain that jumps is told from samples that are lost and from a loudspeaker that changes")
+{
+    const auto sound = soundTake();
+    const auto& e = *sound.excitation;
+    const auto from = static_cast<std::size_t>(e.samplesPerRealization() * 4 + (e.settlePeriods + 1) * e.period);
+    const auto until = static_cast<std::size_t>(e.samplesPerRealization() * 5);
+    const auto jump = [&](Measurement& take, Quantity quantity, double factor) {
+        auto& samples = samplesOf(take, quantity);
+        for (auto n = from; n < until; ++n)
+            samples[n] *= factor;
+    };
+
+    auto one = sound;
+    jump(one, Quantity::current, 0.9);
+    const auto report = check(one);
+    const auto* problem = find(report, "gain-jump", Quantity::current);
+    REQUIRE(problem);
+    CHECK(problem->value == Approx(20.0 * std::log10(0.9)).epsilon(0.02));
+    CHECK(problem->fatal);
+    INFO(fatalSentences(report));
+    CHECK(othersThan(report, "gain-jump") == 0);
+
+    auto all = sound;   // what a coil does that has grown warm
+    for (const auto quantity : {Quantity::current, Quantity::displacement, Quantity::pressure})
+        jump(all, quantity, 0.9);
+    const auto changed = check(all);
+    INFO(fatalSentences(changed));
+    CHECK(changed.fitForUse());
+}
+
 TEST_CASE("a transient in the first used period is not settled")
 {
     auto take = soundTake();

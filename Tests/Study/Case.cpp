@@ -25,6 +25,8 @@ double truth(const bench::Loudspeaker& speaker, const std::string& effect, doubl
         return speaker.inductanceAt(q);
     if (effect == "damping-velocity")
         return speaker.dampingAt(q);
+    if (effect == "inductance-current")
+        return speaker.inductanceAt(0.0, q);
     return std::numeric_limits<double>::quiet_NaN();
 }
 

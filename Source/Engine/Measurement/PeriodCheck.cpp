@@ -154,7 +154,8 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
 
     figures.settlingDb = settling(take, channel, loudest);
     if (figures.settlingDb && *figures.settlingDb > -60.0)
-        problems.push_back({"not-settled", channel.quantity, *figures.settlingDb, "dB", *figures.settlingDb > -20.0,
+        problems.push_back({"not-settled", channel.quantity, *figures.settlingDb, "dB",
+                            *figures.settlingDb > -20.0 && changedShare(take, channel, loudest) < changedFrom,
                             "The " + who + " channel has not settled in its first used period, by "
                                 + rounded(*figures.settlingDb, 0) + " dB of the signal; play one more settling period."});
 
@@ -193,6 +194,32 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
                           std::abs(ppm) > 0.5 && std::abs(shift->samples) > 6.0 * shift->standardError
                               && shift->explained > 0.6});
     }
+
+    // A system that changes shows in every channel that answers; one channel by itself has changed its gain.
+    const auto withoutCompany = [&](const std::pair<std::size_t, PeriodJump>& own) {
+        return std::count(alive.begin(), alive.end(), true) > 2
+            && std::none_of(jumps.begin(), jumps.end(), [&own](const auto& other) {
+                   return other.first != own.first && other.second.change && other.second.level == own.second.level
+                       && other.second.realization == own.second.realization && other.second.period == own.second.period;
+               });
+    };
+    for (std::size_t c = 0; c < take.channels.size(); ++c) {
+        const auto worst = std::max_element(jumps.begin(), jumps.end(), [&](const auto& a, const auto& b) {
+            const auto size = [&](const auto& jump) {
+                return jump.first == c && jump.second.change && withoutCompany(jump) ? jump.second.db : -1e9;
+            };
+            return size(a) < size(b);
+        });
+        if (worst == jumps.end() || worst->first != c || !worst->second.change || !withoutCompany(*worst))
+            continue;
+        const auto quantity = take.channels[c].quantity;
+        const auto& jump = worst->second;
+        problems.push_back({"gain-jump", quantity, jump.gainDb, "dB", jump.db > -30.0,
+                            "The gain of the " + std::string(name(quantity)) + " channel jumps by " + rounded(jump.gainDb, 2) + " dB at level "
+                                + std::to_string(jump.level) + ", realization " + std::to_string(jump.realization) + ", after used period "
+                                + std::to_string(jump.period) + ": look for a loose contact, an automatic gain or a switched range; record again."});
+    }
+    std::erase_if(jumps, [](const auto& jump) { return jump.second.change; });
 
     // What all jump over together is the recorder's; it is told once.
     if (!jumps.empty()) {

@@ -3,6 +3,7 @@
 
 #include "Engine/Measurement/Periods.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,65 @@ std::vector<double> powerOf(const Spectrum& spectrum)
     return power;
 }
 
+double gainOf(const Spectrum& earlier, const Spectrum& later)
+{
+    double before = 0.0, after = 0.0;
+    for (std::size_t i = 0; i < earlier.size(); ++i) {
+        before += std::norm(earlier[i]);
+        after += std::norm(later[i]);
+    }
+    return decibelsOf(after / before);
+}
+
+/// The share of a difference that the earlier period explains, where the gain at a line is the mean over its neighbours, 0..1.
+double coherenceOf(const Spectrum& earlier, const Spectrum& later)
+{
+    double explained = 0.0, whole = 0.0;
+    const std::size_t F = earlier.size();
+    for (std::size_t i = 0; i < F; ++i) {
+        const std::size_t from = i > neighbours ? i - neighbours : 0, to = std::min(F, i + neighbours + 1);
+        Complex cross = 0.0;
+        double power = 0.0;
+        for (std::size_t j = from; j < to; ++j)
+            if (j != i) {   // a line explains itself
+                cross += (later[j] - earlier[j]) * std::conj(earlier[j]);
+                power += std::norm(earlier[j]);
+            }
+        const auto difference = later[i] - earlier[i];
+        whole += std::norm(difference);
+        if (power > 0.0)
+            explained += std::norm(difference) - std::norm(difference - cross / power * earlier[i]);
+    }
+    return whole > 0.0 ? std::max(0.0, explained / whole) : 0.0;
+}
+
+double differenceOf(const Spectrum& earlier, const Spectrum& later)
+{
+    double difference = 0.0, power = 0.0;
+    for (std::size_t i = 0; i < earlier.size(); ++i) {
+        difference += std::norm(later[i] - earlier[i]);
+        power += std::norm(earlier[i]);
+    }
+    return power > 0.0 ? difference / power : 0.0;
+}
+
+/// PeriodJump::change, between period p and the next. What changes at once does so within a period, so those around it are compared, too.
+bool isChange(const std::vector<Spectrum>& spectra, std::size_t p, const std::vector<int>& lines, int N)
+{
+    const double pair = differenceOf(spectra[p], spectra[p + 1]);
+    for (const std::size_t from : {p, std::max<std::size_t>(p, 1) - 1})
+        for (const std::size_t to : {p + 1, std::min(p + 2, spectra.size() - 1)}) {
+            const auto &earlier = spectra[from], &later = spectra[to];
+            if (!(differenceOf(earlier, later) > 0.3 * pair && coherenceOf(earlier, later) > changedFrom))
+                continue;
+            const auto shift = shiftOf(crossSpectrum(earlier, later), powerOf(earlier), lines, N);
+            const bool lost = shift.explained > 0.6 && std::abs(shift.samples) > 0.5;   // samples are lost whole
+            if (!lost)
+                return true;
+        }
+    return false;
+}
+
 /// A used period, cut a quarter earlier when there is a settling period: a channel that is early, or drifts, would
 /// else have a piece of the next realization in its last period.
 std::span<const double> earlyPeriod(const Measurement& take, const Channel& channel, int level, int realization, int period)
@@ -167,29 +227,39 @@ std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& chan
     for (int level = 0; level < static_cast<int>(e.levels.size()); ++level) {
         std::vector<PeriodJump> pairs;
         std::vector<double> differences;
-        for (int m = 0; m < e.realizations; ++m) {
-            const auto spectra = earlySpectra(take, channel, level, m, lines);
+        for (int m = 0; m < e.realizations; ++m)
             for (int p = 0; p + 1 < e.periods; ++p) {
-                const auto& earlier = spectra[static_cast<std::size_t>(p)];
-                const auto& later = spectra[static_cast<std::size_t>(p + 1)];
-                const double difference = relativeDifference(earlyPeriod(take, channel, level, m, p),
-                                                             earlyPeriod(take, channel, level, m, p + 1));
-                differences.push_back(difference);
-                pairs.push_back({level, m, p, 10.0 * std::log10(difference + 1e-300),
-                                 shiftOf(crossSpectrum(earlier, later), powerOf(earlier), lines, e.period)});
+                differences.push_back(relativeDifference(earlyPeriod(take, channel, level, m, p), earlyPeriod(take, channel, level, m, p + 1)));
+                pairs.push_back({level, m, p, 10.0 * std::log10(differences.back() + 1e-300), false, 0.0});
             }
-        }
         if (pairs.size() < 3)
             continue;
         // Most pairs are sound; thousands of lines make their differences equal within a few percent.
         auto sorted = differences;
         std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
         const double typical = sorted[sorted.size() / 2];
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            if (differences[i] > 1e-4 && differences[i] > 30.0 * typical)
-                jumps.push_back(pairs[i]);
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            if (!(differences[i] > 1e-4 && differences[i] > 30.0 * typical))
+                continue;
+            auto& jump = jumps.emplace_back(pairs[i]);
+            const auto spectra = earlySpectra(take, channel, level, jump.realization, lines);
+            const auto p = static_cast<std::size_t>(jump.period);
+            jump.change = isChange(spectra, p, lines, e.period);
+            jump.gainDb = gainOf(spectra[p], onLines(fft(onePeriod(take, channel, level, jump.realization, e.periods - 1)), lines));
+        }
     }
     return jumps;
+}
+
+double changedShare(const Measurement& take, const Channel& channel, int level)
+{
+    const Excitation& e = periodicExcitation(take);
+    const auto& lines = excitedLines(take);
+    double sum = 0.0;
+    for (int m = 0; m < e.realizations; ++m)
+        sum += coherenceOf(onLines(fft(onePeriod(take, channel, level, m, 0)), lines),
+                           onLines(fft(onePeriod(take, channel, level, m, e.periods - 1)), lines));
+    return sum / e.realizations;
 }
 
 } // namespace excursion

@@ -26,8 +26,18 @@ std::optional<PeriodShift> periodShift(const Measurement&, const Channel&, int l
 struct PeriodJump {
     int level = 0, realization = 0, period = 0;   ///< between `period` and the next, counted from the first used one
     double db = 0.0;                              ///< power of the difference over power of the period
-    PeriodShift shift;
+    /// The same signal through a system, or a gain, that has changed for good: the difference is what a gain that is smooth over frequency makes
+    /// of the period. Neither were samples lost, which turns it, nor did anything knock.
+    bool change = false;
+    double gainDb = 0.0;   ///< by which it has changed, until the last period
 };
 std::vector<PeriodJump> periodJumps(const Measurement&, const Channel&);
+
+/// From which such a share a difference is a change of the loudspeaker, or of a gain.
+inline constexpr double changedFrom = 0.4;
+
+/// Of that by which the first used period differs from the last one, the share that a gain which is smooth over frequency makes of it: about 1
+/// for a loudspeaker that has changed, as a coil that grows warm, and about 0 for a motion that had not settled. At most 1; mean over realizations.
+double changedShare(const Measurement&, const Channel&, int level);
 
 } // namespace excursion

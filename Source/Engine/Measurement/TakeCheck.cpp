@@ -46,7 +46,7 @@ void dropConsequences(std::vector<Problem>& problems)
         if (p.kind != "not-settled" && p.kind != "poor-repeatability" && p.kind != "low-snr" && p.kind != "hum")
             return false;
         return std::any_of(causes.begin(), causes.end(), [&](const Problem& cause) {
-            return (cause.kind == "clock-drift" || cause.kind == "dropout" || (cause.kind == "hum" && p.kind != "hum"))
+            return (cause.kind == "clock-drift" || cause.kind == "dropout" || cause.kind == "gain-jump" || (cause.kind == "hum" && p.kind != "hum"))
                 && cause.fatal && (!cause.channel || cause.channel == p.channel);
         });
     });

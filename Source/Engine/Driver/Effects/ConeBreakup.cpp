@@ -73,7 +73,7 @@ public:
     /// A mode rings, above the band in which the cone moves as one piece, and what swings is a part of the cone.
     bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
     {
-        constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 2.0;
+        constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 1.5;
         const double resonance = resonanceOf(base);
         for (int k = 0; k < modes; ++k) {
             const auto* p = own.data() + each * k;
