@@ -164,7 +164,7 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
             target.frequency.push_back(cell.weightedFrequency / cell.input);
             target.value.push_back(G);
             // One percent besides: the linear model is a start, not a truth.
-            target.deviation.push_back(std::sqrt(variance + 1e-4 * std::norm(G)));
+            target.deviation.push_back(std::sqrt(variance + 1e-5 * std::norm(G)));
         }
         if (target.frequency.size() >= 3)
             targets.push_back(std::move(target));
