@@ -107,10 +107,14 @@ PhysicalDelay judge(const std::vector<DelayFit>& fits, double highestOmega, cons
     PhysicalDelay verdict;
     verdict.seconds = best.seconds;
     verdict.standardError = best.standardError;
+    // A delay that turns phases all round leaves nothing in place without it, and next to nothing out of place with it; a mode of the cone or a
+    // part that swings on it is only bent to look like one.
+    constexpr double roundFrom = 2.0, roundFall = 10.0;   // rad, dB
+    const double turned = std::abs(best.seconds) * highestOmega, fall = std::max(thresholds.fall, turned > roundFrom ? roundFall : 0.0);
     verdict.conclusive = best.misfit < 0.3;
-    verdict.clear = verdict.conclusive && agree && std::abs(best.seconds) * highestOmega > thresholds.radians
+    verdict.clear = verdict.conclusive && agree && turned > thresholds.radians
                  && std::abs(best.seconds) > 5.0 * best.standardError
-                 && decibels(without / std::max(best.misfit, 1e-300)) > thresholds.fall;
+                 && decibels(without / std::max(best.misfit, 1e-300)) > fall;
     return verdict;
 }
 
@@ -252,7 +256,7 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
     }
     fits.push_back(fitLines(lines, basis));
     auto verdict = judge(fits, lines.back().omega,
-                         drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 3.0}
+                         drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 4.5}
                                                : Thresholds {.radians = 1.0, .fall = 6.0});
     // A mode of the cone turns the phase at its own frequency, a delay everywhere.
     for (const double share : {0.5, 0.7}) {
