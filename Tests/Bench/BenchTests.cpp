@@ -4,6 +4,7 @@
 #include "Bench/Stimulus.h"
 #include "Bench/Truth.h"
 #include "Engine/Error.h"
+#include "Engine/Measurement/TakeCheck.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -167,5 +168,17 @@ TEST_CASE("draws are plausible and reach the excursion they are made for", "[ben
         const double peak = std::max(*std::max_element(x.begin(), x.end()), -*std::min_element(x.begin(), x.end()));
         CHECK(peak > 0.4 * drawn.speaker.xmax);
         CHECK(peak < 0.95 * drawn.speaker.xmax);
+    }
+}
+
+TEST_CASE("a part that swings on the cone is no delay", "[bench][slow]")
+{
+    for (const unsigned seed : {8320u, 9001u, 9043u, 9056u}) {
+        DrawOptions options;
+        options.seconds = 5.0;
+        options.hidden = {{"side-resonance", 0.0}};
+        const auto drawn = draw(seed, options);
+        INFO("seed " << seed);
+        CHECK(check(measure(drawn.speaker, drawn.setup)).fitForUse());
     }
 }

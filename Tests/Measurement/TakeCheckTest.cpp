@@ -293,6 +293,66 @@ TEST_CASE("a gain that jumps is told from samples that are lost and from a louds
     CHECK(changed.fitForUse());
 }
 
+TEST_CASE("a sensor that bends is named with what it takes off the peaks")
+{
+    for (const auto quantity : {Quantity::current, Quantity::displacement, Quantity::pressure}) {
+        INFO(name(quantity));
+        auto take = soundTake();
+        const auto& e = *take.excitation;
+        auto& samples = samplesOf(take, quantity);
+        const auto loudest = samples.begin() + e.samplesPerRealization() * e.realizations * (static_cast<long>(e.levels.size()) - 1);
+        double most = 0.0;
+        for (auto sample = loudest; sample != samples.end(); ++sample)
+            most = std::max(most, std::abs(*sample));
+        for (auto sample = loudest; sample != samples.end(); ++sample)
+            *sample = 0.6 * most * std::tanh(*sample / (0.6 * most));
+        const auto report = check(take);
+        INFO(fatalSentences(report));
+        const auto* problem = find(report, "overload", quantity);
+        REQUIRE(problem);
+        CHECK(problem->fatal);
+        CHECK(problem->value == Approx(-20.0 * std::log10(0.6 * std::tanh(1.0 / 0.6))).epsilon(0.25));
+        CHECK(othersThan(report, "overload") == 0);
+    }
+}
+
+TEST_CASE("channels that are exchanged, or called something else, are told apart by their shapes")
+{
+    const auto sound = soundTake();
+    const auto exchanged = [&](Quantity a, Quantity b) {
+        auto take = sound;
+        std::swap(samplesOf(take, a), samplesOf(take, b));
+        for (auto& channel : take.channels)   // in other units, too
+            if (channel.quantity == a)
+                for (auto& sample : channel.samples)
+                    sample *= 1e3;
+        return check(take);
+    };
+    const std::pair<Quantity, Quantity> pairs[] {{Quantity::current, Quantity::displacement},
+                                                 {Quantity::current, Quantity::pressure},
+                                                 {Quantity::displacement, Quantity::pressure}};
+    for (const auto& [a, b] : pairs) {
+        const auto report = exchanged(a, b);
+        INFO(name(a) << " and " << name(b) << ": " << fatalSentences(report));
+        CHECK(find(report, "mislabelled", a));
+        CHECK(find(report, "mislabelled", b));
+        CHECK(othersThan(report, "mislabelled") == 0);
+    }
+    for (const auto kind : {Quantity::velocity, Quantity::acceleration}) {
+        auto take = sound;
+        for (auto& channel : take.channels)
+            if (channel.quantity == Quantity::displacement) {
+                channel.quantity = kind;
+                channel.unit = siUnit(kind);
+            }
+        const auto report = check(take);
+        INFO(name(kind) << ": " << fatalSentences(report));
+        const auto* problem = find(report, "mislabelled", kind);
+        REQUIRE(problem);
+        CHECK_THAT(problem->sentence, Catch::Contains("displacement"));
+    }
+}
+
 TEST_CASE("a transient in the first used period is not settled")
 {
     auto take = soundTake();

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Measurement/TakeCheck.h"
 
+#include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/Labels.h"
+#include "Engine/Measurement/Overload.h"
 #include "Engine/Measurement/PeriodCheck.h"
 #include "Engine/Measurement/PhysicsCheck.h"
 #include "Engine/Measurement/WaveformCheck.h"
@@ -36,6 +39,38 @@ bool isCoherent(const Measurement& take, const Channel& channel, std::vector<Pro
                         "The " + std::string(name(channel.quantity))
                             + " channel has nothing in common with the input: connect its sensor, or remove the channel."});
     return false;
+}
+
+bool followsCone(Quantity q)
+{
+    return q == Quantity::displacement || q == Quantity::velocity || q == Quantity::acceleration || q == Quantity::pressure;
+}
+
+/// Sensors that bend; one that clips is told as that.
+void checkOverload(const Measurement& take, const std::vector<bool>& alive, std::vector<Problem>& problems)
+{
+    constexpr double fatalFrom = -50.0;
+    for (std::size_t c = 0; c < take.channels.size(); ++c) {
+        const auto quantity = take.channels[c].quantity;
+        const bool clips = std::any_of(problems.begin(), problems.end(),
+                                       [quantity](const Problem& p) { return p.kind == "clipping" && p.channel == quantity; });
+        if (!alive[c] || clips || quantity == take.input().quantity)
+            continue;
+        std::optional<Overload> overload;
+        for (std::size_t other = 0; other < take.channels.size() && !overload; ++other)
+            if (other != c && alive[other] && followsCone(quantity) && followsCone(take.channels[other].quantity))
+                overload = findOverload(take, take.channels[c], take.channels[other]);
+        const bool mayBeTheMotor = !overload && quantity == Quantity::displacement;
+        if (!overload)   // the other channel may be too noisy to tell
+            overload = findOverload(take, take.channels[c], take.input());
+        if (overload)
+            problems.push_back({"overload", quantity, overload->compression, "dB", overload->db > fatalFrom && !mayBeTheMotor,
+                                "The " + std::string(name(quantity)) + " channel bends at level " + std::to_string(overload->level)
+                                    + ": its largest values come out " + figure(overload->compression) + " dB too small, by "
+                                    + figure(overload->db, "%.0f")
+                                    + " dB of distortion that is a function of its own value alone; use a larger range or play more quietly."
+                                    + (mayBeTheMotor ? " A force factor that falls on one side looks much the same." : "")});
+    }
 }
 
 /// A channel that drifts, breaks or hums does not repeat either and seems unsettled: only the cause is told.
@@ -102,8 +137,13 @@ CheckReport check(const Measurement& take)
                 alive[c] = described && take.excitation->periods > 1
                              ? checkPeriods(take, take.channels[c], report.channels[c], problems)
                              : isCoherent(take, take.channels[c], problems);
-        if (described)
+        bool labelled = true;
+        if (described) {
             checkClocks(take, alive, report.channels, problems);
+            labelled = checkLabels(take, alive, problems);
+            if (labelled)
+                checkOverload(take, alive, problems);
+        }
 
         dropConsequences(problems);
 
@@ -113,7 +153,8 @@ CheckReport check(const Measurement& take)
             for (const auto& p : problems)
                 if (p.kind == "clock-drift" && p.fatal && p.channel == take.channels[c].quantity)
                     judgeable[c] = false;
-        checkPhysics(take, judgeable, report.channels, problems);
+        if (labelled)
+            checkPhysics(take, judgeable, report.channels, problems);
     }
     std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) { return a.fatal && !b.fatal; });
     return report;
