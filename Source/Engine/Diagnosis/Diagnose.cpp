@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/Diagnose.h"
 
 #include "Engine/Diagnosis/Reason.h"
+#include "Engine/Diagnosis/Separate.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
@@ -76,9 +77,6 @@ void judge(std::vector<RankedEffect>& ranking, double chi, const Excess& excess,
         if (other < 1.25 * first && other < 0.4 * before && ranking[k].vote.backs() == ranking[0].vote.backs())
             diagnosis.indistinguishable.push_back(ranking[k].effect);
     }
-    if (!diagnosis.indistinguishable.empty())
-        diagnosis.measureNext = "Measure again with a louder level and with the displacement as one more channel; effects that "
-                                "share a curve part where the cone moves farther.";
 }
 
 std::string sentenceFor(const Diagnosis& d)
@@ -240,6 +238,8 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     }
     if (diagnosis.verdict != Verdict::missingEffect)
         diagnosis.indistinguishable.clear();
+    if (!diagnosis.indistinguishable.empty())
+        diagnosis.measureNext = whatParts(diagnosis.ranking.front().model, diagnosis.find(diagnosis.indistinguishable.front())->model, record);
     diagnosis.sentence = sentenceFor(diagnosis);
     progress.at(1.0, "diagnosed");
     return diagnosis;
@@ -284,6 +284,8 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
     judge(diagnosis.ranking, now, Excess(before), diagnosis);
+    if (!diagnosis.indistinguishable.empty())
+        diagnosis.measureNext = "Measure in time, with multisines of several levels: distortion and the motion of the cone tell more than responses do.";
     const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, Excess(before));
     diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
     diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
