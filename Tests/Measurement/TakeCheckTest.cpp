@@ -316,6 +316,20 @@ TEST_CASE("a sensor that bends is named with what it takes off the peaks")
     }
 }
 
+TEST_CASE("neither an offset nor a dead input is taken for a bend or a wrong label")
+{
+    auto take = soundTake();
+    auto& samples = samplesOf(take, Quantity::displacement);
+    const double offset = 3.0 * synthetic::rms(samples);
+    for (auto& sample : samples)
+        sample += offset;
+    CHECK_FALSE(find(check(take), "overload", Quantity::displacement));
+
+    auto silent = soundTake();
+    std::fill(samplesOf(silent, Quantity::voltage).begin(), samplesOf(silent, Quantity::voltage).end(), 0.0);
+    CHECK(find(check(silent), "channel-dead", Quantity::voltage));
+}
+
 TEST_CASE("channels that are exchanged, or called something else, are told apart by their shapes")
 {
     const auto sound = soundTake();

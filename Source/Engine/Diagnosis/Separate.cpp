@@ -91,6 +91,8 @@ std::string whatParts(const Model& a, const Model& b, const Record& record)
     for (const auto& d : then)
         if (std::find(record.channels.begin(), record.channels.end(), d.quantity) != record.channels.end())
             loud = std::max(loud, d, larger);
+    if (there.db == never)
+        return "Measure again with less noise, a louder level or one more channel.";
     const double needed = std::max(there.db + worthIt, faintest);
     const auto by = [](const Difference& d) { return figure(d.db, "%.0f") + " dB of the " + std::string(name(d.quantity)); };
     const auto further = "measure the " + std::string(name(elsewhere.quantity)) + ", too (the two differ by " + by(elsewhere) + ")";

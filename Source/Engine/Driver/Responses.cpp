@@ -163,7 +163,7 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
             const double variance = cell.count > 1 ? left / (cell.count - 1) / cell.input : 0.0;
             target.frequency.push_back(cell.weightedFrequency / cell.input);
             target.value.push_back(G);
-            // One percent besides: the linear model is a start, not a truth.
+            // A third of a percent besides: the linear model is a start, not a truth.
             target.deviation.push_back(std::sqrt(variance + 1e-5 * std::norm(G)));
         }
         if (target.frequency.size() >= 3)

@@ -130,6 +130,8 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
     int motions = 0;
     for (std::size_t c = 0; c < take.channels.size(); ++c) {
         const auto quantity = take.channels[c].quantity;
+        if (!alive[c] && quantity == Quantity::voltage)
+            return true;
         if (!alive[c] || (quantity != Quantity::current && quantity != Quantity::pressure && !isMotion(quantity)))
             continue;
         labels.push_back(quantity);

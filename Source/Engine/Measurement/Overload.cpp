@@ -32,8 +32,8 @@ struct Line {
 };
 
 /// The lines that the excitation leaves out, without what goes with the partner; `signal` receives the channel's power.
-std::vector<Line> leftOut(const Measurement& take, const Channel& channel, const Channel& partner, int level, int realization, double scale,
-                          double& signal)
+std::vector<Line> leftOut(const Measurement& take, const Channel& channel, const Channel& partner, int level, int realization, double offset,
+                          double scale, double& signal)
 {
     const auto& excited = excitedLines(take);
     const auto beside = averagedPeriod(take, partner, level, realization);
@@ -43,7 +43,7 @@ std::vector<Line> leftOut(const Measurement& take, const Channel& channel, const
     std::vector<double> power(y.size());
     for (int n = 2; n <= highestPower; ++n) {
         for (std::size_t t = 0; t < y.size(); ++t)
-            power[t] = scale * std::pow(y[t] / scale, n);
+            power[t] = scale * std::pow((y[t] - offset) / scale, n);
         powers.push_back(fft(power));
     }
     std::vector<Line> lines;
@@ -86,12 +86,17 @@ std::vector<std::pair<double, double>> surroundings(const std::vector<Line>& lin
 std::optional<Overload> overloadAt(const Measurement& take, const Channel& channel, const Channel& partner, int level)
 {
     const Excitation& e = periodicExcitation(take);
-    double squares = 0.0, most = 0.0, least = 0.0;
+    // An offset says nothing about a bend, and powers of it would stand for the signal itself.
+    const double samples = static_cast<double>(e.period) * e.realizations;
+    double offset = 0.0, squares = 0.0, most = 0.0, least = 0.0;
+    for (int m = 0; m < e.realizations; ++m)
+        for (const double value : averagePeriod(take, channel, level, m))
+            offset += value / samples;
     for (int m = 0; m < e.realizations; ++m)
         for (const double value : averagePeriod(take, channel, level, m)) {
-            squares += value * value / static_cast<double>(e.period * e.realizations);
-            most = std::max(most, value);
-            least = std::min(least, value);
+            squares += (value - offset) * (value - offset) / samples;
+            most = std::max(most, value - offset);
+            least = std::min(least, value - offset);
         }
     const double scale = std::sqrt(squares);
     if (!(scale > 0.0))
@@ -101,7 +106,7 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
     std::vector<Line> used;
     std::vector<double> weight;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto lines = leftOut(take, channel, partner, level, m, scale, signal);
+        const auto lines = leftOut(take, channel, partner, level, m, offset, scale, signal);
         const auto around = surroundings(lines);
         for (std::size_t i = 0; i < lines.size(); ++i) {
             bent += std::norm(lines[i].value) - lines[i].noise;
@@ -161,7 +166,9 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
             before -= a[n - 2] * std::pow(extreme / scale, n);
         overload.compression = std::max(overload.compression, decibelsOf(std::pow(before * scale / extreme, 2)));
     }
-    return overload;
+    // What grows beyond its due was not held back: then it is the partner that bends.
+    constexpr double leastCompression = 0.02;   // dB
+    return overload.compression > leastCompression ? std::optional(overload) : std::nullopt;
 }
 
 } // namespace

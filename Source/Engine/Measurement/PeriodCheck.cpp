@@ -200,7 +200,7 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
         return std::count(alive.begin(), alive.end(), true) > 2
             && std::none_of(jumps.begin(), jumps.end(), [&own](const auto& other) {
                    return other.first != own.first && other.second.change && other.second.level == own.second.level
-                       && other.second.realization == own.second.realization && other.second.period == own.second.period;
+                       && other.second.realization == own.second.realization && std::abs(other.second.period - own.second.period) <= 1;
                });
     };
     for (std::size_t c = 0; c < take.channels.size(); ++c) {

@@ -61,7 +61,8 @@ void checkOverload(const Measurement& take, const std::vector<bool>& alive, std:
             if (other != c && alive[other] && followsCone(quantity) && followsCone(take.channels[other].quantity))
                 overload = findOverload(take, take.channels[c], take.channels[other]);
         const bool mayBeTheMotor = !overload && quantity == Quantity::displacement;
-        if (!overload)   // the other channel may be too noisy to tell
+        const bool inputLives = alive[static_cast<std::size_t>(&take.input() - take.channels.data())];
+        if (!overload && inputLives)   // the other channel may be too noisy to tell
             overload = findOverload(take, take.channels[c], take.input());
         if (overload)
             problems.push_back({"overload", quantity, overload->compression, "dB", overload->db > fatalFrom && !mayBeTheMotor,
