@@ -245,7 +245,7 @@ std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& chan
             const auto spectra = earlySpectra(take, channel, level, jump.realization, lines);
             const auto p = static_cast<std::size_t>(jump.period);
             jump.change = isChange(spectra, p, lines, e.period);
-            jump.gainDb = gainOf(spectra[p], onLines(fft(onePeriod(take, channel, level, jump.realization, e.periods - 1)), lines));
+            jump.gainDb = gainOf(spectra[std::max<std::size_t>(p, 1) - 1], onLines(fft(onePeriod(take, channel, level, jump.realization, e.periods - 1)), lines));
         }
     }
     return jumps;

@@ -29,7 +29,7 @@ struct PeriodJump {
     /// The same signal through a system, or a gain, that has changed for good: the difference is what a gain that is smooth over frequency makes
     /// of the period. Neither were samples lost, which turns it, nor did anything knock.
     bool change = false;
-    double gainDb = 0.0;   ///< by which it has changed, until the last period
+    double gainDb = 0.0;   ///< by which it has changed, from the period before that pair until the last one
 };
 std::vector<PeriodJump> periodJumps(const Measurement&, const Channel&);
 
