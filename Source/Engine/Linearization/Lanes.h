@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Dispatch.h"
+
 #include <cstddef>
 #include <vector>
 
@@ -20,6 +22,27 @@ inline std::vector<double> laidOut(const std::vector<std::vector<double>>& quant
         for (const auto& values : quantities)
             result.insert(result.end(), values.begin() + static_cast<std::ptrdiff_t>(state), values.begin() + static_cast<std::ptrdiff_t>(state + lanes));
     return result;
+}
+
+/// One step of states that are laid out as decay, turn (what each takes of its neighbour in a block of two), `inputs` weights and `outputs` sums:
+///     y(1) = decay y(0) + turn y'(0) + sum_k input_k w_k,    output_k = sum y(1) s_k.
+/// For a function that is compiled for several processors (EXCURSION_DISPATCH) to be made of.
+template <int inputs, int outputs>
+[[gnu::always_inline]] inline void advanceLaid(std::size_t rows, const double* laid, const double* input, double* state, double* output)
+{
+    Four sums[outputs] = {};
+    for (std::size_t row = 0; row < rows; row += lanes) {
+        const auto* const four = reinterpret_cast<const Four*>(laid + (2 + inputs + outputs) * row);
+        auto& here = *reinterpret_cast<Four*>(state + row);
+        Four next = four[0] * here + four[1] * __builtin_shufflevector(here, here, 1, 0, 3, 2);
+        for (int k = 0; k < inputs; ++k)
+            next += input[k] * four[2 + k];
+        here = next;
+        for (int k = 0; k < outputs; ++k)
+            sums[k] += next * four[2 + inputs + k];
+    }
+    for (int k = 0; k < outputs; ++k)
+        output[k] = (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
 }
 
 } // namespace excursion

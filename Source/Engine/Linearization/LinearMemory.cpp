@@ -3,6 +3,7 @@
 
 #include "Engine/Dispatch.h"
 #include "Engine/Driver/Exponential.h"
+#include "Engine/Linearization/CubicDrive.h"
 #include "Engine/Linearization/Lanes.h"
 #include "Engine/Linearization/Modes.h"
 
@@ -15,30 +16,17 @@ namespace {
 /// What is laid out for four states: decay, turn, G and the three sums.
 constexpr std::size_t quantitiesLaid = 2 + 12 + 3;
 
-EXCURSION_DISPATCH void carry(std::size_t rows, const double* laid, const double* motion, double* value, double* before, double* sum)
+EXCURSION_DISPATCH void carry(std::size_t rows, const double* laid, const double* motion, double* value, double* sums)
 {
-    Four sums[3] = {};
-    for (std::size_t row = 0; row < rows; row += lanes) {
-        const auto* const four = reinterpret_cast<const Four*>(laid + quantitiesLaid * row);
-        auto& here = *reinterpret_cast<Four*>(value + row);
-        *reinterpret_cast<Four*>(before + row) = here;
-        Four next = four[0] * here + four[1] * __builtin_shufflevector(here, here, 1, 0, 3, 2);
-        for (int k = 0; k < 12; ++k)
-            next += motion[k] * four[2 + k];
-        here = next;
-        for (int k = 0; k < 3; ++k)
-            sums[k] += next * four[14 + k];
-    }
-    for (int k = 0; k < 3; ++k)
-        sum[k] = (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
+    advanceLaid<12, 3>(rows, laid, motion, value, sums);
 }
 
 /// G of each state, 12 columns, for dm/dt = A m + b (i, x, v).
 Eigen::MatrixXd weights(const LinearRates& rates, double sampleRate)
 {
     Eigen::MatrixXd G(rates.A.rows(), 12);
-    for (Eigen::Index q = 0; q < 3; ++q)   // phi_k belongs to s^(k-1)/(k-1)!
-        G.middleCols(4 * q, 4) = exponential(rates.A, rates.b.col(q), 1.0 / sampleRate, 4).phi * Eigen::Vector4d(1.0, 1.0, 2.0, 6.0).asDiagonal();
+    for (Eigen::Index q = 0; q < 3; ++q)
+        G.middleCols(4 * q, 4) = byCoefficients(exponential(rates.A, rates.b.col(q), 1.0 / sampleRate, 4).phi);
     return G;
 }
 
@@ -137,7 +125,8 @@ LinearMemory::Sums LinearMemory::step(const MotionCubic& motion)
     std::copy_n(motion.v.c.begin(), 4, std::copy_n(motion.x.c.begin(), 4, std::copy_n(motion.i.c.begin(), 4, c.begin())));
     end_ = {motion.i.end(), motion.x.end(), motion.v.end()};
     std::array<double, 3> sums {};
-    carry(value_.size(), laid_.data(), c.data(), value_.data(), before_.data(), sums.data());
+    before_ = value_;
+    carry(value_.size(), laid_.data(), c.data(), value_.data(), sums.data());
     return {sums[0], sums[1], sums[2] + forceByTime_[0] * end_[0] + forceByTime_[1] * end_[1] + forceByTime_[2] * end_[2]};
 }
 

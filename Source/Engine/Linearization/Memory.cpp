@@ -2,6 +2,7 @@
 #include "Engine/Linearization/Memory.h"
 
 #include "Engine/Driver/Exponential.h"
+#include "Engine/Linearization/CubicDrive.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,12 +34,9 @@ void Memory::prepareLinear(const LinearRates& linear, double sampleRate)
     kind_ = Kind::linear;
     for (Eigen::Index q = 0; q < 3; ++q) {
         const auto [decay, phi] = exponential(linear.A, linear.b.col(q), 1.0 / sampleRate, 4);
-        double factorial = 1.0;
-        for (Eigen::Index k = 0; k < 4; ++k) {
-            factorial *= static_cast<double>(std::max<Eigen::Index>(k, 1));
-            const Eigen::VectorXd weight = factorial * phi.col(k);
-            drive_[static_cast<std::size_t>(4 * q + k)].assign(weight.data(), weight.data() + weight.size());
-        }
+        const Eigen::MatrixXd G = byCoefficients(phi);
+        for (Eigen::Index k = 0; k < 4; ++k)
+            drive_[static_cast<std::size_t>(4 * q + k)].assign(G.col(k).data(), G.col(k).data() + G.rows());
         decay_.assign(decay.data(), decay.data() + decay.size());
     }
     for (std::size_t k = 0; k < size_; ++k)
@@ -72,12 +70,10 @@ bool Memory::findDriven(double sampleRate)
             return false;
     }
     const auto [decay, phi] = exponential(A, Eigen::VectorXd::Ones(n), 1.0 / sampleRate, 4);
+    const Eigen::MatrixXd weights = bySamples(phi);
     for (std::size_t sample = 0; sample < 4; ++sample) {
-        std::array<double, 4> unit {};
-        unit[sample] = 1.0;
-        const auto c = Cubic::through(unit[3], unit[2], unit[1], unit[0]).c;
-        const Eigen::VectorXd weight = phi * Eigen::Vector4d(c[0], c[1], 2.0 * c[2], 6.0 * c[3]);
-        weight_[sample].assign(weight.data(), weight.data() + n);
+        const auto column = weights.col(static_cast<Eigen::Index>(sample));
+        weight_[sample].assign(column.data(), column.data() + n);
         N_[sample].assign(size_, 0.0);
     }
     const Eigen::VectorXd own = A.diagonal(), kept = decay.diagonal();

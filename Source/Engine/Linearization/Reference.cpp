@@ -4,7 +4,7 @@
 #include "Engine/Dispatch.h"
 #include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/Linearize.h"
-#include "Engine/Linearization/Cubic.h"
+#include "Engine/Linearization/CubicDrive.h"
 #include "Engine/Linearization/Lanes.h"
 #include "Engine/Linearization/Modes.h"
 
@@ -21,25 +21,10 @@ std::vector<double> padded(const Eigen::VectorXd& values, std::size_t rows)
     return result;
 }
 
-/// What is laid out for four states: the diagonal of the transition, what each takes of its neighbour in a block of two, g_0 .. g_3 and the five outputs.
-constexpr std::size_t laidRows = 2 + 4 + 5;
-
-/// One step of the state, and the five sums of what is read from it.
+/// One step by the latest four samples, and the five outputs that are read from the state.
 EXCURSION_DISPATCH void advance(std::size_t rows, const double* laid, const double* past, double* state, double* motion)
 {
-    Four sums[5] = {};
-    for (std::size_t row = 0; row < rows; row += 4) {
-        const auto* const four = reinterpret_cast<const Four*>(laid + laidRows * row);
-        auto& here = *reinterpret_cast<Four*>(state + row);
-        Four next = four[0] * here + four[1] * __builtin_shufflevector(here, here, 1, 0, 3, 2);
-        for (int k = 0; k < 4; ++k)
-            next += past[k] * four[2 + k];
-        here = next;
-        for (int k = 0; k < 5; ++k)
-            sums[k] += next * four[6 + k];
-    }
-    for (int k = 0; k < 5; ++k)
-        motion[k] = (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
+    advanceLaid<4, 5>(rows, laid, past, state, motion);
 }
 
 } // namespace
@@ -53,13 +38,7 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
     rows_ = roundedUpToLanes(order_);
 
     auto [transition, phi] = exponential(A, linear.B, 1.0 / sampleRate, 4);
-    Eigen::MatrixXd inputs(n, 4), outputs = Eigen::MatrixXd::Zero(5, n);
-    for (std::size_t sample = 0; sample < 4; ++sample) {
-        std::array<double, 4> u {};
-        u[sample] = 1.0;
-        const auto cubic = Cubic::through(u[3], u[2], u[1], u[0]);
-        inputs.col(static_cast<Eigen::Index>(sample)) = phi * Eigen::Vector4d(cubic.c[0], cubic.c[1], 2.0 * cubic.c[2], 6.0 * cubic.c[3]);
-    }
+    Eigen::MatrixXd inputs = bySamples(phi), outputs = Eigen::MatrixXd::Zero(5, n);
     outputs(0, 1) = outputs(1, 2) = outputs(4, 0) = 1.0;
     outputs.row(2) = A.row(2);
     outputs.row(3) = A.row(2) * A;
