@@ -5,12 +5,6 @@
 
 namespace excursion {
 
-/// Displacement, velocity or acceleration of the cone.
-inline bool isMotion(Quantity quantity)
-{
-    return quantity == Quantity::displacement || quantity == Quantity::velocity || quantity == Quantity::acceleration;
-}
-
 /// Up to which frequency (Hz) a measured motion is that of a rigid cone. Well above the resonance f0 the force of the coil only
 /// accelerates the mass,
 ///     |I / a| (1 - (f0/f)^2)^-1 = m/Bl = constant;

@@ -3,6 +3,7 @@
 
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/PistonBand.h"
+#include "Engine/Measurement/Motion.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 

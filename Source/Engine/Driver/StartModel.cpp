@@ -4,6 +4,7 @@
 #include "Engine/Driver/ImpedanceScan.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/PistonBand.h"
+#include "Engine/Measurement/Motion.h"
 #include "Engine/Measurement/PhysicalDelay.h"
 
 #include <algorithm>

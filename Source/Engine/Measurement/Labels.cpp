@@ -2,6 +2,7 @@
 #include "Engine/Measurement/Labels.h"
 
 #include "Engine/Measurement/Bla.h"
+#include "Engine/Measurement/Motion.h"
 
 #include <Eigen/QR>
 
@@ -16,8 +17,6 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double bad = 1.0;
-
-bool isMotion(Quantity q) { return q == Quantity::displacement || q == Quantity::velocity || q == Quantity::acceleration; }
 
 /// Derivatives from a motion to the velocity.
 int toVelocity(Quantity q) { return q == Quantity::displacement ? 1 : q == Quantity::acceleration ? -1 : 0; }

@@ -10,6 +10,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace excursion {
@@ -203,17 +204,13 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
                        && other.second.realization == own.second.realization && std::abs(other.second.period - own.second.period) <= 1;
                });
     };
-    for (std::size_t c = 0; c < take.channels.size(); ++c) {
-        const auto worst = std::max_element(jumps.begin(), jumps.end(), [&](const auto& a, const auto& b) {
-            const auto size = [&](const auto& jump) {
-                return jump.first == c && jump.second.change && withoutCompany(jump) ? jump.second.db : -1e9;
-            };
-            return size(a) < size(b);
-        });
-        if (worst == jumps.end() || worst->first != c || !worst->second.change || !withoutCompany(*worst))
-            continue;
+    std::map<std::size_t, PeriodJump> worstOf;   // of each channel
+    for (const auto& own : jumps)
+        if (own.second.change && withoutCompany(own))
+            if (const auto [known, isFirst] = worstOf.insert(own); !isFirst && own.second.db > known->second.db)
+                known->second = own.second;
+    for (const auto& [c, jump] : worstOf) {
         const auto quantity = take.channels[c].quantity;
-        const auto& jump = worst->second;
         problems.push_back({"gain-jump", quantity, jump.gainDb, "dB", jump.db > -30.0,
                             "The gain of the " + std::string(name(quantity)) + " channel jumps by " + rounded(jump.gainDb, 2) + " dB at level "
                                 + std::to_string(jump.level) + ", realization " + std::to_string(jump.realization) + ", after used period "

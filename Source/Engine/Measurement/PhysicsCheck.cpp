@@ -2,6 +2,7 @@
 #include "Engine/Measurement/PhysicsCheck.h"
 
 #include "Engine/Measurement/Bla.h"
+#include "Engine/Measurement/Motion.h"
 #include "Engine/Measurement/PeriodCheck.h"
 #include "Engine/Measurement/Welch.h"
 
@@ -15,11 +16,6 @@ namespace excursion {
 namespace {
 
 constexpr double smallestFault = 0.25;   ///< samples
-
-bool isMotion(Quantity q)
-{
-    return q == Quantity::displacement || q == Quantity::velocity || q == Quantity::acceleration;
-}
 
 /// The response of one channel to another where the loudspeaker is the most linear, and at the loudest level.
 class Responses {

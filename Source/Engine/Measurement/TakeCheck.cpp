@@ -5,6 +5,7 @@
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/Labels.h"
+#include "Engine/Measurement/Motion.h"
 #include "Engine/Measurement/Overload.h"
 #include "Engine/Measurement/PeriodCheck.h"
 #include "Engine/Measurement/PhysicsCheck.h"
@@ -41,10 +42,7 @@ bool isCoherent(const Measurement& take, const Channel& channel, std::vector<Pro
     return false;
 }
 
-bool followsCone(Quantity q)
-{
-    return q == Quantity::displacement || q == Quantity::velocity || q == Quantity::acceleration || q == Quantity::pressure;
-}
+bool followsCone(Quantity q) { return isMotion(q) || q == Quantity::pressure; }
 
 /// Sensors that bend; one that clips is told as that.
 void checkOverload(const Measurement& take, const std::vector<bool>& alive, std::vector<Problem>& problems)
