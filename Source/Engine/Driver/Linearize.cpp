@@ -3,7 +3,7 @@
 
 #include "Engine/Driver/Dynamics.h"
 #include "Engine/Driver/Parallel.h"
-#include "Engine/Driver/SchurResolvent.h"
+#include "Engine/Driver/ArrowResolvent.h"
 #include "Engine/Error.h"
 
 #include <Eigen/Eigenvalues>
@@ -209,7 +209,7 @@ struct DrivenResponse {
 
     /// d(C R B + D) = C R (dA R B + dB) + dC R B + dD with R = (sI - A)^-1 and left = C R.
     void differentiate(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z, const Eigen::VectorXcd& left, std::complex<double> value,
-                       const std::vector<Eigen::Index>& parameters, Eigen::MatrixXcd::RowXpr row) const
+                       const std::vector<Eigen::Index>& parameters, Eigen::VectorXcd& row) const
     {
         const auto by = factor(q, s);
         const auto act = [&](const Place& place, std::complex<double> through) {
@@ -306,7 +306,7 @@ std::vector<std::vector<Response>> respondToEach(const Model& model, const std::
     std::vector<DrivenResponse> driven;
     for (const auto drive : drives)
         driven.emplace_back(model, linearForm(small, withGradient, drive), quantities);
-    const SchurResolvent resolvent(driven.front().linear.A);
+    const ArrowResolvent resolvent(driven.front().linear.A);
     std::vector<Eigen::VectorXcd> inputs, outputs;
     for (const auto& d : driven)
         inputs.push_back(resolvent.turnedRight(d.linear.B));
@@ -323,6 +323,7 @@ std::vector<std::vector<Response>> respondToEach(const Model& model, const std::
     inParallel(parts, threads, {}, [&](std::size_t part) {
         auto at = resolvent;
         std::vector<Eigen::VectorXcd> left(quantities.size());
+        Eigen::VectorXcd slopes(among.count);   // of one response by all parameters: together, as those of other frequencies lie between them
         for (std::size_t f = part * frequency.size() / parts; f < (part + 1) * frequency.size() / parts; ++f) {
             const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
             at.moveTo(s);
@@ -333,9 +334,11 @@ std::vector<std::vector<Response>> respondToEach(const Model& model, const std::
                 const Eigen::VectorXcd z = at.column(inputs[d]);
                 for (std::size_t q = 0; q < quantities.size(); ++q) {
                     responses[d][q].value[f] = driven[d].value(q, s, z);
-                    if (withGradient)
-                        driven[d].differentiate(q, s, z, left[q], responses[d][q].value[f], among.parameters,
-                                                responses[d][q].gradient.row(static_cast<Eigen::Index>(f)));
+                    if (!withGradient)
+                        continue;
+                    slopes.setZero();
+                    driven[d].differentiate(q, s, z, left[q], responses[d][q].value[f], among.parameters, slopes);
+                    responses[d][q].gradient.row(static_cast<Eigen::Index>(f)) = slopes.transpose();
                 }
             }
         }
