@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/Reason.h"
 #include "Engine/Diagnosis/Separate.h"
+#include "Engine/Diagnosis/StepsByResponse.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
@@ -245,13 +246,14 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     return diagnosis;
 }
 
-Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress)
+Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress, const Step* next)
 {
     Diagnosis diagnosis;
     const auto before = compare(model, spectra);
     diagnosis.error = errorByChannel(before);
     diagnosis.remainder = remainderOf(before);
-    const auto targets = responsesOf(spectra);
+    constexpr int coarse = 24;   // points an octave: enough to tell what is there
+    const auto targets = responsesOf(spectra), few = thinned(targets, coarse);
     const auto cost = [&](const Model& m) {
         double sum = 0.0;
         for (const auto& target : targets)
@@ -268,8 +270,10 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
         entry.effect = effect->id();
         entry.confirmedChi = now;
         entry.model = model;
-        auto trial = model;
-        addByResponse(trial, *effect, targets);
+        const bool known = next && next->added == effect->id();
+        auto trial = known ? next->model : model;
+        if (!known && addByResponse(trial, *effect, few).usable)
+            fitResponse(trial, targets, {20, 1e-5});
         if (const double chi = cost(trial); chi < entry.confirmedChi) {
             entry.confirmedChi = chi;
             entry.model = std::move(trial);
@@ -278,15 +282,19 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
             entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(entry.model, target);
         entry.predictedChi = entry.confirmedChi;
         // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be sure of them.
-        entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model, entry.model.components.size() - 1);
+        entry.significant = known || (entry.confirmedChi < 0.8 * now && isSeen(entry.model, entry.model.components.size() - 1));
+        if (known)
+            entry.vote = next->vote;
         entry.reason = reasonFor(*effect, entry.model, before, entry.confirmedErrorDb);
         diagnosis.ranking.push_back(std::move(entry));
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
+    if (next)
+        std::stable_partition(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const RankedEffect& r) { return r.effect == next->added; });
     judge(diagnosis.ranking, now, Excess(before), diagnosis);
     if (!diagnosis.indistinguishable.empty())
         diagnosis.measureNext = "Measure in time, with multisines of several levels: distortion and the motion of the cone tell more than responses do.";
-    const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, Excess(before));
+    const bool found = next || (!diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, Excess(before)));
     diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
     diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
     static_cast<void>(options);

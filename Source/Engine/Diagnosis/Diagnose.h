@@ -58,6 +58,8 @@ struct DiagnoseOptions {
     bool isValid(std::string* reason) const;
 };
 
+struct Step;
+
 /// An effect as a score test promises it, not tried yet.
 struct Score;
 RankedEffect promisedBy(const Score&);
@@ -68,6 +70,7 @@ RankedEffect promisedBy(const Score&);
 Diagnosis diagnose(const Model&, const Record&, const DiagnoseOptions& = {}, const Progress& = {});
 
 /// The same for a take that is a frequency response only: the linear effects compete.
-Diagnosis diagnose(const Model&, const Spectra&, const DiagnoseOptions& = {}, const Progress& = {});
+/// @param next  null, or a model with one more effect that is known to be missing, as others that are missing too have shown
+Diagnosis diagnose(const Model&, const Spectra&, const DiagnoseOptions& = {}, const Progress& = {}, const Step* next = nullptr);
 
 } // namespace excursion

@@ -63,11 +63,15 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
     };
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
-    const double share = (done - begun) / static_cast<double>(catalogue().size());   // of a rung: none has an effect twice
+    const bool inTime = std::holds_alternative<Measurement>(take);
+    const double searched = inTime ? begun : 0.7;
+    if (!inTime && work.addTogether(progress.part(begun, searched)))
+        tell();
+    const double share = (done - searched) / static_cast<double>(catalogue().size());   // of a rung: none has an effect twice
     while (work.ladder().verdict == Verdict::missingEffect) {
-        const double at = begun + share * static_cast<double>(work.ladder().rungs.size() - 1);
+        const double at = searched + share * static_cast<double>(work.ladder().rungs.size() - 1);
         const auto part = progress.part(at, at + share);
-        if (!work.addTogether(part.part(0.0, 0.7))) {
+        if (!inTime || !work.addTogether(part.part(0.0, 0.7))) {
             tell();   // its diagnosis stands
             work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, part.part(0.7, 1.0));
         }
@@ -75,7 +79,7 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
     tell();
     auto ladder = work.ladder();
     withdrawDoubtful(ladder);
-    if (std::holds_alternative<Measurement>(take))   // the diagnosis of a frequency response has told them
+    if (inTime)   // the diagnosis of a frequency response has told them
         ladder.sentence += caveatsOf(ladder.model());
     progress.at(1.0, "done");
     return ladder;

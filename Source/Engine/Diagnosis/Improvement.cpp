@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/RungsTo.h"
+#include "Engine/Diagnosis/StepsByResponse.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/Whole.h"
 #include "Engine/Driver/Catalogue.h"
@@ -87,29 +88,58 @@ void Improvement::begin(const Progress& progress)
 
 bool Improvement::addTogether(const Progress& progress)
 {
-    const auto* record = std::get_if<Record>(&data_);
-    const auto& base = ladder_.rungs.back();
-    const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(), [](const RankedEffect& r) { return r.vote.backs(); });
-    if (!record || !hasPeriods(*record) || backed < 2)
-        return false;
-    const auto whole = fitWhole(base.model, *record, options_.diagnose.fit, progress.part(0.0, 0.5));
-    if (whole.votes.size() < 2)
-        return false;
-    auto rungs = rungsTo(whole, base, *record, options_.diagnose, progress.part(0.5, 0.8));
-    if (!(rungs.back().comparison.chi < base.comparison.chi))
-        return false;
-    auto last = std::move(rungs.back());
-    rungs.pop_back();
     const auto before = ladder_;
-    ladder_.rungs.pop_back();   // comes again, with its diagnosis
     try {
-        for (auto& rung : rungs)
-            keep(std::move(rung));
-        push(std::move(last), progress.part(0.8, 1.0));
+        const auto* spectra = std::get_if<Spectra>(&data_);
+        return spectra ? addSteps(*spectra, progress) : addWhole(std::get<Record>(data_), progress);
     } catch (...) {
         ladder_ = before;
         throw;
     }
+}
+
+bool Improvement::addSteps(const Spectra& spectra, const Progress& progress)
+{
+    const auto steps = stepsByResponse(ladder_.model(), spectra, options_.diagnose.fit.threads, progress.part(0.0, 0.6));
+    for (std::size_t n = 0; n < steps.size(); ++n) {
+        const double count = static_cast<double>(steps.size()), done = static_cast<double>(n);
+        auto last = std::move(ladder_.rungs.back());
+        ladder_.rungs.pop_back();
+        last.diagnosis = diagnose(last.model, spectra, options_.diagnose, progress.part(0.6 + 0.3 * done / count, 0.6 + 0.3 * (done + 1.0) / count), &steps[n]);
+        keep(std::move(last));
+        Rung rung;
+        rung.added = steps[n].added;
+        rung.model = steps[n].model;
+        rung.fit = settle(rung.model, spectra, options_.diagnose.fit, {});
+        rung.comparison = compare(rung.model, spectra);
+        ladder_.rungs.push_back(std::move(rung));
+    }
+    if (steps.empty())
+        return false;
+    auto last = std::move(ladder_.rungs.back());
+    ladder_.rungs.pop_back();
+    push(std::move(last), progress.part(0.9, 1.0));
+    return true;
+}
+
+bool Improvement::addWhole(const Record& record, const Progress& progress)
+{
+    const auto& base = ladder_.rungs.back();
+    const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(), [](const RankedEffect& r) { return r.vote.backs(); });
+    if (!hasPeriods(record) || backed < 2)
+        return false;
+    const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.5));
+    if (whole.votes.size() < 2)
+        return false;
+    auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.5, 0.8));
+    if (!(rungs.back().comparison.chi < base.comparison.chi))
+        return false;
+    auto last = std::move(rungs.back());
+    rungs.pop_back();
+    ladder_.rungs.pop_back();   // comes again, with its diagnosis
+    for (auto& rung : rungs)
+        keep(std::move(rung));
+    push(std::move(last), progress.part(0.8, 1.0));
     return true;
 }
 

@@ -46,6 +46,8 @@ public:
     std::vector<Waveform> waveforms(int level) const;
 
 private:
+    bool addSteps(const Spectra&, const Progress&);
+    bool addWhole(const Record&, const Progress&);
     void push(Rung, const Progress&);
     void keep(Rung);
     void concludeFromLast();   ///< verdict and sentence, as the last rung's diagnosis says
