@@ -48,12 +48,14 @@ struct Woofer {
         for (double f = 10.0; f < 20000.0; f *= std::exp2(1.0 / 24.0)) {
             spectra.frequency.push_back(f);
             const auto n = static_cast<double>(ohms.size());
-            ohms.push_back(impedance(f) * (1.0 + std::polar(1e-3, 2.4 * n * n)));   // as rough as measured curves are
+            ohms.push_back(impedance(f) * (1.0 + std::polar(3e-3, 2.4 * n * n)));   // as rough as measured curves are
         }
         spectra.channels = {{Quantity::voltage, "V", ohms}, {Quantity::current, "A", std::vector<Complex>(ohms.size(), 1.0)}};
         return spectra;
     }
 };
+
+double errorDb(const Rung& rung) { return rung.comparison.channels.front().total.db; }
 
 } // namespace
 
@@ -65,14 +67,14 @@ TEST_CASE("A port and a part that swings are found together, and neither where i
         const auto effects = ladder.model().effectIds();
         const auto box = std::find(effects.begin(), effects.end(), "vented-box");
         CAPTURE(effects);
-        CHECK(ladder.rungs.back().comparison.channels.front().total.db < -50.0);
+        CHECK(errorDb(ladder.rungs.back()) < -46.0);
         CHECK(ladder.model().has("eddy-currents"));
         CHECK((box != effects.end()) == woofer.port);
         CHECK((!woofer.port || box - effects.begin() < 2));
         CHECK(ladder.model().has("side-resonance") == woofer.part);
         CHECK_FALSE(ladder.model().has("creep"));
         for (std::size_t k = 1; k < ladder.rungs.size(); ++k)   // each rung is what the one before asked for, and lowers the error
-            CHECK(ladder.rungs[k].comparison.chi < ladder.rungs[k - 1].comparison.chi);
+            CHECK(errorDb(ladder.rungs[k]) < errorDb(ladder.rungs[k - 1]) - 1.0);
         for (std::size_t k = 0; k + 1 < ladder.rungs.size(); ++k)
             CHECK(ladder.rungs[k].diagnosis.ranking.front().effect == ladder.rungs[k + 1].added);
         if (woofer.port)

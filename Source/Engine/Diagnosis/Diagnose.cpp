@@ -7,6 +7,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Driver/Parallel.h"
 #include "Engine/Driver/Seen.h"
 #include "Engine/Validity.h"
 
@@ -254,29 +255,31 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     diagnosis.remainder = remainderOf(before);
     constexpr int coarse = 24;   // points an octave: enough to tell what is there
     const auto targets = responsesOf(spectra), few = thinned(targets, coarse);
-    const auto cost = [&](const Model& m) {
-        double sum = 0.0;
-        for (const auto& target : targets)
-            sum += std::pow(10.0, responseErrorDb(m, target) / 10.0);
-        return sum / static_cast<double>(targets.size());
-    };
+    const auto cost = [&](const Model& m) { return std::pow(10.0, responseErrorDb(m, targets) / 10.0); };
     const double now = cost(model);
     const auto seen = seenIn(spectra);
-    for (const auto* effect : catalogue()) {
-        if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
-            continue;
-        progress.at(static_cast<double>(diagnosis.ranking.size()) / static_cast<double>(catalogue().size()), "trying " + effect->id());
+    std::vector<const Effect*> candidates;
+    for (const auto* effect : catalogue())
+        if (!model.has(effect->id()) && whyUnseen(*effect, seen).empty())
+            candidates.push_back(effect);
+    std::vector<Model> trials(candidates.size(), model);
+    inParallel(trials.size(), options.fit.threads, progress, [&](std::size_t n) {
+        if (addByResponse(trials[n], *candidates[n], few).usable)
+            fitResponse(trials[n], targets, {20, 1e-5});
+        if (next && next->added == candidates[n]->id() && cost(next->model) < cost(trials[n]))
+            trials[n] = next->model;
+        return true;
+    });
+    for (std::size_t n = 0; n < trials.size(); ++n) {
+        const auto* effect = candidates[n];
+        const bool known = next && next->added == effect->id();
         RankedEffect entry;
         entry.effect = effect->id();
         entry.confirmedChi = now;
         entry.model = model;
-        const bool known = next && next->added == effect->id();
-        auto trial = known ? next->model : model;
-        if (!known && addByResponse(trial, *effect, few).usable)
-            fitResponse(trial, targets, {20, 1e-5});
-        if (const double chi = cost(trial); chi < entry.confirmedChi) {
+        if (const double chi = cost(trials[n]); chi < entry.confirmedChi) {
             entry.confirmedChi = chi;
-            entry.model = std::move(trial);
+            entry.model = std::move(trials[n]);
         }
         for (const auto& target : targets)
             entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(entry.model, target);
@@ -297,7 +300,6 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     const bool found = next || (!diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, Excess(before)));
     diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
     diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
-    static_cast<void>(options);
     return diagnosis;
 }
 

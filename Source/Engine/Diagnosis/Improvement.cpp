@@ -109,7 +109,7 @@ bool Improvement::addSteps(const Spectra& spectra, const Progress& progress)
         keep(std::move(last));
         Rung rung;
         rung.added = steps[n].added;
-        rung.model = steps[n].model;
+        rung.model = ladder_.rungs.back().diagnosis.ranking.front().model;   // the step's, or what leaves less
         rung.fit = settle(rung.model, spectra, options_.diagnose.fit, {});
         rung.comparison = compare(rung.model, spectra);
         ladder_.rungs.push_back(std::move(rung));

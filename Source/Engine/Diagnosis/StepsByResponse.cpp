@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace excursion {
@@ -17,31 +18,30 @@ namespace {
 constexpr double neededDb = 1.0;   // what an effect must take off the error to pay for its parameters, as no noise is known
 constexpr LeastSquaresOptions thoroughly {80, 1e-8};
 
-/// A model and the mean over its responses of their relative error power.
 struct Found {
     Model model;
-    double power = std::numeric_limits<double>::infinity();
+    double errorDb = std::numeric_limits<double>::infinity();   ///< mean over the responses
 };
+/// The best that was found with each set of effects.
+using Sets = std::map<std::set<std::string>, Found>;
 
-double powerLeft(const Model& model, const std::vector<ResponseTarget>& targets)
+std::set<std::string> setOf(const Model& model)
 {
-    double sum = 0.0;
-    for (const auto& target : targets)
-        sum += std::pow(10.0, responseErrorDb(model, target) / 10.0);
-    return sum / static_cast<double>(targets.size());
+    const auto ids = model.effectIds();
+    return {ids.begin(), ids.end()};
 }
 
-/// The model with one more effect; of infinite power where that cannot be fitted.
+/// The model with one more effect; of infinite error where that cannot be fitted.
 Found withOneMore(const Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
 {
     Found found {model};
     if (!addByResponse(found.model, effect, targets).usable)
         return found;
-    found.power = powerLeft(found.model, targets);
+    found.errorDb = responseErrorDb(found.model, targets);
     auto refined = found.model;
     if (refineByResponse(refined, targets).usable)
-        if (const double power = powerLeft(refined, targets); power < found.power)
-            found = {std::move(refined), power};
+        if (const double errorDb = responseErrorDb(refined, targets); errorDb < found.errorDb)
+            found = {std::move(refined), errorDb};
     return found;
 }
 
@@ -59,24 +59,20 @@ std::vector<Found> oneMore(const std::vector<Found>& models, const std::vector<c
         results[n] = withOneMore(*trials[n].first, *trials[n].second, targets);
         return true;
     });
-    std::erase_if(results, [](const Found& result) { return !std::isfinite(result.power); });
-    std::stable_sort(results.begin(), results.end(), [](const Found& a, const Found& b) { return a.power < b.power; });
+    std::erase_if(results, [](const Found& result) { return !std::isfinite(result.errorDb); });
+    std::stable_sort(results.begin(), results.end(), [](const Found& a, const Found& b) { return a.errorDb < b.errorDb; });
     std::set<std::set<std::string>> taken;
-    std::vector<Found> best;
-    for (auto& result : results) {
-        const auto ids = result.model.effectIds();
-        if (taken.insert({ids.begin(), ids.end()}).second)
-            best.push_back(std::move(result));
-    }
-    return best;
+    std::erase_if(results, [&](const Found& result) { return !taken.insert(setOf(result.model)).second; });
+    return results;
 }
 
 /// The model with as many effects as the responses show together, however little the last of them bring.
+/// @param sets  gets all that is found on the way
 Found withAll(const Model& base, const std::vector<const Effect*>& effects, const std::vector<ResponseTarget>& targets, unsigned threads,
-              const Progress& progress)
+              Sets& sets, const Progress& progress)
 {
     constexpr std::size_t kept = 2;   // sets of one size
-    std::vector<Found> level {{base, powerLeft(base, targets)}};
+    std::vector<Found> level {{base, responseErrorDb(base, targets)}};
     Found best = level.front();
     for (std::size_t n = 0; n < effects.size(); ++n) {
         const auto count = static_cast<double>(effects.size()), done = static_cast<double>(n);
@@ -84,8 +80,10 @@ Found withAll(const Model& base, const std::vector<const Effect*>& effects, cons
         level = oneMore(level, effects, targets, threads, progress.part(done / count, (done + 1.0) / count));
         if (level.empty())
             break;
+        for (const auto& found : level)
+            sets.emplace(setOf(found.model), found);
         level.resize(std::min(level.size(), kept));
-        if (level.front().power < best.power)
+        if (level.front().errorDb < best.errorDb)
             best = level.front();
     }
     return best;
@@ -96,37 +94,49 @@ struct Leaner {
     std::string without;
     Found found;
     double lostDb = 0.0;
-    bool seen = true;   ///< the model that has it is sure of it
+    bool itself = true;   ///< in the model that has it
 };
 
-/// Without each of the effects that the base does not have; what is missed least first.
-std::vector<Leaner> withoutEach(const Model& base, const Found& whole, const std::vector<ResponseTarget>& targets)
+/// Without each of the effects that the base does not have; what is missed least first. What is left is fitted from where it is, and from the best that
+/// was found without the effect before: one that carries much of the stiffness or the mass leaves the others far from where they would be.
+std::vector<Leaner> withoutEach(const Model& base, const Found& whole, const Sets& sets, const std::vector<ResponseTarget>& targets)
 {
     std::vector<Leaner> each;
     for (std::size_t k = 1; k < whole.model.components.size(); ++k) {
         const auto id = whole.model.components[k].effect->id();
         if (base.has(id))
             continue;
-        Leaner leaner {id, {withoutEffect(whole.model, id)}, 0.0, isSeen(whole.model, k)};
-        if (!fitResponse(leaner.found.model, targets, thoroughly).usable)
+        Leaner leaner;
+        leaner.without = id;
+        leaner.itself = isItself(whole.model, k);
+        const auto consider = [&](Model model) {
+            if (!fitResponse(model, targets, thoroughly).usable)
+                return;
+            if (const double errorDb = responseErrorDb(model, targets); errorDb < leaner.found.errorDb)
+                leaner.found = {std::move(model), errorDb};
+        };
+        auto rest = withoutEffect(whole.model, id);
+        if (const auto before = sets.find(setOf(rest)); before != sets.end())
+            consider(before->second.model);
+        consider(std::move(rest));
+        if (!std::isfinite(leaner.found.errorDb))
             continue;
-        leaner.found.power = powerLeft(leaner.found.model, targets);
-        leaner.lostDb = 10.0 * std::log10(leaner.found.power / whole.power);
+        leaner.lostDb = leaner.found.errorDb - whole.errorDb;
         each.push_back(std::move(leaner));
     }
     std::stable_sort(each.begin(), each.end(), [](const Leaner& a, const Leaner& b) { return a.lostDb < b.lostDb; });
     return each;
 }
 
-/// Takes out what the others can do without, and what stands for something else.
-void takeOut(const Model& base, Found& whole, const std::vector<ResponseTarget>& targets)
+/// Takes out what the others can do without, and then what stands for something else, which may be due to what was not needed.
+void takeOut(const Model& base, Found& whole, const Sets& sets, const std::vector<ResponseTarget>& targets)
 {
     for (;;) {
-        auto each = withoutEach(base, whole, targets);
-        auto goes = std::find_if(each.begin(), each.end(), [](const Leaner& leaner) { return !leaner.seen; });
+        auto each = withoutEach(base, whole, sets, targets);
+        auto goes = each.begin();
+        if (goes != each.end() && goes->lostDb >= neededDb)
+            goes = std::find_if(each.begin(), each.end(), [](const Leaner& leaner) { return !leaner.itself; });
         if (goes == each.end())
-            goes = each.begin();
-        if (goes == each.end() || (goes->seen && goes->lostDb >= neededDb))
             return;
         whole = std::move(goes->found);
     }
@@ -142,19 +152,20 @@ std::vector<Step> stepsByResponse(const Model& base, const Spectra& spectra, uns
     for (const auto* effect : catalogue())
         if (!base.has(effect->id()) && whyUnseen(*effect, seenIn(spectra)).empty())
             effects.push_back(effect);
-    auto whole = withAll(base, effects, thinned(targets, coarse), threads, progress.part(0.0, 0.7));
+    Sets sets;
+    auto whole = withAll(base, effects, thinned(targets, coarse), threads, sets, progress.part(0.0, 0.7));
     const auto settle = [&] {
         refineByResponse(whole.model, targets);
-        whole.power = powerLeft(whole.model, targets);
+        whole.errorDb = responseErrorDb(whole.model, targets);
     };
     progress.at(0.7, "taking out what is not needed");
     settle();
-    takeOut(base, whole, targets);
+    takeOut(base, whole, sets, targets);
     progress.at(0.9, "putting the effects in order");
     settle();
     std::vector<Step> steps;
     for (auto rest = std::move(whole);;) {
-        auto each = withoutEach(base, rest, targets);
+        auto each = withoutEach(base, rest, sets, targets);
         if (each.empty())
             break;
         auto& least = each.front();

@@ -46,6 +46,8 @@ std::vector<ResponseTarget> thinned(const std::vector<ResponseTarget>&, int poin
 ///     10 log10( sum |G - G_measured|^2/sigma^2 / sum |G_measured|^2/sigma^2 ).
 /// For an impedance of a frequency-response take that is the rms of |Z - Z_measured|/|Z_measured| over log f.
 double responseErrorDb(const Model&, const ResponseTarget&);
+/// The mean of that over several responses, dB: what helps one counts as much beside another that errs more.
+double responseErrorDb(const Model&, const std::vector<ResponseTarget>&);
 
 /// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale. Priors count against the
 /// misfit at the start. Leaves standard errors and the covariance in the model, scaled by the misfit that is left.
@@ -72,9 +74,12 @@ LeastSquaresSummary fitByResponse(Model&, std::size_t k, const Record&);
 /// more of them; the parts stay as they were where that brings little.
 LeastSquaresSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
 
-/// Whether a fit is sure that a component is there: one of its strengths exceeds four standard errors, and no parameter of its shape was
-/// driven to a bound, or all of them to implausible values, where they would stand for something else. The errors are those for the shape that was found: data that shows that there is a spectrum need
-/// not show how it is distributed, nor what it comes to far beyond the band.
+/// Whether a component is what its name says: no parameter of its shape was driven to a bound, nor all of them to implausible values, where they
+/// would stand for something else.
+bool isItself(const Model&, std::size_t component);
+
+/// Whether a fit is also sure that it is there: one of its strengths exceeds four standard errors. The errors are those for the shape that was
+/// found: data that shows that there is a spectrum need not show how it is distributed, nor what it comes to far beyond the band.
 bool isSeen(const Model&, std::size_t component);
 
 /// A linear base model with start values that need no tuning, from a micro speaker to a subwoofer: candidates over the

@@ -41,6 +41,13 @@ Model withResonance(Model model, double frequency)
     return model;
 }
 
+/// Whether no strength of a part of the newest effect is less than it can be.
+bool isPossible(const Model& model, const Part& part)
+{
+    const auto own = model.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
+    return std::all_of(own, own + static_cast<std::ptrdiff_t>(part.count), [](const Parameter& p) { return !p.strength || p.value >= p.lower; });
+}
+
 double rowsOf(const std::vector<ResponseTarget>& targets)
 {
     double rows = 0.0;
@@ -69,14 +76,24 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
             p.value = start[k];
             p.free = free[part.first + k];
         }
-        // One step tells what a strength without bounds promises; beside a bound a short search bends round it.
-        const double left = oneWay ? search(trial, {3, 1e-3}) : stepOnResponses(trial, targets);
-        starts.push_back({std::move(trial), std::isfinite(left) ? left : never});
+        // One step tells what a strength promises, unless it would have to be what it cannot be.
+        auto stepped = trial;
+        double left = stepOnResponses(stepped, targets);
+        if (!std::isfinite(left) || !isPossible(stepped, part))
+            left = never;
+        starts.push_back({oneWay ? std::move(trial) : std::move(stepped), left});
     }
     std::vector<Way> ways;
     for (std::size_t k = 0; k < starts.size(); ++k)
         if ((k == 0 || starts[k].cost < starts[k - 1].cost) && (k + 1 == starts.size() || starts[k].cost <= starts[k + 1].cost))
             ways.push_back(starts[k]);
+    if (oneWay) {   // beside a bound a short search bends round it
+        constexpr std::size_t promising = 8;
+        std::stable_sort(ways.begin(), ways.end(), cheaper);
+        ways.resize(std::min(ways.size(), promising));
+        for (auto& way : ways)
+            way.cost = search(way.model, {3, 1e-3});
+    }
     std::stable_sort(ways.begin(), ways.end(), cheaper);
     constexpr std::size_t most = 3;
     ways.resize(std::min(ways.size(), most));
@@ -237,28 +254,34 @@ LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTar
     return summary;
 }
 
+bool isItself(const Model& model, std::size_t component)
+{
+    constexpr double atBound = 0.002;   // of the range
+    const auto& own = model.components[component];
+    return own.effect->plausible(own.extent, own.parameters, model.base().parameters)
+           && std::none_of(own.parameters.begin(), own.parameters.end(), [](const Parameter& p) {
+                  const double range = p.upper - p.lower;
+                  return !p.strength && std::isfinite(range) && std::min(p.value - p.lower, p.upper - p.value) < atBound * range;
+              });
+}
+
 bool isSeen(const Model& model, std::size_t component)
 {
-    constexpr double sure = 4.0;        // standard errors, which take neighbouring points for independent
-    constexpr double atBound = 0.002;   // of the range
+    constexpr double sure = 4.0;   // standard errors, which take neighbouring points for independent
+    if (model.covariance.size() == 0 || !isItself(model, component))
+        return false;
     Eigen::Index first = 0;
     for (std::size_t k = 0; k < component; ++k)
         first += static_cast<Eigen::Index>(model.components[k].parameters.size());
     const auto& parameters = model.components[component].parameters;
     std::vector<Eigen::Index> shapes, strengths;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
-        const auto& p = parameters[k];
         const auto index = first + static_cast<Eigen::Index>(k);
-        if (p.strength)
+        if (parameters[k].strength)
             strengths.push_back(index);
-        else if (const double range = p.upper - p.lower; std::isfinite(range) && std::min(p.value - p.lower, p.upper - p.value) < atBound * range)
-            return false;
-        else if (model.covariance.size() > 0 && model.covariance(index, index) > 0.0)
+        else if (model.covariance(index, index) > 0.0)
             shapes.push_back(index);
     }
-    const auto& newest = model.components[component];
-    if (model.covariance.size() == 0 || !newest.effect->plausible(newest.extent, parameters, model.base().parameters))
-        return false;
     const Eigen::LDLT<Eigen::MatrixXd> known(Eigen::MatrixXd(model.covariance(shapes, shapes)));
     for (const auto index : strengths) {
         double variance = model.covariance(index, index);   // NaN where it is not known

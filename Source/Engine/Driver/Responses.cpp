@@ -277,4 +277,12 @@ double responseErrorDb(const Model& model, const ResponseTarget& target)
     return decibelsOf(error / power);
 }
 
+double responseErrorDb(const Model& model, const std::vector<ResponseTarget>& targets)
+{
+    double sum = 0.0;
+    for (const auto& target : targets)
+        sum += responseErrorDb(model, target);
+    return sum / static_cast<double>(targets.size());
+}
+
 } // namespace excursion
