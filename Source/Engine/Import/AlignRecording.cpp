@@ -99,7 +99,7 @@ private:
     {
         for (const auto& s : place.sightings)
             if (s.jump != 0.0)
-                gap(s.jump, static_cast<double>(periods_.periods[s.period].start));
+                gap(s.jump, s.at / plan_.sampleRate);
         if (place.start < -lateStart)
             refuse(source_, "begins " + figure(seconds(-place.start), "%.2f") + " s after the plan does; start the recorder before the player.");
         const auto within = place.inside();
@@ -111,12 +111,13 @@ private:
         }
     }
 
-    [[noreturn]] void gap(double jump, double planSample) const
+    /// @param jump  samples of the plan by which what comes later is late
+    [[noreturn]] void gap(double jump, double recordedSeconds) const
     {
         const double samples = std::abs(jump) * ratio_;
-        refuse(source_, (jump < 0 ? "lacks " : "has too many samples, ") + figure(samples, samples < 10 ? "%.1f" : "%.0f") + (jump < 0 ? " samples" : "")
-                            + " near " + figure(result_.clock.start / rate_ + seconds(planSample), "%.2f")
-                            + " s: a block was lost or repeated while recording; record again with larger buffers.");
+        const auto count = figure(samples, samples < 0.6 ? "%.1f" : "%.0f");
+        refuse(source_, (jump < 0 ? "lacks about " : "has about ") + count + (jump < 0 ? " samples near " : " samples too many near ")
+                            + figure(recordedSeconds, "%.1f") + " s: a block was lost or repeated while recording; record again with larger buffers.");
     }
 
     void countRealizations()
@@ -170,7 +171,7 @@ private:
                 break;
         }
         if (fit.jump != 0.0)
-            gap(fit.jump, fit.jumpTime);
+            gap(fit.jump, result_.clock.start / rate_ + seconds(fit.jumpTime));
         const double drift = result_.clock.step / ratio_ - 1;
         result_.driftPpm = 1e6 * drift;
         result_.driftError = 1e6 * fit.driftError;

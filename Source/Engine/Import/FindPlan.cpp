@@ -17,7 +17,7 @@ using Complex = std::complex<double>;
 constexpr double mostDrift = 300e-6;
 constexpr double recognized = 0.5;             // correlation of a period with what it should be
 constexpr double leastCorrelation = 0.15;      // of the first period, anywhere
-constexpr std::size_t mostPlaces = 64;
+constexpr std::size_t mostPlaces = 64, mostAnchors = 12;
 constexpr std::size_t mostJudged = 72;         // periods by which a place is judged
 
 /// Mean power of the bins of a spectrum in bands of a third of an octave, one value a bin.
@@ -119,10 +119,10 @@ public:
         drift_ = 0.0;
         credit_ = 0.0;
         const auto middle = std::lower_bound(chosen.begin(), chosen.end(), anchor);
-        walk(std::vector<std::size_t>(middle, chosen.end()), place.sightings);
+        walk(std::vector<std::size_t>(middle, chosen.end()), false, place.sightings);
         std::vector<std::size_t> before(chosen.begin(), middle);
         std::reverse(before.begin(), before.end());
-        walk(before, place.sightings);
+        walk(before, true, place.sightings);
         std::sort(place.sightings.begin(), place.sightings.end(), [](const auto& a, const auto& b) { return a.period < b.period; });
         fitLine(place);
         return place;
@@ -172,7 +172,7 @@ private:
         return {static_cast<double>(best) + part, product / std::sqrt(recordedPower * expectedPower), product / expectedPower};
     }
 
-    void walk(const std::vector<std::size_t>& periods, std::vector<Sighting>& sightings)
+    void walk(const std::vector<std::size_t>& periods, bool backwards, std::vector<Sighting>& sightings)
     {
         double time = timeOf(anchor_), at = at_;
         for (const auto period : periods) {
@@ -191,7 +191,9 @@ private:
                 } else if (const auto elsewhere = compare(period, start, plan_.length); elsewhere.correlation >= 0.8) {
                     sighting.seen = true;
                     sighting.at = whole + elsewhere.later;
-                    sighting.jump = elsewhere.later + whole - predicted;
+                    sighting.jump = sighting.at - predicted;
+                    if (backwards)   // it is what comes after this period that jumps
+                        sighting.jump *= -1;
                 }
                 if (sighting.seen) {
                     time = timeOf(period);
@@ -245,7 +247,7 @@ private:
     double at_ = 0.0, drift_ = 0.0, credit_ = 0.0;
 };
 
-/// Periods of the loud levels to begin with: one of each realization that is steady, the loudest first.
+/// Periods to begin with: one of each realization that is steady, the loudest first.
 std::vector<std::size_t> anchors(const std::vector<double>& played, const PlanPeriods& plan)
 {
     std::vector<std::size_t> found;
@@ -319,34 +321,37 @@ PlanPlace findPlan(const std::vector<double>& played, const PlanPeriods& plan, s
     const auto N = static_cast<double>(plan.length);
     const auto judging = judges(plan);
     Track track(plan, recorded);
+    double bestCredit = 0.0;
+    std::vector<std::size_t> all(plan.periods.size());
+    std::iota(all.begin(), all.end(), 0u);
     std::size_t tried = 0;
     for (const auto anchor : anchors(played, plan)) {
-        if (++tried > 4)
+        if (++tried > mostAnchors)
             break;
         const auto L = templateLength(plan.played[plan.periods[anchor].block], plan);
         const auto offset = (plan.length - L) / 2;
         const auto c = correlations(std::span(played).subspan(plan.periods[anchor].start + offset, L), recorded,
                                     0.9 * plan.lines.front() / N, 1.1 * plan.lines.back() / N);
-        double bestCredit = 0.0;
-        std::size_t bestAt = 0;
+        std::optional<std::size_t> bestAt;
         for (const auto peak : peaks(c, plan.length / 4)) {
             if (peak < offset)
                 continue;
             const auto place = track.from(anchor, peak - offset, judging);
+            if (!place)
+                continue;
             // What began before the recording is no take, but it must be told from what was never played.
-            if (place && track.credit() - (place->start < -8.0 ? 0.5 : 0.0) > bestCredit) {
-                bestCredit = track.credit();
+            const double credit = track.credit() - (place->start < -8.0 ? 0.5 : 0.0);
+            if (credit > bestCredit) {
+                bestCredit = credit;
                 bestAt = peak - offset;
             }
         }
-        if (bestCredit <= 0.0)
+        if (!bestAt)
             continue;
-        std::vector<std::size_t> all(plan.periods.size());
-        std::iota(all.begin(), all.end(), 0u);
-        best = track.from(anchor, bestAt, all).value();
+        best = track.from(anchor, *bestAt, all).value();
         best.found = best.seen() >= 2 && 2 * best.seen() > best.inside();
-        if (best.found)
-            break;
+        if (best.start >= -8.0 && 10 * best.seen() >= 9 * all.size())
+            break;   // nothing could fit better
     }
     return best;
 }

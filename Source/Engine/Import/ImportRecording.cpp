@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace excursion {
 namespace {
@@ -348,7 +349,8 @@ private:
         const double ratio = levels.back() / e.levels.back();
         if (recorded(Quantity::voltage) && (ratio < 0.98 || ratio > 1.02))
             result_.remarks.push_back("The recorded voltage is " + figure(ratio, "%.3g") + " times the plan's; the take's levels are what was recorded.");
-        if (levels.front() > 0 && std::is_sorted(levels.begin(), levels.end(), std::less_equal<>()))
+        const bool ascend = std::adjacent_find(levels.begin(), levels.end(), std::greater_equal<>()) == levels.end();
+        if (levels.front() > 0 && ascend)
             e.levels = levels;
     }
 
