@@ -17,6 +17,7 @@ namespace {
 constexpr double silence = 1e-6;          // rms of full scale
 constexpr double lateStart = 8.0;         // samples that the beginning may lack: it settles
 constexpr std::size_t earlyEnd = 8;       // and the end: what is periodic tells them
+constexpr double mostScatter = 0.25;      // samples rms of the periods about a steady clock
 constexpr double leastShare = 0.8;        // of the periods within the recording that must follow the plan
 
 [[noreturn]] void refuse(const std::string& source, const std::string& why)
@@ -172,6 +173,9 @@ private:
         }
         if (fit.jump != 0.0)
             gap(fit.jump, result_.clock.start / rate_ + seconds(fit.jumpTime));
+        if (fit.scatter > mostScatter)
+            refuse(source_, "does not run on a steady clock: its periods lie " + figure(fit.scatter, "%.2f")
+                                + " samples (rms) off one; samples were lost, or the recorder's clock wanders. Record again.");
         const double drift = result_.clock.step / ratio_ - 1;
         result_.driftPpm = 1e6 * drift;
         result_.driftError = 1e6 * fit.driftError;

@@ -35,7 +35,7 @@ struct Alignment {
 /// until nothing moves. The time is then that of the channel whose response is most like a gain and a delay, whatever it is called: of two that are alike the first.
 ///
 /// Throws Error (data), each with one sentence: all channels are silent; the rate is too low for the plan's band; the plan is not found; most of its periods do
-/// not follow it; the recording begins after the plan; samples are missing or too many between two periods; not one realization is complete.
+/// not follow it; the recording begins after the plan; samples are missing or too many between two periods; the clock wanders by more than 0.25 samples rms; not one realization is complete.
 /// @param witnesses  in the order of trust; the first in which the plan is found tells the clock's rate
 /// @param source     the file, for sentences
 Alignment alignRecording(const Measurement& plan, const PlanPeriods&, const std::vector<Witness>&, double recordedRate, const std::string& source);

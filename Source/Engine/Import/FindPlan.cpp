@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 namespace excursion {
 namespace {
@@ -17,7 +18,7 @@ using Complex = std::complex<double>;
 constexpr double mostDrift = 300e-6;
 constexpr double recognized = 0.5;             // correlation of a period with what it should be
 constexpr double leastCorrelation = 0.15;      // of the first period, anywhere
-constexpr std::size_t mostPlaces = 64, mostAnchors = 12;
+constexpr std::size_t mostPlaces = 64, mostAnchors = 8;
 constexpr std::size_t mostJudged = 72;         // periods by which a place is judged
 
 /// Mean power of the bins of a spectrum in bands of a third of an octave, one value a bin.
@@ -247,26 +248,30 @@ private:
     double at_ = 0.0, drift_ = 0.0, credit_ = 0.0;
 };
 
-/// Periods to begin with: one of each realization that is steady, the loudest first.
+/// Periods to begin with: the last ones of blocks, which are steady. The first of each level come first, the loud ones before
+/// the quiet ones: a recording may have been cut short.
 std::vector<std::size_t> anchors(const std::vector<double>& played, const PlanPeriods& plan)
 {
-    std::vector<std::size_t> found;
-    std::vector<long> loudness;   // in steps of 1 dB: the order of realizations of a level is that of time
+    struct Anchor {
+        std::size_t period = 0, turn = 0;   ///< how many blocks of that loudness came before it
+        long loudness = 0;                  ///< in steps of 1 dB
+    };
+    std::vector<Anchor> found;
     for (std::size_t p = 0; p < plan.periods.size(); ++p) {
         const bool lastOfBlock = p + 1 == plan.periods.size() || plan.periods[p + 1].block != plan.periods[p].block;
         if (!lastOfBlock)
             continue;
-        found.push_back(p);
         const auto* x = played.data() + plan.periods[p].start;
-        loudness.push_back(std::lround(decibelsOf(std::inner_product(x, x + plan.length, x, 0.0))));
+        Anchor anchor {p, 0, std::lround(decibelsOf(std::inner_product(x, x + plan.length, x, 0.0)))};
+        for (const auto& other : found)
+            anchor.turn += other.loudness == anchor.loudness ? 1 : 0;
+        found.push_back(anchor);
     }
-    std::vector<std::size_t> order(found.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return loudness[a] > loudness[b]; });
-    std::vector<std::size_t> sorted;
-    for (const auto i : order)
-        sorted.push_back(found[i]);
-    return sorted;
+    std::stable_sort(found.begin(), found.end(), [](const Anchor& a, const Anchor& b) { return std::tie(a.turn, b.loudness) < std::tie(b.turn, a.loudness); });
+    std::vector<std::size_t> periods;
+    for (const auto& anchor : found)
+        periods.push_back(anchor.period);
+    return periods;
 }
 
 /// The periods that judge a place: all, or the first and the last of blocks.

@@ -252,19 +252,27 @@ ClockFit fitClock(const std::vector<PeriodDelays::Period>& periods)
         weights += p.standardError > 0 ? 1.0 / (p.standardError * p.standardError) : 0.0;
     clock.scatter = weights > 0 ? std::sqrt(line.chiSquare / weights) : 0.0;
 
-    double least = 0.25 * line.chiSquare;
-    for (std::size_t from = 1; from < periods.size(); ++from) {
-        const auto stepped = fitLine(periods, from);
-        if (stepped.freedom < 1)
-            continue;
-        const double variance = stepped.jumpVariance * std::max(1.0, stepped.chiSquare / stepped.freedom);
-        const bool clear = std::abs(stepped.jump) >= 0.15 && stepped.jump * stepped.jump > 36.0 * variance;
-        if (clear && stepped.chiSquare < least) {
-            least = stepped.chiSquare;
-            clock.jump = stepped.jump;
-            clock.jumpTime = (periods[from - 1].time + periods[from].time) / 2;
+    // Between two periods, or within one, which is then neither here nor there and left out.
+    double least = 0.25;
+    for (std::size_t from = 1; from < periods.size(); ++from)
+        for (const bool within : {false, true}) {
+            auto judged = periods;
+            if (within)
+                judged.erase(judged.begin() + static_cast<std::ptrdiff_t>(from));
+            if (from >= judged.size())
+                continue;
+            const auto stepped = fitLine(judged, from);
+            const auto straight = within ? fitLine(judged, judged.size()) : line;
+            if (stepped.freedom < 1 || !(straight.chiSquare > 0))
+                continue;
+            const double variance = stepped.jumpVariance * std::max(1.0, stepped.chiSquare / stepped.freedom);
+            const bool clear = std::abs(stepped.jump) >= 0.15 && stepped.jump * stepped.jump > 36.0 * variance;
+            if (clear && stepped.chiSquare < least * straight.chiSquare) {
+                least = stepped.chiSquare / straight.chiSquare;
+                clock.jump = stepped.jump;
+                clock.jumpTime = within ? periods[from].time : (periods[from - 1].time + periods[from].time) / 2;
+            }
         }
-    }
     return clock;
 }
 

@@ -44,8 +44,8 @@ struct ClockFit {
     double jumpTime = 0.0;                    ///< samples of the plan
 };
 
-/// A line through the delays, weighted least squares with an offset a group (that of the last group counts); and where a line with a step at some time leaves a quarter
-/// of the squares or less, and the step is at least 0.15 samples and six standard errors, the step.
+/// A line through the delays, weighted least squares with an offset a group (that of the last group counts); and where a line with a step at some time, between two
+/// periods or within one that is then left out, leaves a quarter of the squares or less, and the step is at least 0.15 samples and six standard errors, the step.
 ClockFit fitClock(const std::vector<PeriodDelays::Period>&);
 
 } // namespace excursion
