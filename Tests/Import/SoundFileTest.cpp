@@ -102,8 +102,8 @@ TEST_CASE("A sine is read on another clock with errors below the noise of 24 bit
     for (const double rate : {44100.0, 48000.0, 96000.0, 192000.0})
         for (const double ppm : {0.0, 187.3})
             for (const double frequency : {31.7, 1000.0, 9000.0, 19500.0}) {
-                const double step = rate / 48000 * (1 + 1e-6 * ppm), start = 9000.37;
-                std::vector<double> x(static_cast<std::size_t>(1.2 * rate));
+                const double step = rate / 48000 * (1 + 1e-6 * ppm), start = 5000.37 * step;
+                std::vector<double> x(static_cast<std::size_t>(0.8 * rate));
                 for (std::size_t n = 0; n < x.size(); ++n)
                     x[n] = std::cos(turn * frequency / 48000 * (static_cast<double>(n) - start) / step);
                 const auto y = onPlanClock(x, {start, step}, rate, 48000, 24000);

@@ -3,7 +3,6 @@
 
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/Clipping.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 
@@ -71,6 +70,26 @@ Fit fitSine(std::span<const double> x, double omega)
     return {{c(0), c(1)}, (A * c - b).squaredNorm() / static_cast<double>(x.size())};
 }
 
+/// Samples at an extreme, three or more equal ones in a row, of a tone whose fundamental goes beyond that extreme: its tops are cut off. (A coarsely
+/// quantized top has as many, but is as high as the fundamental.)
+long flattened(std::span<const double> x, double amplitude)
+{
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    const double middle = (*low + *high) / 2;
+    if (*high - middle > 0.997 * amplitude)
+        return 0;
+    long count = 0;
+    for (std::size_t n = 0; n < x.size();) {
+        auto end = n + 1;
+        while (end < x.size() && x[end] == x[n])
+            ++end;
+        if (end - n >= 3 && (x[n] == *low || x[n] == *high))
+            count += static_cast<long>(end - n);
+        n = end;
+    }
+    return count;
+}
+
 /// The highest line of the windowed spectrum, refined by a parabola through its logarithms.
 double coarseFrequency(std::span<const double> x)
 {
@@ -103,10 +122,6 @@ Tone findTone(std::span<const double> samples, double sampleRate, const char* la
     if (seconds(stretch.end - stretch.begin) < shortest)
         refuse("nowhere is its level steady for half a second; let the tone sound for a few seconds.");
     const auto x = samples.subspan(stretch.begin, stretch.end - stretch.begin);
-    Channel channel;
-    channel.samples.assign(x.begin(), x.end());
-    if (const auto clipped = clippedSamples(channel); clipped > 0)
-        refuse(std::to_string(clipped) + " samples stand at the converter's limit; lower the gain.");
 
     const auto length = std::min(x.size(), static_cast<std::size_t>(std::round(partSeconds * sampleRate)));
     const auto parts = x.size() / length;
@@ -140,6 +155,8 @@ Tone findTone(std::span<const double> samples, double sampleRate, const char* la
     tone.noiseDb = decibelsOf(residual / std::max(power, 1e-300));
     tone.begin = seconds(stretch.begin);
     tone.end = seconds(stretch.end);
+    if (const auto flat = flattened(x, tone.rms * std::numbers::sqrt2); flat > 0)
+        refuse(std::to_string(flat) + " samples stand at the converter's limit; lower the gain.");
     if (tone.noiseDb > noisiestDb)
         refuse("noise and distortion are only " + figure(-tone.noiseDb) + " dB below it; 20 dB are needed. Is anything else playing?");
     const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
