@@ -6,6 +6,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ImportRecording.h"
+#include "Engine/Measurement/Export.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Signal/Level.h"
 
@@ -131,12 +132,13 @@ void addRecordingOptions(CLI::App& verb, RecordingArguments& arguments)
 
 void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
 {
-    requireFolderPlace(arguments.out);
+    const bool text = std::filesystem::path(arguments.out).extension() == ".csv";
+    text ? requireFilePlace(arguments.out) : requireFolderPlace(arguments.out);
     const auto options = recordingOptions(arguments);
     auto imported = importRecording(options, terminal.progress());
     if (!arguments.name.empty())
         imported.take.driver.name = arguments.name;
-    writeMeasurement(imported.take, arguments.out);
+    text ? writeCsv(imported.take, arguments.out) : writeMeasurement(imported.take, arguments.out);
     describe(imported, options.plan.has_value(), arguments.out, terminal);
 }
 

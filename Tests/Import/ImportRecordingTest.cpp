@@ -167,6 +167,22 @@ TEST_CASE("A voltage that was not recorded is the plan's, and said to be assumed
     CHECK_THAT(imported.remarks.back(), Catch::Contains("assumed"));
 }
 
+TEST_CASE("Without voltage and loopback the current tells the time as far as physics does", "[import]")
+{
+    const auto& played = smallPlay();
+    const Scratch scratch;
+    auto r = recorder({1, 2});
+    r.ppm = 80;
+    const auto recorded = record(played, r);
+    auto options = optionsFor(played, {save(scratch, "rec.wav", recorded)}, {"1=current:4", "2=displacement:8mm"});
+    options.gain = 16;
+    const auto imported = importRecording(options);
+    CHECK(imported.files[0].alignment.driftPpm == Approx(80).margin(0.5));
+    CHECK(clockError(imported.files[0].alignment, recorded, imported.take) < 0.5);
+    REQUIRE(imported.remarks.size() == 2);
+    CHECK_THAT(imported.remarks[0], Catch::Contains("loudspeaker lies between"));
+}
+
 TEST_CASE("The response of an interface is taken off by its loopback", "[import]")
 {
     const auto& played = smallPlay();

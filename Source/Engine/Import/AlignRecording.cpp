@@ -121,19 +121,7 @@ private:
                             + figure(recordedSeconds, "%.1f") + " s: a block was lost or repeated while recording; record again with larger buffers.");
     }
 
-    void countRealizations()
-    {
-        const auto size = static_cast<double>(witnesses_.front().samples.size());
-        const double available = std::floor((size - 1 - result_.clock.start) / result_.clock.step) + 1 + static_cast<double>(earlyEnd);
-        const auto block = static_cast<double>(plan_.excitation->samplesPerRealization());
-        const auto all = plan_.excitation->levels.size() * static_cast<std::size_t>(plan_.excitation->realizations);
-        result_.realizations = std::min(all, static_cast<std::size_t>(std::max(0.0, std::floor(available / block))));
-        const double end = static_cast<double>(result_.realizations) * block + static_cast<double>(earlyEnd) - available;
-        result_.missing = static_cast<std::size_t>(std::max(0.0, end));
-        if (result_.realizations == 0)
-            refuse(source_, "ends " + figure(seconds(std::max(0.0, available)), "%.2f") + " s after the plan begins, before its first realization of "
-                                + figure(seconds(block), "%.2f") + " s is over; record all of it.");
-    }
+    void countRealizations() { excursion::countRealizations(result_, plan_, witnesses_.front().samples.size(), source_); }
 
     std::size_t samplesRecorded() const
     {
@@ -225,6 +213,20 @@ Alignment alignRecording(const Measurement& plan, const PlanPeriods& periods, co
     if (witnesses.empty())
         throw Error(Error::Kind::usage, "No channel of '" + source + "' is mapped, so it cannot be laid beside the plan.");
     return Aligner(plan, periods, witnesses, recordedRate, source).align();
+}
+
+void countRealizations(Alignment& alignment, const Measurement& plan, std::size_t recordedSamples, const std::string& source)
+{
+    const auto& clock = alignment.clock;
+    const double available = std::floor((static_cast<double>(recordedSamples) - 1 - clock.start) / clock.step) + 1 + static_cast<double>(earlyEnd);
+    const auto block = static_cast<double>(plan.excitation->samplesPerRealization());
+    const auto all = plan.excitation->levels.size() * static_cast<std::size_t>(plan.excitation->realizations);
+    alignment.realizations = std::min(all, static_cast<std::size_t>(std::max(0.0, std::floor(available / block))));
+    alignment.missing =
+        static_cast<std::size_t>(std::max(0.0, static_cast<double>(alignment.realizations) * block + static_cast<double>(earlyEnd) - available));
+    if (alignment.realizations == 0)
+        refuse(source, "ends " + figure(std::max(0.0, available) / plan.sampleRate, "%.2f") + " s after the plan begins, before its first realization of "
+                           + figure(block / plan.sampleRate, "%.2f") + " s is over; record all of it.");
 }
 
 } // namespace excursion

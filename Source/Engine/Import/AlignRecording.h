@@ -40,4 +40,7 @@ struct Alignment {
 /// @param source     the file, for sentences
 Alignment alignRecording(const Measurement& plan, const PlanPeriods&, const std::vector<Witness>&, double recordedRate, const std::string& source);
 
+/// Fills in `realizations` and `missing` for a recording of so many samples; throws Error (data) when not one realization is complete.
+void countRealizations(Alignment&, const Measurement& plan, std::size_t recordedSamples, const std::string& source);
+
 } // namespace excursion

@@ -4,6 +4,7 @@
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/Clipping.h"
+#include "Engine/Measurement/TakeCheck.h"
 #include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
 
@@ -239,14 +240,55 @@ private:
         const auto* witness = own[done.alignment.witness];
         done.witness = witnesses[done.alignment.witness].label;
         if (witness->quantity && done.alignment.likeness < plainLikeness)
-            result_.remarks.push_back("The time of '" + done.name + "' is that of " + done.witness + ", in which a loudspeaker lies between what was played and what was recorded: "
-                                      "against the voltage its channels may be late or early by part of a sample. A loopback in the same file would tell.");
+            settleTime(*witness, done);
         else if (witness->quantity && *witness->quantity != Quantity::voltage && own.front()->quantity == Quantity::voltage)
             result_.remarks.push_back(done.witness + " is more like what was played than the voltage; 'excursion check' tells whether they are exchanged.");
         if (done.alignment.scatter > 0.05)
             result_.remarks.push_back("The clock of '" + done.name + "' wanders by " + figure(done.alignment.scatter, "%.2f")
                                       + " samples (rms) about a steady one, which is left in.");
         result_.files.push_back(std::move(done));
+    }
+
+    /// The time of a file that was told by what a loudspeaker had passed: what physics allows no loudspeaker to delay, as `check` has it, is taken off.
+    void settleTime(const Assigned& witness, ImportedFile& done)
+    {
+        auto& alignment = done.alignment;
+        const auto& samples = sources_[witness.file].sound.channels[witness.channel];
+        Measurement pair;
+        pair.sampleRate = plan_.sampleRate;
+        pair.excitation = shortened(*result_.take.excitation, alignment.realizations);
+        const auto length = static_cast<std::size_t>(pair.excitation->totalSamples());
+        const auto& played = plan_.input().samples;
+        pair.channels.push_back({Quantity::voltage, "V", 1.0, {played.begin(), played.begin() + static_cast<std::ptrdiff_t>(length)}});
+        pair.channels.push_back({*witness.quantity, std::string(siUnit(*witness.quantity)), std::abs(witness.factor),
+                                 onPlanClock(samples, alignment.clock, done.sampleRate, plan_.sampleRate, length)});
+        for (double& x : pair.channels.back().samples)
+            x *= witness.factor;
+        const auto delay = check(pair).channels.back().delay;
+        const bool clear = delay && delay->clear;
+        std::string told = "The time of '" + done.name + "' is that of " + done.witness + ", in which a loudspeaker lies between what was played and what was recorded";
+        if (clear) {
+            alignment.clock.start += delay->seconds * plan_.sampleRate * alignment.clock.step;
+            alignment.startError = std::hypot(alignment.startError, delay->standardError * plan_.sampleRate);
+            countRealizations(alignment, plan_, samples.size(), done.name);
+            told += "; it was put right by " + figure(delay->seconds * plan_.sampleRate, "%.2f") + " samples, which no loudspeaker can make";
+        }
+        result_.remarks.push_back(told + ". Against the voltage its channels may still be late or early by part of a sample"
+                                  + (*witness.quantity == Quantity::pressure ? ", and the time of flight is lost" : "")
+                                  + ": a loopback or the voltage in the same file would tell.");
+    }
+
+    /// What is left of an excitation of which so many realizations are complete.
+    static Excitation shortened(Excitation e, std::size_t complete)
+    {
+        const auto realizations = static_cast<std::size_t>(e.realizations), levels = complete / realizations;
+        if (levels == 0) {
+            e.levels.resize(1);
+            e.realizations = static_cast<int>(complete);
+        } else if (levels < e.levels.size()) {
+            e.levels.resize(levels);
+        }
+        return e;
     }
 
     /// All files to the end of the one that ends first.
@@ -261,13 +303,7 @@ private:
                 shortest = f;
             }
         if (complete < all) {
-            const auto realizations = static_cast<std::size_t>(e.realizations), levels = complete / realizations;
-            if (levels == 0) {
-                e.levels.resize(1);
-                e.realizations = static_cast<int>(complete);
-            } else {
-                e.levels.resize(levels);
-            }
+            e = shortened(e, complete);
             result_.remarks.push_back("'" + result_.files[shortest].name + "' ends before the plan does: " + std::to_string(complete) + " of " + std::to_string(all)
                                       + " realizations are complete, of which the take keeps " + std::to_string(e.levels.size()) + " level"
                                       + (e.levels.size() == 1 ? "" : "s") + " with " + std::to_string(e.realizations) + " realization"
