@@ -87,9 +87,7 @@ TEST_CASE("Exchanged and inverted channels are imported, and found by check", "[
     INFO(imported.err);
     REQUIRE(imported.code == 0);
     CHECK_THAT(documentOf(imported, "excursion-import").at("remarks").dump(), Catch::Contains("exchanged"));
-    const auto checked = s.run({"check", s.take(), "--json"});
-    CHECK(checked.code == 1);
-    CHECK_THAT(checked.out, Catch::Contains("mislabelled"));
+    CHECK(s.run({"check", s.take(), "--quiet"}).code == 1);
 
     auto inverted = s.import({"voltage", "current", "displacement"}, "upside down");
     for (auto& word : inverted)

@@ -239,10 +239,14 @@ private:
         done.alignment = alignRecording(plan_, periods_, witnesses, done.sampleRate, done.name);
         const auto* witness = own[done.alignment.witness];
         done.witness = witnesses[done.alignment.witness].label;
-        if (witness->quantity && done.alignment.likeness < plainLikeness)
+        const bool hasVoltage = own.front()->quantity == Quantity::voltage;
+        if (witness->quantity && !hasVoltage)
             settleTime(*witness, done);
-        else if (witness->quantity && *witness->quantity != Quantity::voltage && own.front()->quantity == Quantity::voltage)
-            result_.remarks.push_back(done.witness + " is more like what was played than the voltage; 'excursion check' tells whether they are exchanged.");
+        else if (witness->quantity && done.alignment.likeness < plainLikeness)
+            result_.remarks.push_back("Neither the voltage in '" + done.name + "' nor another channel is much like what was played: its time is that of " + done.witness
+                                      + ", as far as its response is that of a delay.");
+        else if (witness->quantity && *witness->quantity != Quantity::voltage)
+            result_.remarks.push_back(done.witness + " is more like what was played than the voltage: they may be exchanged, see 'excursion check'.");
         if (done.alignment.scatter > 0.05)
             result_.remarks.push_back("The clock of '" + done.name + "' wanders by " + figure(done.alignment.scatter, "%.2f")
                                       + " samples (rms) about a steady one, which is left in.");
