@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/ImportRecording.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -19,7 +20,9 @@ namespace excursion::cli {
 namespace {
 
 struct ImportArguments {
-    std::string file, out, name;
+    std::vector<std::string> files;
+    std::string file, out, name;   ///< the first of the files
+    RecordingArguments recording;
     std::vector<std::string> map;
     double rate = 0.0;
     std::size_t from = 0, to = 0;
@@ -86,8 +89,24 @@ Take read(const ImportArguments& options)
     return readTake(options.file);
 }
 
-void run(const ImportArguments& options, Terminal& terminal)
+void run(ImportArguments options, Terminal& terminal)
 {
+    options.file = options.files.front();
+    if (isRecording(options.file)) {
+        options.recording.files = options.files;
+        options.recording.map = options.map;
+        options.recording.out = options.out;
+        options.recording.name = options.name;
+        options.recording.from = options.from;
+        options.recording.to = options.to;
+        if (options.rate > 0 || options.removeMean)
+            throw Error(Error::Kind::usage, "--rate and --remove-mean are for CSV and MAT files; a recording knows its rate.");
+        return importRecordings(options.recording, terminal);
+    }
+    if (options.files.size() > 1)
+        throw Error(Error::Kind::usage, "Only recordings can be several files; '" + options.file + "' is none.");
+    if (options.recording.given())
+        throw Error(Error::Kind::usage, "--plan, --gain and --calibration are for recordings (WAV, AIFF, CAF or FLAC); '" + options.file + "' is none.");
     auto take = read(options);
     if (auto* spectra = std::get_if<Spectra>(&take))
         return importSpectra(*spectra, options.out, terminal);
@@ -106,10 +125,14 @@ void run(const ImportArguments& options, Terminal& terminal)
 void addImport(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ImportArguments>();
-    auto* verb = app.add_subcommand("import", "Turn a CSV, MAT, ZMA or FRD file into a take, or a take into a CSV")->group(step::measure);
-    verb->add_option("FILE", o->file, ".csv, .mat, .zma, .frd, or a take")->required();
+    auto* verb = app.add_subcommand("import", "Turn recordings (WAV, AIFF, CAF, FLAC), a CSV, MAT, ZMA or FRD into a take, or a take into a CSV")->group(step::measure);
+    verb->add_option("FILE", o->files, "recordings of one --plan (.wav, .aif, .caf, .flac), or a .csv, .mat, .zma, .frd, or a take")->required();
     verb->add_option("--out", o->out, "folder of the new take, or a .csv")->required()->type_name("PLACE");
-    verb->add_option("--map", o->map, "COLUMN=QUANTITY or COLUMN=QUANTITY:UNIT, for example V1=force:V; may be repeated")
+    addRecordingOptions(*verb, o->recording);
+    verb->add_option("--map", o->map,
+                     "of a recording CHANNEL=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example 1=voltage:16, 2=current:-500mA (negative: "
+                     "inverted), 3=loopback (the interface's output, straight into its input); channels are counted from 1 through all files, or FILE:CHANNEL. "
+                     "Of a CSV or MAT COLUMN=QUANTITY or COLUMN=QUANTITY:UNIT, for example V1=force:V. May be repeated")
         ->expected(1)->take_all();
     verb->add_option("--rate", o->rate, "sample rate in Hz, when the file has none")->check(CLI::PositiveNumber);
     verb->add_option("--from", o->from, "first sample to take, counted from 0");

@@ -22,6 +22,7 @@ inline constexpr auto use = "5. Use the model";
 // Declared here in the order of the method, called in the same order by main.
 void addExcite(CLI::App&, Terminal&);
 void addVirtual(CLI::App&, Terminal&);
+void addCalibrate(CLI::App&, Terminal&);
 void addImport(CLI::App&, Terminal&);
 void addCheck(CLI::App&, Terminal&);
 void addBla(CLI::App&, Terminal&);

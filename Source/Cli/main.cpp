@@ -18,6 +18,8 @@ using namespace excursion;
 constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing.
 
   excursion excite --out plan                 the signal to play, and its plan
+  excursion import rec.wav --plan plan --map 1=voltage:16 --map 2=current:4 --out take
+                                              a take of what was recorded meanwhile
   excursion check take                        is the take fit for use?
   excursion bla take                          frequency response, noise and distortion
   excursion fit take --out model.json         a loudspeaker model, the linear one first
@@ -111,6 +113,7 @@ int main(int argc, char** argv)
 
     // In the order of the method: --help prints them so.
     cli::addExcite(app, terminal);
+    cli::addCalibrate(app, terminal);
     cli::addImport(app, terminal);
     cli::addVirtual(app, terminal);
     cli::addCheck(app, terminal);

@@ -46,6 +46,7 @@ struct Channel {
     std::string unit = "V";
     double fullScale = 1.0;         ///< quantity at a WAV sample of 1.0; reaching it is clipping
     std::vector<double> samples;    ///< in `unit`
+    bool assumed = false;           ///< not measured, but what was meant to be played
 };
 
 struct DriverInfo {

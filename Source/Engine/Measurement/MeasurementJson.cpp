@@ -54,6 +54,8 @@ Channel parseChannel(const JsonField& field)
         unitField.refuse(accepted);
     channel.unit = scale->unit;
     channel.fullScale = positive(field.at("fullScale"), "a positive number in the channel's unit") * scale->factor;
+    if (field.has("assumed"))
+        channel.assumed = field.at("assumed").flag();
     return channel;
 }
 
@@ -189,8 +191,11 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement, const std
                                      {"sampleRate", measurement.sampleRate},
                                      {"audio", audio},
                                      {"channels", nlohmann::ordered_json::array()}};
-    for (const auto& channel : measurement.channels)
+    for (const auto& channel : measurement.channels) {
         document["channels"].push_back({{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"fullScale", channel.fullScale}});
+        if (channel.assumed)
+            document["channels"].back()["assumed"] = true;
+    }
     if (const auto& e = measurement.excitation) {
         document["excitation"] = {{"kind", "multisine"},
                                   {"period", e->period},

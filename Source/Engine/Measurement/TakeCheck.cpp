@@ -123,6 +123,12 @@ CheckReport check(const Measurement& take)
     for (std::size_t c = 0; c < take.channels.size(); ++c)
         alive.push_back(checkWaveform(take, take.channels[c], report.channels[c], problems));
 
+    if (take.input().assumed)
+        problems.push_back({"assumed-input", take.input().quantity, 0.0, "", false,
+                            "The " + std::string(name(take.input().quantity))
+                                + " was not measured but is what was meant to be played: what the amplifier adds will be taken for the loudspeaker's, and levels "
+                                  "are as right as the gain that was given."});
+
     const bool described = take.excitation && !take.excitation->lines.empty() && take.excitation->period > 1;
     const long missing = described ? take.excitation->totalSamples() - static_cast<long>(take.length()) : 0;
     if (missing > 0) {

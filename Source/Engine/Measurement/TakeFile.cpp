@@ -162,6 +162,9 @@ Take readTake(const fs::path& given)
     if (extension == ".csv")
         return importCsv(given, {});
     sizeOfFile(given);   // a path that does not exist deserves to be told so first
+    if (extension == ".wav" || extension == ".flac" || extension == ".aif" || extension == ".aiff" || extension == ".caf")
+        throw Error(Error::Kind::input, "'" + given.string() + "' is a recording, not a take yet; make one of it and of the plan that was played: excursion import '"
+                                            + given.string() + "' --plan plan --map 1=voltage:16 --map 2=current:4 --out take.");
     throw Error(Error::Kind::input, "'" + given.string() + "' is not a take, which is a folder with a measurement.json, a .zma, "
                                         ".frd or .csv; turn other files into one with 'excursion import'.");
 }

@@ -30,44 +30,72 @@ using SoundFile = std::unique_ptr<SNDFILE, Close>;
     throw Error(Error::Kind::input, "'" + path.string() + "' " + why);
 }
 
-/// Where the header of a RIFF file says that its samples end, in bytes; 0 when there is no such header.
+/// The head of a file, read chunk by chunk.
+class Head {
+public:
+    Head(const fs::path& path, bool bigEndian) : file_(path, std::ios::binary), bigEndian_(bigEndian) {}
+
+    std::string text()
+    {
+        std::array<char, 4> bytes {};
+        file_.read(bytes.data(), 4);
+        return std::string(bytes.data(), 4);
+    }
+    std::uint64_t number(std::size_t count)
+    {
+        std::array<unsigned char, 8> bytes {};
+        file_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            value = value << 8 | bytes[bigEndian_ ? i : count - 1 - i];
+        return value;
+    }
+    std::uint64_t place() { return static_cast<std::uint64_t>(file_.tellg()); }
+    void go(std::uint64_t place) { file_.seekg(static_cast<std::streamoff>(std::min(place, std::uint64_t(1) << 62))); }
+    bool good() const { return file_.good(); }
+
+private:
+    std::ifstream file_;
+    bool bigEndian_;
+};
+
+constexpr auto farAway = std::uint64_t(1) << 62;
+
+/// Where the header of a WAV, AIFF or CAF says that its samples end, in bytes; 0 when there is no such header.
 /// libsndfile quietly shortens a file whose header claims more than there is, and a truncated take must
 /// not pass as a short one.
 std::uint64_t claimedEnd(const fs::path& path)
 {
-    std::ifstream file(path, std::ios::binary);
-    const auto text = [&file] {
-        std::array<char, 4> bytes {};
-        file.read(bytes.data(), 4);
-        return std::string(bytes.data(), 4);
-    };
-    const auto number = [&file](int count) {
-        std::array<unsigned char, 8> bytes {};
-        file.read(reinterpret_cast<char*>(bytes.data()), count);
-        std::uint64_t value = 0;
-        for (int i = count - 1; i >= 0; --i)
-            value = value << 8 | bytes[static_cast<std::size_t>(i)];
-        return value;
-    };
-    const auto form = text();
-    number(4);
-    if ((form != "RIFF" && form != "RF64") || text() != "WAVE")
-        return 0;
-    std::uint64_t longDataSize = 0;   // RF64 keeps it in its ds64 chunk
-    while (file) {
-        const auto chunk = text();
-        const auto size = number(4);
-        if (!file)
+    const auto form = Head(path, false).text();
+    Head head(path, form == "FORM" || form == "caff");
+    head.text();
+    if (form == "caff")
+        head.number(4);
+    else if (form == "RIFF" || form == "RF64" || form == "FORM") {
+        head.number(4);
+        const auto kind = head.text();
+        if (kind != (form == "FORM" ? "AIFF" : "WAVE") && (form != "FORM" || kind != "AIFC"))
             return 0;
-        const auto start = static_cast<std::uint64_t>(file.tellg());
+    } else
+        return 0;
+    const std::string samples = form == "FORM" ? "SSND" : "data";
+    std::uint64_t longDataSize = 0;   // RF64 keeps it in its ds64 chunk
+    while (head.good()) {
+        const auto chunk = head.text();
+        const auto size = head.number(form == "caff" ? 8 : 4);
+        if (!head.good())
+            return 0;
+        const auto start = head.place();
         if (chunk == "ds64") {
-            number(8);
-            longDataSize = number(8);
-        } else if (chunk == "data") {
+            head.number(8);
+            longDataSize = head.number(8);
+        } else if (chunk == samples) {
+            if (form == "caff" && size == ~std::uint64_t(0))   // to the end of the file
+                return start;
             const auto whole = form == "RF64" && size == 0xFFFFFFFFu ? longDataSize : size;
-            return start + std::min(whole, std::uint64_t(1) << 62);
+            return start + std::min(whole, farAway);
         }
-        file.seekg(static_cast<std::streamoff>(start + size + size % 2));
+        head.go(start + std::min(size, farAway) + (form == "caff" ? 0 : size % 2));
     }
     return 0;
 }
@@ -75,7 +103,8 @@ std::uint64_t claimedEnd(const fs::path& path)
 std::uint64_t bytesOfSample(int format)
 {
     switch (format & SF_FORMAT_SUBMASK) {
-    case SF_FORMAT_PCM_U8: return 1;
+    case SF_FORMAT_PCM_U8:
+    case SF_FORMAT_PCM_S8: return 1;
     case SF_FORMAT_PCM_16: return 2;
     case SF_FORMAT_PCM_24: return 3;
     case SF_FORMAT_PCM_32:
@@ -85,46 +114,69 @@ std::uint64_t bytesOfSample(int format)
     }
 }
 
-} // namespace
+enum class Container { wav, sound };
 
-Wav readWav(const fs::path& path)
+constexpr std::uint64_t mostSamples = std::uint64_t(1) << 31;   // of all channels of a compressed file, which may claim any number
+
+/// @param allowed  wav: nothing but that; sound: AIFF, CAF and FLAC, too
+Wav readSamples(const fs::path& path, Container allowed)
 {
     const auto size = sizeOfFile(path);
     SF_INFO info {};
     const SoundFile file(sf_open(path.string().c_str(), SFM_READ, &info));
+    const int container = info.format & SF_FORMAT_TYPEMASK;
+    const bool wav = container == SF_FORMAT_WAV || container == SF_FORMAT_WAVEX || container == SF_FORMAT_RF64;
+    const bool flac = container == SF_FORMAT_FLAC, other = flac || container == SF_FORMAT_AIFF || container == SF_FORMAT_CAF;
     const auto claimed = claimedEnd(path);
     if (claimed > size)
         refuse(path, "is truncated: its header claims " + std::to_string(claimed) + " bytes, but the file has only "
                          + std::to_string(size) + "; copy it again.");
     if (!file)
-        refuse(path, "is not a readable WAV file (" + std::string(sf_strerror(nullptr)) + ").");
+        refuse(path, std::string(allowed == Container::wav ? "is not a readable WAV file (" : "is not a readable WAV, AIFF, CAF or FLAC file (")
+                         + sf_strerror(nullptr) + ").");
     const auto sampleBytes = bytesOfSample(info.format);
-    if (claimed == 0 || sampleBytes == 0)
+    if (allowed == Container::wav && (!wav || claimed == 0 || sampleBytes == 0))
         refuse(path, "holds no PCM or float samples in WAV form; save it as a float WAV.");
+    if (allowed == Container::sound && (!(wav || other) || (claimed == 0 && !flac) || sampleBytes == 0))
+        refuse(path, "holds no PCM or float samples in a WAV, AIFF, CAF or FLAC; save it as a WAV.");
     if (info.frames <= 0 || info.channels <= 0 || info.samplerate <= 0)
         refuse(path, "holds no samples.");
     const auto frames = static_cast<std::uint64_t>(info.frames), channels = static_cast<std::uint64_t>(info.channels);
-    if (frames > size / sampleBytes / channels)
+    const bool unknown = flac && info.frames == SF_COUNT_MAX;   // a stream that was not told its length
+    if (!unknown && frames > (flac ? mostSamples : size / sampleBytes) / channels)
         refuse(path, "is damaged: its header claims " + std::to_string(frames) + " samples a channel, more than the file can hold.");
 
-    Wav wav;
-    wav.sampleRate = info.samplerate;
-    wav.channels.assign(channels, std::vector<double>(frames));
+    Wav sound;
+    sound.sampleRate = info.samplerate;
+    sound.channels.assign(channels, {});
+    if (!flac)
+        for (auto& channel : sound.channels)
+            channel.reserve(frames);   // the file has as many bytes
     std::vector<double> interleaved(static_cast<std::size_t>(framesAtOnce) * channels);
     std::size_t done = 0;
-    while (done < frames) {
+    while (unknown || done < frames) {
         const auto read = sf_readf_double(file.get(), interleaved.data(), framesAtOnce);
+        if (read <= 0 && unknown && done > 0)
+            break;
         if (read <= 0)
             refuse(path, "is truncated: only " + std::to_string(done) + " of its " + std::to_string(frames)
                              + " samples a channel can be read; copy it again.");
-        const auto count = std::min(static_cast<std::size_t>(read), static_cast<std::size_t>(frames) - done);
-        for (std::size_t n = 0; n < count; ++n)
-            for (std::size_t c = 0; c < channels; ++c)
-                wav.channels[c][done + n] = interleaved[n * channels + c];
+        const auto count = unknown ? static_cast<std::size_t>(read) : std::min(static_cast<std::size_t>(read), static_cast<std::size_t>(frames) - done);
+        if ((done + count) * channels > mostSamples && flac)
+            refuse(path, "holds more than two thousand million samples; cut it into shorter recordings.");
+        for (std::size_t c = 0; c < channels; ++c)
+            for (std::size_t n = 0; n < count; ++n)
+                sound.channels[c].push_back(interleaved[n * channels + c]);
         done += count;
     }
-    return wav;
+    return sound;
 }
+
+} // namespace
+
+Wav readWav(const fs::path& path) { return readSamples(path, Container::wav); }
+
+Wav readSound(const fs::path& path) { return readSamples(path, Container::sound); }
 
 void writeWav(const fs::path& path, int sampleRate, std::span<const std::vector<double>> channels, SampleFormat format)
 {

@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// What a WAV holds: sample values, full scale 1.0, one vector a channel, all of the same length.
+/// What a WAV, or another file of uncompressed or losslessly compressed sound, holds: sample values, full scale 1.0, one vector a channel, all of the same length.
 struct Wav {
     int sampleRate = 0;   ///< Hz; a WAV has whole ones only
     std::vector<std::vector<double>> channels;
@@ -18,6 +18,9 @@ struct Wav {
 /// samples, or its header claims more than the file has; that is checked before memory is taken.
 /// Samples that are not finite are returned as they are.
 Wav readWav(const std::filesystem::path&);
+
+/// As readWav, and AIFF, CAF and FLAC as well. What a FLAC claims is not believed before it has been read.
+Wav readSound(const std::filesystem::path&);
 
 enum class SampleFormat { float32, float64 };
 

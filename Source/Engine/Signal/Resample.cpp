@@ -6,6 +6,7 @@
 #include <soxr.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace excursion {
@@ -50,6 +51,26 @@ std::vector<double> upsample(std::span<const double> x, int factor)
 
     const auto first = output.begin() + static_cast<std::ptrdiff_t>(pad * L);
     return {first, first + static_cast<std::ptrdiff_t>(x.size() * L)};
+}
+
+std::vector<double> resampled(std::span<const double> x, double step)
+{
+    if (!(step >= 0.01 && step <= 100.0))
+        throw Error(Error::Kind::usage, "A record can be read in steps of 0.01 to 100 of its samples, not " + std::to_string(step) + ".");
+    if (x.empty())
+        return {};
+    const auto count = static_cast<std::size_t>(std::floor(static_cast<double>(x.size() - 1) / step)) + 1;
+    std::vector<double> output(count + 64);
+    const auto io = soxr_io_spec(SOXR_FLOAT64_I, SOXR_FLOAT64_I);
+    auto quality = soxr_quality_spec(SOXR_VHQ, SOXR_HI_PREC_CLOCK);
+    quality.passband_end = 0.96;
+    const auto runtime = soxr_runtime_spec(1);
+    std::size_t done = 0;
+    const auto failure = soxr_oneshot(step, 1.0, 1, x.data(), x.size(), nullptr, output.data(), output.size(), &done, &io, &quality, &runtime);
+    if (failure || done + 2 < count)
+        throw Error(Error::Kind::numerical, std::string("Resampling failed: ") + (failure ? failure : "too few samples came out"));
+    output.resize(count);   // one that rounding left out is zero
+    return output;
 }
 
 } // namespace excursion
