@@ -39,6 +39,7 @@ void addReport(CLI::App&, Terminal&);
 void addEffects(CLI::App&, Terminal&);
 void addSimulate(CLI::App&, Terminal&);
 void addWhatIf(CLI::App&, Terminal&);
+void addParameters(CLI::App&, Terminal&);
 void addPredistort(CLI::App&, Terminal&);
 
 } // namespace excursion::cli

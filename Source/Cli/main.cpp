@@ -129,6 +129,7 @@ int main(int argc, char** argv)
     cli::addEffects(app, terminal);
     cli::addSimulate(app, terminal);
     cli::addWhatIf(app, terminal);
+    cli::addParameters(app, terminal);
     cli::addPredistort(app, terminal);
 
     app.footer(footer);   // last, as the verbs would inherit it
