@@ -167,7 +167,7 @@ bool isTake(const std::string& path)
     std::error_code ignored;
     if (fs::is_directory(path, ignored))
         return !fs::exists(fs::path(path) / "ladder.json", ignored);
-    return endingOf(path) != ".json";
+    return fs::exists(path, ignored) && endingOf(path) != ".json";
 }
 
 void sayWritten(const Json& written, Terminal& terminal)

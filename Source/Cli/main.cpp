@@ -70,7 +70,7 @@ int run(CLI::App& app, cli::Terminal& terminal, std::vector<std::string> argumen
     try {
         requireKnownVerb(app, arguments);
         app.parse(std::move(arguments));
-        return terminal.answer;
+        return terminal.exitZero ? 0 : terminal.answer;
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0)   // --help and --version
             return app.exit(e);
@@ -102,6 +102,7 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", EXCURSION_VERSION);
     app.add_option("--json", terminal.jsonFile, "print one JSON document and nothing else, or write it to FILE.json")
         ->type_name("[FILE.json]");
+    app.add_flag("--exit-zero", terminal.exitZero, "exit with 0, not 1, when the work is done and its answer is no; for scripts that stop at failures");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
     app.require_subcommand(1);
     app.parse_complete_callback([&terminal] {   // before the verb does its work
@@ -131,6 +132,7 @@ int main(int argc, char** argv)
     cli::addWhatIf(app, terminal);
     cli::addParameters(app, terminal);
     cli::addPredistort(app, terminal);
+    cli::addCollect(app, terminal);
 
     app.footer(footer);   // last, as the verbs would inherit it
 
