@@ -15,7 +15,7 @@ namespace excursion {
 
 /// What a quantity of a batch must be, in the unit of the table.
 struct Limits {
-    std::optional<double> least, most;
+    std::optional<double> least {}, most {};
 };
 
 /// One number of every unit, in the unit of datasheets; NaN where a unit does not have it.

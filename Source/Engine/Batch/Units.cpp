@@ -85,13 +85,16 @@ Units readUnits(const std::vector<fs::path>& places, const ReadUnitsOptions& opt
             ladders.push_back(place / ladderName);
         } else {
             const auto before = ladders.size();
-            for (const auto& folder : foldersIn(place)) {
+            const auto folders = foldersIn(place);
+            for (const auto& folder : folders) {
                 if (fs::exists(folder / ladderName, ignored))
                     ladders.push_back(folder / ladderName);
                 else
                     result.unread.push_back({folder.filename().string(), "the folder has no ladder.json"});
             }
-            if (ladders.size() == before)
+            if (options.goOn && folders.empty())
+                result.unread.push_back({nameOf(place / ladderName), "the folder has no ladder.json"});
+            else if (ladders.size() == before)
                 throw Error(Error::Kind::input, "'" + place.string() + "' holds no ladder.json, and neither does a folder in it; give folders that excursion improve --out has "
                                                                      "written.");
         }
