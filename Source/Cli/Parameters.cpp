@@ -37,13 +37,6 @@ struct ParametersArguments {
     bool sheetWanted() const { return !out.empty() || !lawsOut.empty() || !spice.empty(); }
 };
 
-std::string endingOf(const std::string& path)
-{
-    auto text = std::filesystem::path(path).extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 void requireTableName(const std::string& path)
 {
     if (!path.empty() && endingOf(path) != ".csv" && endingOf(path) != ".json")
@@ -69,7 +62,8 @@ void printFigures(const Datasheet& sheet, Terminal& terminal)
             continue;
         }
         const double value = f.value * f.perUnit, error = f.standardError * f.perUnit;
-        rows.push_back({f.symbol, shown(value, error), std::isfinite(error) && error > 0.0 ? significant(error, 2) : "-", f.sheetUnit, f.meaning});
+        rows.push_back({f.symbol, shown(value, error),
+                        std::isfinite(error) && error > 0.0 ? significant(error, 2) : "-", f.sheetUnit, f.meaning});
     }
     terminal.table({"parameter", "value", "std error", "unit", ""}, rows);
     if (!unknown.empty())
@@ -90,12 +84,13 @@ void printInductance(const LossyInductance& inductance, Terminal& terminal)
         std::string text;
         for (const auto& p : form.parameters) {
             const auto unit = displayUnit(p.value, p.unit);
-            text += (text.empty() ? "" : ", ") + p.name + " = " + significant(p.value * unit.factor, 4) + (unit.unit.empty() ? "" : " " + unit.unit);
+            text += (text.empty() ? "" : ", ") + p.name + " = " + significant(p.value * unit.factor, 4)
+                    + (unit.unit.empty() ? "" : " " + unit.unit);
         }
         rows.push_back({form.id, significant(form.errorPercent, 2) + " %", fixed(form.worstDb, 2), text});
     }
-    terminal.say("Lossy inductance from " + significant(inductance.low, 3) + " to " + significant(inductance.high, 4) + " Hz, beside Re = "
-                 + significant(inductance.Re, 4) + " ohm");
+    terminal.say("Lossy inductance from " + significant(inductance.low, 3) + " to " + significant(inductance.high, 4)
+                 + " Hz, beside Re = " + significant(inductance.Re, 4) + " ohm");
     terminal.table({"form", "error", "at most dB", "parameters"}, rows);
     terminal.say("Error: rms of the complex impedance with Re in it, and the largest of its magnitude.");
 }
@@ -104,10 +99,12 @@ void printLaws(const Datasheet& sheet, Terminal& terminal)
 {
     std::vector<std::vector<std::string>> rows;
     for (const auto& law : sheet.laws) {
-        const auto unit = displayUnit(law.value[law.value.size() / 2], law.unit), argument = displayUnit(law.at.back(), law.argumentUnit);
+        const auto unit = displayUnit(law.value[law.value.size() / 2], law.unit),
+                   argument = displayUnit(law.at.back(), law.argumentUnit);
         const auto at = [&](std::size_t k) {
             const double half = 0.5 * (law.high95[k] - law.low95[k]) * unit.factor;
-            return significant(law.value[k] * unit.factor) + (std::isfinite(half) ? " ± " + significant(half, 2) : std::string());
+            return significant(law.value[k] * unit.factor)
+                   + (std::isfinite(half) ? " ± " + significant(half, 2) : std::string());
         };
         rows.push_back({law.name, at(0), at(law.at.size() / 2), at(law.at.size() - 1), unit.unit,
                         law.argument + " = " + significant(law.at.back() * argument.factor, 3) + " " + argument.unit});
@@ -124,14 +121,16 @@ void printLaws(const Datasheet& sheet, Terminal& terminal)
         const auto place = [](const std::optional<double>& metres, double atEnd) {
             return metres ? significant(1e3 * *metres, 3) + " mm" : "not reached (" + significant(atEnd, 3) + " %)";
         };
-        rows.push_back({limit.name + " " + limit.criterion, place(limit.inward, limit.inwardEnd), place(limit.outward, limit.outwardEnd)});
+        rows.push_back({limit.name + " " + limit.criterion, place(limit.inward, limit.inwardEnd),
+                        place(limit.outward, limit.outwardEnd)});
     }
     terminal.say("");
     terminal.table({"limit of the stroke", "inward", "outward"}, rows);
 }
 
 /// The curves of a take or of a model at a level; the files that were written.
-void writeCurves(const ParametersArguments& options, const ScaledModel* given, const Measurement* measured, Json& written, Terminal& terminal)
+void writeCurves(const ParametersArguments& options, const ScaledModel* given, const Measurement* measured,
+                 Json& written, Terminal& terminal)
 {
     Frf impedance, sound;
     Measurement played;
@@ -181,13 +180,18 @@ void sayWritten(const Json& written, Terminal& terminal)
 
 void runOnTake(const ParametersArguments& options, Terminal& terminal)
 {
-    if (options.sheetWanted() || options.mass || options.forceFactor || options.coneArea || !options.band.empty() || !options.inductanceBand.empty())
-        throw Error(Error::Kind::usage, "'" + options.from + "' is a take: only --zma, --frd and --level are for one. Fit a model to it for the rest.");
+    if (options.sheetWanted() || options.mass || options.forceFactor || options.coneArea || !options.band.empty()
+        || !options.inductanceBand.empty())
+        throw Error(Error::Kind::usage,
+                    "'" + options.from
+                        + "' is a take: only --zma, --frd and --level are for one. Fit a model to it for the rest.");
     if (options.zma.empty() && options.frd.empty())
-        throw Error(Error::Kind::usage, "'" + options.from + "' is a take: say with --zma or --frd what to write, or fit a model to it.");
+        throw Error(Error::Kind::usage,
+                    "'" + options.from + "' is a take: say with --zma or --frd what to write, or fit a model to it.");
     auto take = readMeasurement(options.from);
     completeExcitation(take);
-    Json document {{"format", "excursion-parameters"}, {"version", 1}, {"take", options.from}, {"wrote", Json::array()}};
+    Json document {
+        {"format", "excursion-parameters"}, {"version", 1}, {"take", options.from}, {"wrote", Json::array()}};
     writeCurves(options, nullptr, &take, document["wrote"], terminal);
     sayWritten(document["wrote"], terminal);
     terminal.document(document);
@@ -207,7 +211,8 @@ void run(const ParametersArguments& options, Terminal& terminal)
 
     const auto given = withKnown(openDriver(options.from), {options.mass, options.forceFactor, options.coneArea});
     const auto& inductance = options.inductanceBand;
-    const auto sheet = datasheetOf(given, inductance.empty() ? 0.0 : inductance[0], inductance.empty() ? 0.0 : inductance[1], options.points);
+    const auto sheet = datasheetOf(given, inductance.empty() ? 0.0 : inductance[0],
+                                   inductance.empty() ? 0.0 : inductance[1], options.points);
     Json document {{"format", "excursion-parameters"}, {"version", 1}, {"model", options.from}};
     document.update(toJson(sheet));
     auto written = Json::array();
@@ -234,29 +239,45 @@ void run(const ParametersArguments& options, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}   // namespace
 
 void addParameters(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ParametersArguments>();
-    auto* verb = app.add_subcommand("parameters", "Thiele/Small parameters, lossy inductance, laws, SPICE, ZMA and FRD, for other programs")->group(step::use);
-    verb->add_option("MODEL", o->from, "the model, a .json; a ladder or its folder; or a take, for --zma and --frd")->required();
+    auto* verb =
+        app.add_subcommand("parameters",
+                           "Thiele/Small parameters, lossy inductance, laws, SPICE, ZMA and FRD, for other programs")
+            ->group(step::use);
+    verb->add_option("MODEL", o->from, "the model, a .json; a ladder or its folder; or a take, for --zma and --frd")
+        ->required();
     verb->add_option("--out", o->out, "the parameters, a .csv or .json")->type_name("FILE");
-    verb->add_option("--laws", o->lawsOut, "Bl(x), K(x), Cms(x), Le(x), Le(i), Rms(v) with 95 % bands and the limits of the stroke, a .csv or .json")->type_name("FILE");
+    verb->add_option(
+            "--laws", o->lawsOut,
+            "Bl(x), K(x), Cms(x), Le(x), Le(i), Rms(v) with 95 % bands and the limits of the stroke, a .csv or .json")
+        ->type_name("FILE");
     verb->add_option("--points", o->points, "of each law")->check(CLI::Range(3, 100001))->capture_default_str();
     verb->add_option("--mass", o->mass, "moving mass in kg, where voltage and current alone do not show it");
     verb->add_option("--bl", o->forceFactor, "force factor in N/A, in place of the mass");
     verb->add_option("--cone-area", o->coneArea, "area of the cone in m^2");
-    verb->add_option("--inductance-band", o->inductanceBand, "Hz, over which the lossy inductance is fitted; by default from 3 fs to where the model was measured")
-        ->expected(2)->delimiter(',')->type_name("LOW,HIGH");
+    verb->add_option(
+            "--inductance-band", o->inductanceBand,
+            "Hz, over which the lossy inductance is fitted; by default from 3 fs to where the model was measured")
+        ->expected(2)
+        ->delimiter(',')
+        ->type_name("LOW,HIGH");
     verb->add_option("--spice", o->spice, "the linear model as a SPICE subcircuit")->type_name("FILE");
     verb->add_option("--zma", o->zma, "the impedance")->type_name("FILE");
     verb->add_option("--frd", o->frd, "the sound pressure level at 1 m for 2.83 V")->type_name("FILE");
-    verb->add_option("--band", o->band, "Hz, of --zma and --frd; by default where the model was measured")->expected(2)->delimiter(',')->type_name("LOW,HIGH");
-    verb->add_option("--level", o->level, "V rms of --zma and --frd: a model is played a multisine, of a take it is one of its levels; by default "
-                                          "small signals, or the loudest of a take")
+    verb->add_option("--band", o->band, "Hz, of --zma and --frd; by default where the model was measured")
+        ->expected(2)
+        ->delimiter(',')
+        ->type_name("LOW,HIGH");
+    verb->add_option(
+            "--level", o->level,
+            "V rms of --zma and --frd: a model is played a multisine, of a take it is one of its levels; by default "
+            "small signals, or the loudest of a take")
         ->check(CLI::PositiveNumber);
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}   // namespace excursion::cli

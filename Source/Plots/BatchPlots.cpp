@@ -10,10 +10,10 @@
 namespace excursion {
 namespace {
 
-constexpr std::size_t mostNames = 8;    // that stand beside one another below an axis
+constexpr std::size_t mostNames = 8;   // that stand beside one another below an axis
 constexpr std::size_t mostInKey = 4;
 
-} // namespace
+}   // namespace
 
 Plot quantityPlot(const Collection& all, const Quantities& q)
 {
@@ -29,17 +29,20 @@ Plot quantityPlot(const Collection& all, const Quantities& q)
     plot.x.least = first - 0.5;
     plot.x.most = last + 0.5;
     const auto level = [&](const std::string& title, Role role, double value) {
-        plot.series.push_back({title, role, {plot.x.least, plot.x.most}, {value, value}, {}, {}, Series::Shape::line, 0});
+        plot.series.push_back(
+            {title, role, {plot.x.least, plot.x.most}, {value, value}, {}, {}, Series::Shape::line, 0});
     };
     level("median", Role::reference, q.median);
     if (q.limits.least)
         level("limit", Role::after, *q.limits.least);
     if (q.limits.most)
         level(q.limits.least ? "" : "limit", Role::after, *q.limits.most);
-    Series values {"units", Role::measured, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0}, off {"off the batch", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+    Series values {"units", Role::measured, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0},
+        off {"off the batch", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
     const bool banded = std::any_of(q.standardError.begin(), q.standardError.end(), [](double e) { return e > 0.0; });
     for (std::size_t k = 0; k < all.units.size(); ++k) {
-        const double x = first + static_cast<double>(k), error = std::isfinite(q.standardError[k]) ? 1.96 * q.standardError[k] : 0.0;
+        const double x = first + static_cast<double>(k),
+                     error = std::isfinite(q.standardError[k]) ? 1.96 * q.standardError[k] : 0.0;
         values.x.push_back(x);
         values.y.push_back(q.value[k]);
         if (banded) {
@@ -68,11 +71,19 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
     }
     const auto argument = displayUnit(across, laws.argumentUnit), value = displayUnit(up, laws.unit);
     Plot plot;
-    plot.title = laws.name + " of " + std::to_string(laws.ofUnit.size()) + (laws.ofUnit.size() == 1 ? " unit" : " units");
+    plot.title =
+        laws.name + " of " + std::to_string(laws.ofUnit.size()) + (laws.ofUnit.size() == 1 ? " unit" : " units");
     plot.x = {laws.argument, argument.unit, false, 0.0, 0.0, {}};
     plot.y = {laws.name, value.unit, false, 0.0, 0.0, {}};
     const auto draw = [&](const LawTable& law, Role role, const std::string& title) {
-        plot.series.push_back({title, role, scaled(law.at, argument.factor), scaled(law.value, value.factor), {}, {}, Series::Shape::line, 0});
+        plot.series.push_back({title,
+                               role,
+                               scaled(law.at, argument.factor),
+                               scaled(law.value, value.factor),
+                               {},
+                               {},
+                               Series::Shape::line,
+                               0});
     };
     bool first = true;
     for (const auto& [unit, law] : laws.ofUnit)
@@ -90,4 +101,4 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
     return plot;
 }
 
-} // namespace excursion
+}   // namespace excursion

@@ -6,10 +6,11 @@
 
 namespace excursion {
 
-/// A quantity over the units in their order, with the 95 % of its standard errors, the median, the limits and those that lie off.
+/// A quantity over the units in their order, with the 95 % of its standard errors, the median, the limits and those
+/// that lie off.
 Plot quantityPlot(const Collection&, const Quantities&);
 
 /// A law of every unit: the golden one and the outliers stand out.
 Plot lawsPlot(const Collection&, const LawsOfUnits&);
 
-} // namespace excursion
+}   // namespace excursion

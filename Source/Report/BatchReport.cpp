@@ -47,14 +47,25 @@ void addHeadline(Page& page, const Collection& all)
 {
     const auto count = all.units.size();
     const auto of = [](std::size_t n, std::size_t all) { return std::to_string(n) + " of " + std::to_string(all); };
-    const auto outliers = static_cast<std::size_t>(std::count_if(all.units.begin(), all.units.end(), [](const UnitResult& u) { return u.outlier(); }));
+    const auto outliers = static_cast<std::size_t>(
+        std::count_if(all.units.begin(), all.units.end(), [](const UnitResult& u) { return u.outlier(); }));
     if (all.limited)
-        page.headline(of(all.passed, all.measured) + " measured units are within all limits (" + fixedText(all.measured > 0 ? 100.0 * static_cast<double>(all.passed) / static_cast<double>(all.measured) : 0.0, 1) + " %)",
-                      all.passed == count ? "good" : all.passed > 0 ? "warn" : "bad");
+        page.headline(of(all.passed, all.measured) + " measured units are within all limits ("
+                          + fixedText(all.measured > 0
+                                          ? 100.0 * static_cast<double>(all.passed) / static_cast<double>(all.measured)
+                                          : 0.0,
+                                      1)
+                          + " %)",
+                      all.passed == count ? "good"
+                      : all.passed > 0    ? "warn"
+                                          : "bad");
     else
-        page.headline(of(all.measured, count) + (count == 1 ? " unit is measured" : " units are measured") + (outliers > 0 ? ", " + std::to_string(outliers) + " stand out" : ""),
+        page.headline(of(all.measured, count) + (count == 1 ? " unit is measured" : " units are measured")
+                          + (outliers > 0 ? ", " + std::to_string(outliers) + " stand out" : ""),
                       all.measured == count && outliers == 0 ? "good" : "warn");
-    std::vector<std::pair<std::string, std::string>> facts {{"units", std::to_string(count)}, {"measured", std::to_string(all.measured)}, {"outliers", std::to_string(outliers)}};
+    std::vector<std::pair<std::string, std::string>> facts {{"units", std::to_string(count)},
+                                                            {"measured", std::to_string(all.measured)},
+                                                            {"outliers", std::to_string(outliers)}};
     if (all.golden)
         facts.emplace_back("golden unit", all.units[*all.golden].name);
     std::map<std::string, std::size_t> verdicts;
@@ -78,9 +89,12 @@ void addUnits(Page& page, const Collection& all)
     std::vector<std::vector<Page::Cell>> rows;
     for (std::size_t k = 0; k < all.units.size(); ++k) {
         const auto& unit = all.units[k];
-        std::vector<Page::Cell> row {unit.name + (all.golden == k ? " (golden)" : ""), unit.verdict, effectTitles(unit.effects)};
+        std::vector<Page::Cell> row {unit.name + (all.golden == k ? " (golden)" : ""), unit.verdict,
+                                     effectTitles(unit.effects)};
         if (all.limited)
-            row.emplace_back(!unit.measured ? "not measured" : unit.beyondLimits.empty() ? "none" : listOf(unit.beyondLimits));
+            row.emplace_back(!unit.measured              ? "not measured"
+                             : unit.beyondLimits.empty() ? "none"
+                                                         : listOf(unit.beyondLimits));
         auto out = unit.outlying;
         if (!unit.additional.empty())
             out.push_back("has " + effectTitles(unit.additional));
@@ -93,7 +107,8 @@ void addUnits(Page& page, const Collection& all)
         rows.push_back(std::move(row));
     }
     page.table(header, rows);
-    page.note("Distance: rms over the quantities of the loudspeaker of how far the unit is from the median, in units of the spread; the golden unit is the nearest.");
+    page.note("Distance: rms over the quantities of the loudspeaker of how far the unit is from the median, in units "
+              "of the spread; the golden unit is the nearest.");
 }
 
 void addOutliers(Page& page, const Collection& all)
@@ -109,8 +124,9 @@ void addOutliers(Page& page, const Collection& all)
         std::string text;
         for (const auto& name : unit.outlying) {
             const auto& q = *all.find(name);
-            text += (text.empty() ? "" : "; ") + name + " is " + numberOf(q, q.value[k]) + (q.unit.empty() ? "" : " " + q.unit) + " where the batch has " + numberOf(q, q.median) + " \u00b1 "
-                  + numberOf(q, q.spread);
+            text += (text.empty() ? "" : "; ") + name + " is " + numberOf(q, q.value[k])
+                    + (q.unit.empty() ? "" : " " + q.unit) + " where the batch has " + numberOf(q, q.median)
+                    + " \u00b1 " + numberOf(q, q.spread);
         }
         if (!text.empty())
             page.paragraph(text + ".");
@@ -124,7 +140,8 @@ void addOutliers(Page& page, const Collection& all)
             page.paragraph("What its model leaves: " + unit.remainder + ".");
     }
     page.note("A value stands out where it is farther from the median than " + fixedText(all.threshold, 1)
-              + " (1 + 10/(n \u2212 3.5)) times the spread, 1.4826 times the median distance from the median; fewer than five units tell no outlier.");
+              + " (1 + 10/(n \u2212 3.5)) times the spread, 1.4826 times the median distance from the median; fewer "
+                "than five units tell no outlier.");
 }
 
 void addQuantities(Page& page, const Collection& all)
@@ -137,19 +154,26 @@ void addQuantities(Page& page, const Collection& all)
     header.emplace_back("Drift per unit");
     std::vector<std::vector<Page::Cell>> rows;
     for (const auto& q : all.quantities) {
-        std::vector<Page::Cell> row {titleOfQuantity(q), Page::figure(std::to_string(q.known)), Page::figure(numberOf(q, q.median)), Page::figure(numberOf(q, q.spread)),
-                                     Page::figure(numberOf(q, q.least)), Page::figure(numberOf(q, q.most))};
+        std::vector<Page::Cell> row {titleOfQuantity(q),
+                                     Page::figure(std::to_string(q.known)),
+                                     Page::figure(numberOf(q, q.median)),
+                                     Page::figure(numberOf(q, q.spread)),
+                                     Page::figure(numberOf(q, q.least)),
+                                     Page::figure(numberOf(q, q.most))};
         if (all.limited) {
             const auto end = [](const std::optional<double>& v) { return v ? nominal(*v, "1") : std::string(); };
             row.push_back(Page::figure(q.limited() ? end(q.limits.least) + " .. " + end(q.limits.most) : ""));
-            row.push_back(Page::figure(q.limited() ? std::to_string(q.within) + " of " + std::to_string(all.measured) : ""));
+            row.push_back(
+                Page::figure(q.limited() ? std::to_string(q.within) + " of " + std::to_string(all.measured) : ""));
             row.push_back(Page::figure(q.Cpk ? fixedText(*q.Cpk, 2) : q.limited() ? dash : ""));
         }
-        row.push_back(Page::figure(std::isfinite(q.drift) ? withError(q.drift, q.driftError, "1") + (q.drifts() ? " *" : "") : dash));
+        row.push_back(Page::figure(
+            std::isfinite(q.drift) ? withError(q.drift, q.driftError, "1") + (q.drifts() ? " *" : "") : dash));
         rows.push_back(std::move(row));
     }
     page.table(header, rows);
-    page.note(std::string("Spread: 1.4826 times the median distance from the median. Drift: slope over the order of the batch and its standard error; a star where it exceeds four of them.")
+    page.note(std::string("Spread: 1.4826 times the median distance from the median. Drift: slope over the order of "
+                          "the batch and its standard error; a star where it exceeds four of them.")
               + (all.limited ? " Cpk: the nearer limit's distance from the mean over three standard deviations." : ""));
 }
 
@@ -158,8 +182,9 @@ void addPictures(Page& page, const Collection& all)
     std::vector<Plot> plots;
     constexpr std::size_t most = 18;
     for (const auto& q : all.quantities) {
-        const bool off = std::any_of(all.units.begin(), all.units.end(),
-                                     [&](const UnitResult& u) { return std::find(u.outlying.begin(), u.outlying.end(), q.name) != u.outlying.end(); });
+        const bool off = std::any_of(all.units.begin(), all.units.end(), [&](const UnitResult& u) {
+            return std::find(u.outlying.begin(), u.outlying.end(), q.name) != u.outlying.end();
+        });
         const bool always = q.name == "fs" || q.name == "Qts" || q.name == "Re" || q.name == "Bl";
         if (q.known >= 2 && plots.size() < most && (always || off || q.limited() || q.drifts()))
             plots.push_back(quantityPlot(all, q));
@@ -167,7 +192,9 @@ void addPictures(Page& page, const Collection& all)
     if (!plots.empty()) {
         page.section("Over the batch");
         const int columns = columnsFor(plots.size());
-        page.figures(std::move(plots), columns, "Units in the order of the batch; the shade is the 95 % of each value's standard error. Drawn is what has limits, drifts or stands out.");
+        page.figures(std::move(plots), columns,
+                     "Units in the order of the batch; the shade is the 95 % of each value's standard error. Drawn is "
+                     "what has limits, drifts or stands out.");
     }
     plots.clear();
     for (const auto& laws : all.laws)
@@ -195,7 +222,7 @@ void addValues(Page& page, const Collection& all)
     page.table(header, rows);
 }
 
-} // namespace
+}   // namespace
 
 std::string batchHtml(const Collection& all)
 {
@@ -211,4 +238,4 @@ std::string batchHtml(const Collection& all)
 
 void writeBatchReport(const Collection& all, const std::filesystem::path& path) { publish(path, batchHtml(all)); }
 
-} // namespace excursion
+}   // namespace excursion

@@ -8,10 +8,11 @@
 
 namespace excursion {
 
-/// The page of a batch: yield, units, outliers, all quantities over the batch, and the laws of all units. One self-contained HTML page as reportHtml();
-/// same collection, same bytes. Throws Error (numerical) when gnuplot is missing.
+/// The page of a batch: yield, units, outliers, all quantities over the batch, and the laws of all units. One
+/// self-contained HTML page as reportHtml(); same collection, same bytes. Throws Error (numerical) when gnuplot is
+/// missing.
 std::string batchHtml(const Collection&);
 
 void writeBatchReport(const Collection&, const std::filesystem::path&);
 
-} // namespace excursion
+}   // namespace excursion

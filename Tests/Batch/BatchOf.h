@@ -12,7 +12,8 @@
 namespace excursion::test {
 
 /// A midbass whose K, m and Bl are so many times those of the first one, with those effects.
-inline Model midbassOf(double K, double m = 1.0, double Bl = 1.0, const std::vector<std::string>& effects = {"stiffness"})
+inline Model midbassOf(double K, double m = 1.0, double Bl = 1.0,
+                       const std::vector<std::string>& effects = {"stiffness"})
 {
     auto model = makeModel("electrodynamic");
     model.name = "midbass";
@@ -21,7 +22,12 @@ inline Model midbassOf(double K, double m = 1.0, double Bl = 1.0, const std::vec
     model.baseParameter("Bl").value = 5.0 * Bl;
     model.path.parameters[0].value = 0.0132;
     for (const auto& id : effects) {
-        const Extent extent {.displacement = 3.03e-3, .velocity = 0.5, .current = 2.0, .lowFrequency = 20.0, .highFrequency = 5000.0, .degree = 2};
+        const Extent extent {.displacement = 3.03e-3,
+                             .velocity = 0.5,
+                             .current = 2.0,
+                             .lowFrequency = 20.0,
+                             .highFrequency = 5000.0,
+                             .degree = 2};
         model = withEffect(std::move(model), effectNamed(id), extent);
         model.components.back().parameters[1].value = id == "stiffness" ? 300.0 * K : -0.3;
     }
@@ -59,4 +65,4 @@ inline Unit unitOf(const std::string& name, Model model, Verdict verdict = Verdi
     return unit;
 }
 
-} // namespace excursion::test
+}   // namespace excursion::test

@@ -24,13 +24,15 @@ Units tenUnits()
     const double K[] = {1.0, 1.002, 0.999, 1.001, 0.998, 1.0005, 1.03, 0.9995, 1.0015, 0.9985};
     for (int k = 0; k < 10; ++k)
         units.units.push_back(unitOf("unit-" + std::to_string(k + 1),
-                                     midbassOf(K[k], 1.0, 1.0, k == 8 ? std::vector<std::string> {"stiffness", "force-factor"} : std::vector<std::string> {"stiffness"})));
+                                     midbassOf(K[k], 1.0, 1.0,
+                                               k == 8 ? std::vector<std::string> {"stiffness", "force-factor"}
+                                                      : std::vector<std::string> {"stiffness"})));
     return units;
 }
 
 double resonanceOf(double K) { return std::sqrt(1800.0 * K / 0.0143) / (2.0 * 3.14159265358979323846); }
 
-} // namespace
+}   // namespace
 
 TEST_CASE("Medians, spreads and trends of a batch", "[batch]")
 {
@@ -88,7 +90,8 @@ TEST_CASE("A batch that scatters evenly has no outlier, whatever its size", "[ba
     for (const std::size_t count : {3U, 5U, 6U, 9U, 15U}) {
         Units units;
         for (std::size_t k = 0; k < count; ++k)
-            units.units.push_back(unitOf(std::to_string(k), midbassOf(1.0 + 1e-3 * static_cast<double>((7 * k) % count))));
+            units.units.push_back(
+                unitOf(std::to_string(k), midbassOf(1.0 + 1e-3 * static_cast<double>((7 * k) % count))));
         for (const auto& unit : collect(units, {}).units)
             CHECK_FALSE(unit.outlier());
     }
@@ -98,7 +101,8 @@ TEST_CASE("Drift is a slope with its error", "[batch]")
 {
     Units units;
     for (int k = 0; k < 8; ++k)
-        units.units.push_back(unitOf(std::to_string(k), midbassOf(1.0, 1.0 + 2e-3 * k + (k % 2 == 0 ? 2e-4 : -2e-4), k % 3 == 1 ? 1.001 : 0.999)));
+        units.units.push_back(unitOf(std::to_string(k), midbassOf(1.0, 1.0 + 2e-3 * k + (k % 2 == 0 ? 2e-4 : -2e-4),
+                                                                  k % 3 == 1 ? 1.001 : 0.999)));
     const auto all = collect(units, {});
     const auto& mass = *all.find("Mms");
     CHECK(mass.drift == Approx(14.3 * 2e-3).epsilon(0.05));
@@ -171,7 +175,9 @@ TEST_CASE("The table does not depend on where the ladders are, and names are in 
     CHECK(collectionCsv(a) == collectionCsv(b));
     CHECK(toJson(a).dump() == toJson(b).dump());
     CHECK(collect(readUnits(parts, {UnitOrder::asGiven, false}), {}).units[0].name == "unit-10");
-    CHECK_THAT(collectionCsv(a), Catch::StartsWith("unit,verdict,effects,passed,beyond_limits,outlying,distance,Re [\u03a9],Re error,") && Catch::Contains("\nunit-9,complete,force-factor; stiffness,,,"));
+    CHECK_THAT(collectionCsv(a),
+               Catch::StartsWith("unit,verdict,effects,passed,beyond_limits,outlying,distance,Re [\u03a9],Re error,")
+                   && Catch::Contains("\nunit-9,complete,force-factor; stiffness,,,"));
     CHECK(collectionCsv(a).find("nan") == std::string::npos);
 }
 
@@ -202,12 +208,14 @@ TEST_CASE("What is no batch is refused, or told beside the table", "[batch]")
 TEST_CASE("Limits in a file", "[batch]")
 {
     const Scratch scratch;
-    const auto limits = readLimits(scratch.file("good.json", R"({"fs": {"min": 45, "max": 55.5}, "Qts": {"max": 0.6}})"));
+    const auto limits =
+        readLimits(scratch.file("good.json", R"({"fs": {"min": 45, "max": 55.5}, "Qts": {"max": 0.6}})"));
     CHECK(limits.size() == 2);
     CHECK(limits.at("fs").least == 45.0);
     CHECK(limits.at("fs").most == 55.5);
     CHECK_FALSE(limits.at("Qts").least);
-    for (const char* bad : {"", "[]", "{}", R"({"fs": 5})", R"({"fs": {}})", R"({"fs": {"low": 1}})", R"({"fs": {"min": "1"}})", R"({"fs": {"min": 2, "max": 1}})", R"({"fs": {"min": null}})"}) {
+    for (const char* bad : {"", "[]", "{}", R"({"fs": 5})", R"({"fs": {}})", R"({"fs": {"low": 1}})",
+                            R"({"fs": {"min": "1"}})", R"({"fs": {"min": 2, "max": 1}})", R"({"fs": {"min": null}})"}) {
         INFO(bad);
         CHECK_THROWS_AS(readLimits(scratch.file("bad.json", bad)), Error);
     }

@@ -29,7 +29,8 @@ private:
         const double factors[] = {1.0, 1.004, 0.998, 1.3, 1.002, 0.996};
         for (int k = 0; k < 6; ++k) {
             auto other = ladder;
-            other["rungs"].back()["model"]["base"]["parameters"][5]["value"] = factors[k] * ladder["rungs"].back()["model"]["base"]["parameters"][5]["value"].get<double>();
+            other["rungs"].back()["model"]["base"]["parameters"][5]["value"] =
+                factors[k] * ladder["rungs"].back()["model"]["base"]["parameters"][5]["value"].get<double>();
             const auto place = scratch_ / ("ladders/unit-" + std::to_string(k + 8)) / "ladder.json";
             std::filesystem::create_directories(place.parent_path());
             std::ofstream(place) << other.dump();
@@ -39,7 +40,7 @@ private:
     Scratch scratch_;
 };
 
-} // namespace
+}   // namespace
 
 TEST_CASE("collect puts the ladders of a batch in one table", "[cli]")
 {
@@ -47,7 +48,8 @@ TEST_CASE("collect puts the ladders of a batch in one table", "[cli]")
     const Scratch scratch;
     const auto csv = (scratch / "units.csv").string(), json = (scratch / "units.json").string();
     const auto limits = scratch.file("limits.json", R"({"fs": {"min": 1, "max": 5000}, "Qts": {"max": 50}})").string();
-    const auto told = runProgram(scratch.folder(), {"collect", batch.ladders(), "--limits", limits, "--out", csv, "--out", json, "--json"});
+    const auto told = runProgram(
+        scratch.folder(), {"collect", batch.ladders(), "--limits", limits, "--out", csv, "--out", json, "--json"});
     INFO(told.err);
     REQUIRE(told.code == 0);
     const auto document = documentOf(told, "excursion-collection");
@@ -64,14 +66,17 @@ TEST_CASE("collect puts the ladders of a batch in one table", "[cli]")
     // The answer is no: 1, or 0 for a script that stops at failures.
     const auto tight = scratch.file("tight.json", R"({"fs": {"max": 1}})").string();
     CHECK(runProgram(scratch.folder(), {"collect", batch.ladders(), "--limits", tight, "--quiet"}).code == 1);
-    CHECK(runProgram(scratch.folder(), {"--exit-zero", "collect", batch.ladders(), "--limits", tight, "--quiet"}).code == 0);
-    CHECK(runProgram(scratch.folder(), {"collect", batch.ladders(), "--limits", tight, "--quiet", "--exit-zero"}).code == 0);
+    CHECK(runProgram(scratch.folder(), {"--exit-zero", "collect", batch.ladders(), "--limits", tight, "--quiet"}).code
+          == 0);
+    CHECK(runProgram(scratch.folder(), {"collect", batch.ladders(), "--limits", tight, "--quiet", "--exit-zero"}).code
+          == 0);
     // A failure stays one.
     CHECK(runProgram(scratch.folder(), {"--exit-zero", "collect", (scratch / "none").string()}).code == 3);
 
     // parameters takes a ladder's folder and its document.
     const auto ladder = batch.ladders() + "/unit-8";
-    const auto a = runProgram(scratch.folder(), {"parameters", ladder, "--json"}), b = runProgram(scratch.folder(), {"parameters", ladder + "/ladder.json", "--json"});
+    const auto a = runProgram(scratch.folder(), {"parameters", ladder, "--json"}),
+               b = runProgram(scratch.folder(), {"parameters", ladder + "/ladder.json", "--json"});
     REQUIRE(a.code == 0);
     CHECK(Json::parse(a.out).at("thieleSmall") == Json::parse(b.out).at("thieleSmall"));
     for (const auto& f : Json::parse(a.out).at("thieleSmall"))
@@ -84,13 +89,15 @@ TEST_CASE("collect refuses what is no batch", "[cli]")
 {
     const auto& batch = Batch::get();
     const Scratch scratch;
-    const auto limits = scratch.file("limits.json", R"({"Fs": {"min": 1}})").string(), broken = scratch.file("broken.json", R"({"fs": {"min": )").string();
+    const auto limits = scratch.file("limits.json", R"({"Fs": {"min": 1}})").string(),
+               broken = scratch.file("broken.json", R"({"fs": {"min": )").string();
     refusedWith(3, {"collect", (scratch / "none").string()}, scratch, "none");
     refusedWith(3, {"collect", scratch.folder().string()}, scratch, "holds no ladder.json");
     refusedWith(2, {"collect"}, scratch, "DIR");
     refusedWith(2, {"collect", batch.ladders(), "--limits", limits}, scratch, "\"Fs\"");
     refusedWith(3, {"collect", batch.ladders(), "--limits", broken}, scratch, "broken.json");
-    refusedWith(2, {"collect", batch.ladders(), "--out", (scratch / "units.xls").string()}, scratch, ".csv, .html or .json");
+    refusedWith(2, {"collect", batch.ladders(), "--out", (scratch / "units.xls").string()}, scratch,
+                ".csv, .html or .json");
     refusedWith(2, {"collect", batch.ladders(), "--at", "-0.001"}, scratch, "positive");
     refusedWith(3, {"collect", batch.ladders(), batch.ladders() + "/unit-8"}, scratch, "Two units");
 }

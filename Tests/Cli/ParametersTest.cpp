@@ -20,7 +20,14 @@ Json parameter(const std::string& name, const std::string& unit, double value, b
 Json effect(const std::string& id, const std::vector<std::tuple<std::string, std::string, double>>& numbers)
 {
     Json result {{"id", id},
-                 {"extent", {{"displacement", 3e-3}, {"velocity", 1.0}, {"current", 3.0}, {"lowFrequency", 15.0}, {"highFrequency", 10000.0}, {"degree", 2}, {"scale", id == "side-resonance" ? 0.0143 : 1800.0}}}};
+                 {"extent",
+                  {{"displacement", 3e-3},
+                   {"velocity", 1.0},
+                   {"current", 3.0},
+                   {"lowFrequency", 15.0},
+                   {"highFrequency", 10000.0},
+                   {"degree", 2},
+                   {"scale", id == "side-resonance" ? 0.0143 : 1800.0}}}};
     for (const auto& [name, unit, value] : numbers)
         result["parameters"].push_back(parameter(name, unit, value));
     return result;
@@ -30,13 +37,20 @@ Json effect(const std::string& id, const std::vector<std::tuple<std::string, std
 std::string modelFile(const Scratch& scratch, const Json& effects, bool alone = false)
 {
     const Json model {
-        {"format", "excursion-model"}, {"version", 1}, {"name", "midbass"},
-        {"base", {{"id", "electrodynamic"},
-                  {"parameters", {parameter("Re", "ohm", 3.3), parameter("Le", "H", 66e-6), parameter("Bl", "N/A", 4.95),
-                                  parameter("m", "kg", 0.01435, !alone), parameter("Rms", "N s/m", 0.786), parameter("K", "N/m", 1852.0)}}}},
+        {"format", "excursion-model"},
+        {"version", 1},
+        {"name", "midbass"},
+        {"base",
+         {{"id", "electrodynamic"},
+          {"parameters",
+           {parameter("Re", "ohm", 3.3), parameter("Le", "H", 66e-6), parameter("Bl", "N/A", 4.95),
+            parameter("m", "kg", 0.01435, !alone), parameter("Rms", "N s/m", 0.786), parameter("K", "N/m", 1852.0)}}}},
         {"effects", effects},
-        {"path", {{"parameters", {parameter("Sd", "m^2", alone ? 0.01 : 0.0132, false), parameter("tau", "s", 0.0, false)}}, {"microphoneDistance", 1.0}}},
-        {"covariance", nullptr}, {"laws", Json::array()}};
+        {"path",
+         {{"parameters", {parameter("Sd", "m^2", alone ? 0.01 : 0.0132, false), parameter("tau", "s", 0.0, false)}},
+          {"microphoneDistance", 1.0}}},
+        {"covariance", nullptr},
+        {"laws", Json::array()}};
     const auto file = (scratch / "model.json").string();
     std::ofstream(file) << model.dump(2);
     return file;
@@ -44,11 +58,15 @@ std::string modelFile(const Scratch& scratch, const Json& effects, bool alone = 
 
 Json everyLinearEffect()
 {
-    return {effect("eddy-currents", {{"Ks", "ohm s^a", 0.012}, {"a", "1", 0.68}}),
-            effect("creep", {{"S", "N/m", 300.0}, {"centre", "log10 Hz", 1.0}, {"width", "decades", 3.0}, {"tilt", "1", 0.1}}),
-            effect("vented-box", {{"Kb", "N/m", 1500.0}, {"fB", "Hz", 42.0}, {"1/QP", "1", 0.02}, {"1/QL", "1", 0.1}, {"1/QA", "1", 0.03}}),
-            effect("side-resonance", {{"mu1", "kg", 4e-4}, {"f1", "Hz", 900.0}, {"1/Q1", "1", 0.2}}),
-            effect("stiffness", {{"c1", "N/m", 0.0}, {"c2", "N/m", 550.0}})};
+    return {
+        effect("eddy-currents", {{"Ks", "ohm s^a", 0.012}, {"a", "1", 0.68}}),
+        effect("creep",
+               {{"S", "N/m", 300.0}, {"centre", "log10 Hz", 1.0}, {"width", "decades", 3.0}, {"tilt", "1", 0.1}}),
+        effect(
+            "vented-box",
+            {{"Kb", "N/m", 1500.0}, {"fB", "Hz", 42.0}, {"1/QP", "1", 0.02}, {"1/QL", "1", 0.1}, {"1/QA", "1", 0.03}}),
+        effect("side-resonance", {{"mu1", "kg", 4e-4}, {"f1", "Hz", 900.0}, {"1/Q1", "1", 0.2}}),
+        effect("stiffness", {{"c1", "N/m", 0.0}, {"c2", "N/m", 550.0}})};
 }
 
 std::vector<std::vector<double>> rowsOf(const std::string& file)
@@ -74,15 +92,16 @@ const Json& figure(const Json& document, const std::string& symbol)
     throw std::out_of_range(symbol);
 }
 
-} // namespace
+}   // namespace
 
 TEST_CASE("parameters writes every file that it is asked for", "[cli]")
 {
     const Scratch scratch;
     const auto model = modelFile(scratch, everyLinearEffect());
     const auto at = [&](const char* name) { return (scratch / name).string(); };
-    const auto told = runProgram(scratch.folder(), {"parameters", model, "--out", at("ts.csv"), "--laws", at("laws.csv"), "--spice", at("woofer.cir"), "--zma", at("z.zma"),
-                                                   "--frd", at("p.frd"), "--inductance-band", "200,8000", "--json"});
+    const auto told = runProgram(scratch.folder(), {"parameters", model, "--out", at("ts.csv"), "--laws",
+                                                    at("laws.csv"), "--spice", at("woofer.cir"), "--zma", at("z.zma"),
+                                                    "--frd", at("p.frd"), "--inductance-band", "200,8000", "--json"});
     INFO(told.err);
     REQUIRE(told.code == 0);
     const auto document = documentOf(told, "excursion-parameters");
@@ -113,9 +132,14 @@ TEST_CASE("ngspice plays the netlist with the engine's impedance", "[cli]")
     }
     const Scratch scratch;
     const auto model = modelFile(scratch, everyLinearEffect());
-    REQUIRE(runProgram(scratch.folder(), {"parameters", model, "--spice", (scratch / "woofer.cir").string(), "--zma", (scratch / "z.zma").string(), "--band", "10,10240"}).code == 0);
-    scratch.file("deck.cir", "The impedance of the subcircuit\n.include woofer.cir\nV1 in 0 AC 1\nX1 in 0 cone woofer\n.control\nac oct 48 10 10240\n"
-                             "set wr_singlescale\nset numdgt=12\nlet zr=real(-1/i(v1))\nlet zi=imag(-1/i(v1))\nlet vr=mag(v(cone))\nwrdata out.txt zr zi vr\nquit\n.endc\n.end\n");
+    REQUIRE(runProgram(scratch.folder(), {"parameters", model, "--spice", (scratch / "woofer.cir").string(), "--zma",
+                                          (scratch / "z.zma").string(), "--band", "10,10240"})
+                .code
+            == 0);
+    scratch.file("deck.cir", "The impedance of the subcircuit\n.include woofer.cir\nV1 in 0 AC 1\nX1 in 0 cone "
+                             "woofer\n.control\nac oct 48 10 10240\n"
+                             "set wr_singlescale\nset numdgt=12\nlet zr=real(-1/i(v1))\nlet zi=imag(-1/i(v1))\nlet "
+                             "vr=mag(v(cone))\nwrdata out.txt zr zi vr\nquit\n.endc\n.end\n");
     const auto command = "cd '" + scratch.folder().string() + "' && timeout 60 ngspice -b deck.cir >log.txt 2>&1";
     std::system(command.c_str());   // its exit code does not tell whether it worked
     INFO(bytesOf(scratch / "log.txt"));
@@ -139,15 +163,19 @@ TEST_CASE("parameters of an impedance alone say what they rest on", "[cli]")
 {
     const Scratch scratch;
     const auto model = modelFile(scratch, Json::array(), true);
-    const auto alone = documentOf(runProgram(scratch.folder(), {"parameters", model, "--json"}), "excursion-parameters");
+    const auto alone =
+        documentOf(runProgram(scratch.folder(), {"parameters", model, "--json"}), "excursion-parameters");
     CHECK(figure(alone, "Mms").at("value").is_null());
     CHECK_THAT(figure(alone, "Mms").at("why").get<std::string>(), Catch::Contains("moving mass"));
     CHECK(figure(alone, "Qts").at("value").is_number());
     CHECK(alone.at("stroke").is_null());
-    const auto known = documentOf(runProgram(scratch.folder(), {"parameters", model, "--mass", "0.02", "--cone-area", "0.0133", "--json"}), "excursion-parameters");
+    const auto known = documentOf(
+        runProgram(scratch.folder(), {"parameters", model, "--mass", "0.02", "--cone-area", "0.0133", "--json"}),
+        "excursion-parameters");
     CHECK(figure(known, "Mms").at("sheetValue").get<double>() == Approx(20.0));
     CHECK(figure(known, "Qts") == figure(alone, "Qts"));
-    CHECK(figure(known, "Vas").at("value").get<double>() == Approx(1.2 * 343.0 * 343.0 * 0.0133 * 0.0133 / (1852.0 * 0.02 / 0.01435)));
+    CHECK(figure(known, "Vas").at("value").get<double>()
+          == Approx(1.2 * 343.0 * 343.0 * 0.0133 * 0.0133 / (1852.0 * 0.02 / 0.01435)));
     refusedWith(4, {"parameters", model, "--frd", (scratch / "p.frd").string()}, scratch, "mass");
     refusedWith(2, {"parameters", model, "--mass", "0.02", "--bl", "5"}, scratch, "one of the two");
     refusedWith(2, {"parameters", model, "--mass", "0"}, scratch, "positive");
@@ -158,7 +186,8 @@ TEST_CASE("parameters of a measured model, a ladder's folder, and of a take", "[
 {
     const Scratch scratch;
     const auto& chain = Chain::get();
-    const auto measured = documentOf(runProgram(scratch.folder(), {"parameters", chain.model(), "--json"}), "excursion-parameters");
+    const auto measured =
+        documentOf(runProgram(scratch.folder(), {"parameters", chain.model(), "--json"}), "excursion-parameters");
     CHECK(figure(measured, "fs").at("standardError").get<double>() > 0.0);
     CHECK(figure(measured, "Mms").at("standardError").get<double>() > 0.0);
     CHECK(figure(measured, "Mms").at("value").get<double>() > 0.0);
@@ -169,7 +198,8 @@ TEST_CASE("parameters of a measured model, a ladder's folder, and of a take", "[
     REQUIRE(text.code == 0);
     CHECK(rowsOf(zma).size() > 20);
     refusedWith(4, {"parameters", chain.take(), "--frd", (scratch / "p.frd").string()}, scratch, "pressure");
-    refusedWith(4, {"parameters", chain.take(), "--zma", (scratch / "a.zma").string(), "--level", "1000"}, scratch, "it has");
+    refusedWith(4, {"parameters", chain.take(), "--zma", (scratch / "a.zma").string(), "--level", "1000"}, scratch,
+                "it has");
     refusedWith(2, {"parameters", chain.take()}, scratch, "is a take");
     refusedWith(2, {"parameters", chain.take(), "--spice", (scratch / "a.cir").string()}, scratch, "is a take");
 }

@@ -18,7 +18,8 @@ Model inIron(double K, double a, double Le = 1e-9)
 {
     auto model = makeModel("electrodynamic");
     model.baseParameter("Le").value = Le;
-    const Extent extent {.displacement = 2e-3, .velocity = 0.5, .current = 2.0, .lowFrequency = 20.0, .highFrequency = 10000.0};
+    const Extent extent {
+        .displacement = 2e-3, .velocity = 0.5, .current = 2.0, .lowFrequency = 20.0, .highFrequency = 10000.0};
     model = withEffect(std::move(model), effectNamed("eddy-currents"), extent);
     model.components.back().parameters[0].value = K;
     model.components.back().parameters[1].value = a;
@@ -41,7 +42,7 @@ double parameter(const LossyForm& form, const std::string& name)
     throw std::out_of_range(name);
 }
 
-} // namespace
+}   // namespace
 
 TEST_CASE("A semi-inductance is found where there is one", "[datasheet]")
 {
@@ -78,7 +79,8 @@ TEST_CASE("The errors that are told are those of the forms", "[datasheet]")
         double sum = 0.0, worst = 0.0;
         int count = 0;
         for (double f = 200.0; f < 8000.0; f *= std::exp2(1.0 / 96.0), ++count) {
-            const auto Z = blockedImpedance(model, {f}).front(), fitted = found.Re + impedanceOf(form, 2.0 * std::numbers::pi * f);
+            const auto Z = blockedImpedance(model, {f}).front(),
+                       fitted = found.Re + impedanceOf(form, 2.0 * std::numbers::pi * f);
             sum += std::norm((fitted - Z) / Z);
             worst = std::max(worst, std::abs(20.0 * std::log10(std::abs(fitted / Z))));
         }
@@ -92,12 +94,19 @@ TEST_CASE("The forms are what other programs reckon with", "[datasheet]")
 {
     const double w = 2.0 * std::numbers::pi * 1000.0;
     const std::complex<double> j(0.0, 1.0);
-    const LossyForm lr3 {"lr3", "", {{"Le", "H", 1e-4}, {"L2", "H", 5e-4}, {"R2", "ohm", 3.0}, {"L3", "H", 2e-4}, {"R3", "ohm", 9.0}}};
-    CHECK(std::abs(impedanceOf(lr3, w) - (j * w * 1e-4 + 1.0 / (1.0 / (j * w * 5e-4) + 1.0 / 3.0) + 1.0 / (1.0 / (j * w * 2e-4) + 1.0 / 9.0))) < 1e-12);
+    const LossyForm lr3 {
+        "lr3", "", {{"Le", "H", 1e-4}, {"L2", "H", 5e-4}, {"R2", "ohm", 3.0}, {"L3", "H", 2e-4}, {"R3", "ohm", 9.0}}};
+    CHECK(
+        std::abs(impedanceOf(lr3, w)
+                 - (j * w * 1e-4 + 1.0 / (1.0 / (j * w * 5e-4) + 1.0 / 3.0) + 1.0 / (1.0 / (j * w * 2e-4) + 1.0 / 9.0)))
+        < 1e-12);
     const LossyForm leach {"semi-inductance", "", {{"K", "", 0.02}, {"n", "", 0.7}}};
     CHECK(std::abs(impedanceOf(leach, w) - 0.02 * std::pow(j * w, 0.7)) < 1e-12);
-    const LossyForm thorborg {"thorborg-futtrup", "", {{"Leb", "H", 5e-5}, {"Le", "H", 1e-3}, {"Ke", "", 0.06}, {"Rss", "ohm", 50.0}}};
-    CHECK(std::abs(impedanceOf(thorborg, w) - (j * w * 5e-5 + 1.0 / (1.0 / (j * w * 1e-3) + 1.0 / (0.06 * std::sqrt(j * w)) + 1.0 / 50.0))) < 1e-12);
+    const LossyForm thorborg {
+        "thorborg-futtrup", "", {{"Leb", "H", 5e-5}, {"Le", "H", 1e-3}, {"Ke", "", 0.06}, {"Rss", "ohm", 50.0}}};
+    CHECK(std::abs(impedanceOf(thorborg, w)
+                   - (j * w * 5e-5 + 1.0 / (1.0 / (j * w * 1e-3) + 1.0 / (0.06 * std::sqrt(j * w)) + 1.0 / 50.0)))
+          < 1e-12);
 }
 
 TEST_CASE("A plain inductance, a band that is none and a driver without a coil", "[datasheet]")

@@ -21,7 +21,13 @@ Model bent()
     model.name = "caf\u00e9\n.END";
     model.path.parameters[0].value = 0.0133;
     for (const auto* id : {"stiffness", "force-factor", "inductance-current"}) {
-        model = withEffect(std::move(model), effectNamed(id), Extent {.displacement = 3e-3, .velocity = 0.5, .current = 2.0, .lowFrequency = 20.0, .highFrequency = 5000.0, .degree = 2});
+        model = withEffect(std::move(model), effectNamed(id),
+                           Extent {.displacement = 3e-3,
+                                   .velocity = 0.5,
+                                   .current = 2.0,
+                                   .lowFrequency = 20.0,
+                                   .highFrequency = 5000.0,
+                                   .degree = 2});
         auto& p = model.components.back().parameters;
         p[1].value = std::string(id) == "stiffness" ? 400.0 : std::string(id) == "force-factor" ? -0.5 : -2e-5;
     }
@@ -39,7 +45,7 @@ const LawTable& named(const std::vector<LawTable>& laws, const std::string& name
     throw std::out_of_range(name);
 }
 
-} // namespace
+}   // namespace
 
 TEST_CASE("Laws are told over the range with their bands, and the compliance as the reciprocal", "[datasheet]")
 {
@@ -68,9 +74,11 @@ TEST_CASE("A datasheet as CSV and JSON", "[datasheet]")
 {
     const auto sheet = datasheetOf({bent(), false, false}, 0.0, 0.0, 5);
     const auto csv = parametersCsv(sheet), lawText = lawsCsv(sheet);
-    CHECK_THAT(csv, Catch::StartsWith("symbol,value,standard_error,unit,remark\nRe,6,0.006") && Catch::Contains("\nMms,10,0.00") && Catch::Contains("\nSd,133,"));
+    CHECK_THAT(csv, Catch::StartsWith("symbol,value,standard_error,unit,remark\nRe,6,0.006")
+                        && Catch::Contains("\nMms,10,0.00") && Catch::Contains("\nSd,133,"));
     CHECK(csv.find("nan") == std::string::npos);
-    CHECK_THAT(lawText, Catch::Contains("K(x),x,m,0,2000,") && Catch::Contains("limit,force factor Bl(x) falls to 82 %,m,-0.00"));
+    CHECK_THAT(lawText, Catch::Contains("K(x),x,m,0,2000,")
+                            && Catch::Contains("limit,force factor Bl(x) falls to 82 %,m,-0.00"));
     const auto document = toJson(sheet);
     CHECK(document.at("thieleSmall")[3].at("symbol") == "Mms");
     CHECK(document.at("thieleSmall")[3].at("value").get<double>() == Approx(0.01));
@@ -92,7 +100,8 @@ TEST_CASE("Curves of small signals", "[datasheet]")
     const auto Z = impedanceCurve(model, {1e-3}), sound = soundCurve(given, {20000.0});
     CHECK(Z.value[0].real() == Approx(6.0).epsilon(1e-6));
     // Far above all else p = rho Sd/(2 pi) a at 1 m with a = Bl u/(j w Le m): no flight, -90 degrees.
-    const double expected = 2.83 / 20e-6 * 1.2 * 0.0133 / (2.0 * std::numbers::pi) * 5.0 / (2.0 * std::numbers::pi * 20000.0 * 3e-4 * 0.01);
+    const double expected =
+        2.83 / 20e-6 * 1.2 * 0.0133 / (2.0 * std::numbers::pi) * 5.0 / (2.0 * std::numbers::pi * 20000.0 * 3e-4 * 0.01);
     CHECK(std::abs(sound.value[0]) == Approx(expected).epsilon(0.05));
     CHECK(std::arg(sound.value[0]) == Approx(-0.5 * std::numbers::pi).margin(0.2));
     CHECK_THROWS_AS(soundCurve({model, true, false}, {100.0}), Error);
@@ -104,7 +113,8 @@ TEST_CASE("Curves of small signals", "[datasheet]")
 TEST_CASE("Played quietly a model has its linear impedance, played loudly another one", "[datasheet]")
 {
     const auto model = bent();
-    const auto quiet = impedanceCurve(playedAt(model, 1e-3, 30.0, 1000.0)), loud = impedanceCurve(playedAt(model, 8.0, 30.0, 1000.0));
+    const auto quiet = impedanceCurve(playedAt(model, 1e-3, 30.0, 1000.0)),
+               loud = impedanceCurve(playedAt(model, 8.0, 30.0, 1000.0));
     const auto linear = impedanceCurve(model, quiet.frequency);
     double worst = 0.0, change = 0.0;
     for (std::size_t k = 0; k < quiet.value.size(); ++k) {
@@ -123,8 +133,12 @@ TEST_CASE("A netlist is plain ASCII and says what it leaves out", "[datasheet]")
     const auto text = spiceNetlist(bent(), "12 \u00b5 woofer");
     for (const char c : text)
         CHECK((c == '\n' || (c >= 32 && c < 127)));
-    CHECK_THAT(text, Catch::Contains(".SUBCKT d12____woofer plus minus cone\n") && Catch::Contains("Left out, as they are no linear part of coil and cone: stiffness, force-factor, inductance-current")
-                         && Catch::EndsWith(".ENDS d12____woofer\n"));
+    CHECK_THAT(
+        text,
+        Catch::Contains(".SUBCKT d12____woofer plus minus cone\n")
+            && Catch::Contains(
+                "Left out, as they are no linear part of coil and cone: stiffness, force-factor, inductance-current")
+            && Catch::EndsWith(".ENDS d12____woofer\n"));
     CHECK(text.find("\n.END\n") == std::string::npos);   // a name cannot end the deck
     CHECK_THAT(spiceNetlist(makeModel("mechanical"), ""), Catch::Contains(".SUBCKT driver cone\n"));
 }

@@ -32,14 +32,22 @@ Model midbass(double Le = 3e-4)
 
 Model withNumbers(Model model, const std::string& effect, const std::vector<double>& numbers)
 {
-    const Extent extent {.displacement = 2e-3, .velocity = 0.5, .current = 2.0, .lowFrequency = 15.0, .highFrequency = 5000.0, .degree = 2};
+    const Extent extent {.displacement = 2e-3,
+                         .velocity = 0.5,
+                         .current = 2.0,
+                         .lowFrequency = 15.0,
+                         .highFrequency = 5000.0,
+                         .degree = 2};
     model = withEffect(std::move(model), effectNamed(effect), extent);
     for (std::size_t k = 0; k < numbers.size(); ++k)
         model.components.back().parameters[k].value = numbers[k];
     return model;
 }
 
-double valueOf(const std::vector<DatasheetFigure>& figures, const char* symbol) { return figureNamed(figures, symbol).value; }
+double valueOf(const std::vector<DatasheetFigure>& figures, const char* symbol)
+{
+    return figureNamed(figures, symbol).value;
+}
 
 std::complex<double> impedance(const Model& model, double frequency)
 {
@@ -56,12 +64,13 @@ double bisect(double low, double high, const std::function<double(double)>& f)
     return 0.5 * (low + high);
 }
 
-} // namespace
+}   // namespace
 
 TEST_CASE("Thiele/Small parameters of the base are the closed forms", "[datasheet]")
 {
     const auto figures = thieleSmall({midbass(), false, false});
-    const double Re = 5.6, Bl = 7.1, m = 0.0142, Rms = 1.15, K = 1310.0, Sd = 0.0133, w = std::sqrt(K / m), c = 343.0, rho = 1.2;
+    const double Re = 5.6, Bl = 7.1, m = 0.0142, Rms = 1.15, K = 1310.0, Sd = 0.0133, w = std::sqrt(K / m), c = 343.0,
+                 rho = 1.2;
     CHECK(valueOf(figures, "Re") == 5.6);
     CHECK(valueOf(figures, "Le") == Approx(3e-4).epsilon(1e-12));
     CHECK(valueOf(figures, "fs") == Approx(w / (2.0 * pi)).epsilon(1e-12));
@@ -94,7 +103,8 @@ TEST_CASE("Thiele/Small parameters agree with those read off the impedance", "[d
     const double low = 5.0, high = 500.0;
     const double fs = bisect(low, high, [&](double f) { return -impedance(model, f).imag(); });
     const double Re = size(1e-4), most = size(fs), r0 = most / Re, between = std::sqrt(Re * most);
-    const double f1 = bisect(low, fs, [&](double f) { return size(f) - between; }), f2 = bisect(fs, high, [&](double f) { return size(f) - between; });
+    const double f1 = bisect(low, fs, [&](double f) { return size(f) - between; }),
+                 f2 = bisect(fs, high, [&](double f) { return size(f) - between; });
     const double Qms = fs * std::sqrt(r0) / (f2 - f1), Qes = Qms / (r0 - 1.0);
     const auto figures = thieleSmall({model, false, false});
     CHECK(valueOf(figures, "fs") == Approx(fs).epsilon(1e-8));
@@ -109,7 +119,8 @@ TEST_CASE("A suspension that creeps has its compliance at the resonance", "[data
     const auto model = withNumbers(midbass(1e-12), "creep", {500.0, 1.0, 3.0, 0.0});
     const auto figures = thieleSmall({model, false, false});
     // Without Le the impedance is real where the mechanics are, and its peak over Re is Bl^2/Rms there.
-    const double f0 = resonanceOf(model.base().parameters), fs = bisect(0.9 * f0, 2.0 * f0, [&](double f) { return -impedance(model, f).imag(); });
+    const double f0 = resonanceOf(model.base().parameters),
+                 fs = bisect(0.9 * f0, 2.0 * f0, [&](double f) { return -impedance(model, f).imag(); });
     CHECK(fs > 1.05 * f0);
     CHECK(valueOf(figures, "fs") == Approx(fs).epsilon(1e-8));
     CHECK(valueOf(figures, "Rms") == Approx(7.1 * 7.1 / (impedance(model, fs).real() - 5.6)).epsilon(1e-8));
@@ -122,7 +133,8 @@ TEST_CASE("What swings far above the resonance is moving mass, and a box is left
     const auto side = thieleSmall({withNumbers(midbass(), "side-resonance", {0.001, 2000.0, 0.2}), false, false});
     CHECK(valueOf(side, "Mms") == Approx(0.0152).epsilon(1e-3));
     CHECK(valueOf(side, "fs") == Approx(std::sqrt(1310.0 / 0.0152) / (2.0 * pi)).epsilon(1e-3));
-    const auto boxed = thieleSmall({withNumbers(midbass(), "vented-box", {900.0, 45.0, 0.02, 0.1}), false, false}), free = thieleSmall({midbass(), false, false});
+    const auto boxed = thieleSmall({withNumbers(midbass(), "vented-box", {900.0, 45.0, 0.02, 0.1}), false, false}),
+               free = thieleSmall({midbass(), false, false});
     for (std::size_t k = 0; k < free.size(); ++k)
         CHECK(boxed[k].value == free[k].value);
 }
@@ -136,15 +148,20 @@ TEST_CASE("Standard errors follow the covariance", "[datasheet]")
     const double share[] = {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3, 7e-3, 0.0};
     for (Eigen::Index k = 0; k < theta.size(); ++k)
         model.covariance(k, k) = std::pow(share[k] * theta[k], 2);
-    model.covariance(2, 3) = model.covariance(3, 2) = 0.8 * share[2] * theta[2] * share[3] * theta[3];   // Bl and m err together
+    model.covariance(2, 3) = model.covariance(3, 2) =
+        0.8 * share[2] * theta[2] * share[3] * theta[3];   // Bl and m err together
     const auto figures = thieleSmall({model, false, false});
-    const auto relative = [&](const char* symbol) { return figureNamed(figures, symbol).standardError / figureNamed(figures, symbol).value; };
+    const auto relative = [&](const char* symbol) {
+        return figureNamed(figures, symbol).standardError / figureNamed(figures, symbol).value;
+    };
     CHECK(relative("Re") == Approx(1e-3).epsilon(1e-5));
     CHECK(relative("Le") == Approx(2e-3).epsilon(1e-5));
     CHECK(relative("fs") == Approx(0.5 * std::hypot(4e-3, 6e-3)).epsilon(1e-4));
     CHECK(relative("Qms") == Approx(std::hypot(std::hypot(2e-3, 3e-3), 5e-3)).epsilon(1e-4));
     // Qes = (K m)^1/2 Re/Bl^2
-    CHECK(relative("Qes") == Approx(std::sqrt(3e-3 * 3e-3 + 2e-3 * 2e-3 + 1e-6 + 6e-3 * 6e-3 - 2.0 * 2.0 * 0.5 * 0.8 * 3e-3 * 4e-3)).epsilon(1e-4));
+    CHECK(relative("Qes")
+          == Approx(std::sqrt(3e-3 * 3e-3 + 2e-3 * 2e-3 + 1e-6 + 6e-3 * 6e-3 - 2.0 * 2.0 * 0.5 * 0.8 * 3e-3 * 4e-3))
+                 .epsilon(1e-4));
     CHECK(relative("Vas") == Approx(std::hypot(2.0 * 7e-3, 6e-3)).epsilon(1e-4));
     CHECK(relative("Sd") == Approx(7e-3).epsilon(1e-5));
     model.covariance(3, 3) = std::numeric_limits<double>::quiet_NaN();
@@ -198,7 +215,9 @@ TEST_CASE("What the take does not show is not said", "[datasheet]")
 
 TEST_CASE("Another motion is not seen by the coil", "[datasheet]")
 {
-    auto model = withNumbers(withNumbers(withNumbers(midbass(), "stiffness", {120.0, 300.0}), "force-factor", {0.3, -0.6}), "creep", {300.0, 1.0, 2.0, 0.1});
+    auto model =
+        withNumbers(withNumbers(withNumbers(midbass(), "stiffness", {120.0, 300.0}), "force-factor", {0.3, -0.6}),
+                    "creep", {300.0, 1.0, 2.0, 0.1});
     model = withNumbers(withNumbers(model, "friction", {0.2, 2e-4, 0.5}), "side-resonance", {0.001, 900.0, 0.2});
     model.path.parameters[0].free = true;
     const auto other = withMotion(model, 0.6);

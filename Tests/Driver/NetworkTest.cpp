@@ -71,13 +71,22 @@ Complex coilImpedance(const Network& network, Complex s)
 /// The model with the effect, all of whose parameters are somewhere within what they may be.
 Model with(const Effect& effect)
 {
-    const Extent extent {.displacement = 2e-3, .velocity = 0.5, .current = 2.0, .lowFrequency = 15.0, .highFrequency = 5000.0, .degree = 4};
+    const Extent extent {.displacement = 2e-3,
+                         .velocity = 0.5,
+                         .current = 2.0,
+                         .lowFrequency = 15.0,
+                         .highFrequency = 5000.0,
+                         .degree = 4};
     auto model = withEffect(makeModel("electrodynamic"), effect, extent);
     auto& component = model.components.back();
     double number = 0.13;
     for (auto& p : component.parameters) {
         number = std::fmod(number + 0.37, 1.0);
-        const double size = std::isfinite(p.prior) ? 0.5 * p.prior : p.unit == "N/m" ? 400.0 : p.unit == "kg" ? 1e-3 : p.value != 0.0 ? std::abs(p.value) : 0.1;
+        const double size = std::isfinite(p.prior) ? 0.5 * p.prior
+                            : p.unit == "N/m"      ? 400.0
+                            : p.unit == "kg"       ? 1e-3
+                            : p.value != 0.0       ? std::abs(p.value)
+                                                   : 0.1;
         p.value = std::clamp(p.value + number * size, p.lower, p.upper);
     }
     return model;
@@ -92,13 +101,14 @@ void requireSameImpedance(const Model& model)
     const auto current = respond(model, {Quantity::current}, frequency).front();
     for (std::size_t k = 0; k < frequency.size(); ++k) {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency[k]);
-        const auto Z = coilImpedance(network, s) + network.forceFactor * network.forceFactor / mechanicalImpedance(network, s);
+        const auto Z =
+            coilImpedance(network, s) + network.forceFactor * network.forceFactor / mechanicalImpedance(network, s);
         INFO(frequency[k] << " Hz");
         CHECK(std::abs(Z * current.value[k] - 1.0) < 1e-9);
     }
 }
 
-} // namespace
+}   // namespace
 
 TEST_CASE("The network of every linear effect that is felt has the impedance of its equations", "[network]")
 {
@@ -138,5 +148,6 @@ TEST_CASE("A driver without a coil is mechanics alone", "[network]")
     CHECK(network.forceFactor == 0.0);
     const double f = 100.0;
     const Complex s(0.0, 2.0 * std::numbers::pi * f);
-    CHECK(std::abs(mechanicalImpedance(network, s) * respond(model, {Quantity::velocity}, {f}).front().value[0] - 1.0) < 1e-12);
+    CHECK(std::abs(mechanicalImpedance(network, s) * respond(model, {Quantity::velocity}, {f}).front().value[0] - 1.0)
+          < 1e-12);
 }

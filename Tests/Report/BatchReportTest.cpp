@@ -22,7 +22,9 @@ TEST_CASE("The page of a batch needs nothing else and shows who stands out", "[r
     }
     Units units;
     for (int k = 0; k < 8; ++k)
-        units.units.push_back(unitOf("unit <" + std::to_string(k + 1) + ">", midbassOf(k == 5 ? 1.05 : 1.0 + 1e-3 * ((3 * k) % 8)), k == 6 ? Verdict::badMeasurement : Verdict::complete));
+        units.units.push_back(unitOf("unit <" + std::to_string(k + 1) + ">",
+                                     midbassOf(k == 5 ? 1.05 : 1.0 + 1e-3 * ((3 * k) % 8)),
+                                     k == 6 ? Verdict::badMeasurement : Verdict::complete));
     units.unread.push_back({"lost", "the folder has no ladder.json"});
     CollectOptions options;
     options.limits = {{"fs", {50.0, 57.0}}, {"Qts", {{}, 0.5}}};

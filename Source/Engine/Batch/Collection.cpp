@@ -27,9 +27,10 @@ struct Figured {
 /// The table as it grows: a quantity is there once a unit has named it, in the order of the first unit that does.
 class Table {
 public:
-    explicit Table(std::size_t units) : units_(units) {}
+    explicit Table(std::size_t units) : units_(units) { }
 
-    void put(std::size_t unit, const std::string& name, const std::string& unitName, Figured figure, bool ofDriver = true)
+    void put(std::size_t unit, const std::string& name, const std::string& unitName, Figured figure,
+             bool ofDriver = true)
     {
         auto found = std::find_if(rows.begin(), rows.end(), [&](const Quantities& q) { return q.name == name; });
         if (found == rows.end()) {
@@ -59,7 +60,10 @@ struct SheetUnit {
 
 SheetUnit sheetUnitOf(const std::string& law)
 {
-    return law.starts_with("K(") ? SheetUnit {"N/mm", 1e-3} : law.starts_with("Le(") ? SheetUnit {"mH", 1e3} : law.starts_with("Rms(") ? SheetUnit {"kg/s", 1.0} : SheetUnit {"T m", 1.0};
+    return law.starts_with("K(")     ? SheetUnit {"N/mm", 1e-3}
+           : law.starts_with("Le(")  ? SheetUnit {"mH", 1e3}
+           : law.starts_with("Rms(") ? SheetUnit {"kg/s", 1.0}
+                                     : SheetUnit {"T m", 1.0};
 }
 
 /// "+2 mm", "-0.5 m/s"
@@ -80,7 +84,8 @@ Figured lawAt(const LawTable& law, double at)
 {
     if (at < law.at.front() * (1.0 + 1e-9) || at > law.at.back() * (1.0 + 1e-9))
         return {};
-    const double step = law.at[1] - law.at[0], position = std::clamp((at - law.at.front()) / step, 0.0, static_cast<double>(law.at.size() - 1));
+    const double step = law.at[1] - law.at[0],
+                 position = std::clamp((at - law.at.front()) / step, 0.0, static_cast<double>(law.at.size() - 1));
     const auto k = std::min(static_cast<std::size_t>(position), law.at.size() - 2);
     const double share = position - static_cast<double>(k);
     const auto between = [&](const std::vector<double>& y) { return (1.0 - share) * y[k] + share * y[k + 1]; };
@@ -106,21 +111,24 @@ void putLaws(Table& table, const LawsOfUnits& laws, const std::vector<double>& g
     for (const double at : all)
         for (const auto& [unit, law] : laws.ofUnit) {
             auto value = lawAt(law, at);
-            table.put(unit, base + "(" + placeIn(at, laws.argumentUnit) + ")", sheetUnit, {factor * value.value, factor * value.error});
+            table.put(unit, base + "(" + placeIn(at, laws.argumentUnit) + ")", sheetUnit,
+                      {factor * value.value, factor * value.error});
         }
 }
 
 void putStroke(Table& table, std::size_t unit, const StrokeLimits& stroke)
 {
     constexpr double inMm = 1e3;
-    for (const auto& [word, name] : {std::pair {"force factor", "XBl 82%"}, std::pair {"compliance", "XC 75%"}, std::pair {"impedance", "XL 10%"}})
+    for (const auto& [word, name] :
+         {std::pair {"force factor", "XBl 82%"}, std::pair {"compliance", "XC 75%"}, std::pair {"impedance", "XL 10%"}})
         for (const auto& limit : stroke.limits)
             if (limit.name.starts_with(word))
                 table.put(unit, name, "mm", {inMm * limit.stroke().value_or(nothing), nothing});
     if (stroke.gapCentre)
         table.put(unit, "gap centre", "mm", {inMm * stroke.gapCentre->value, inMm * stroke.gapCentre->standardError});
     if (stroke.stiffnessAsymmetry)
-        table.put(unit, "K asymmetry", "%", {stroke.stiffnessAsymmetry->value, stroke.stiffnessAsymmetry->standardError});
+        table.put(unit, "K asymmetry", "%",
+                  {stroke.stiffnessAsymmetry->value, stroke.stiffnessAsymmetry->standardError});
 }
 
 void putErrors(Table& table, std::size_t unit, const Comparison& comparison)
@@ -128,7 +136,8 @@ void putErrors(Table& table, std::size_t unit, const Comparison& comparison)
     for (const auto& channel : comparison.channels) {
         table.put(unit, "error " + std::string(name(channel.quantity)), "dB", {channel.total.db, nothing}, false);
         if (comparison.noiseKnown)
-            table.put(unit, "noise " + std::string(name(channel.quantity)), "dB", {channel.total.noiseFloorDb.value_or(nothing), nothing}, false);
+            table.put(unit, "noise " + std::string(name(channel.quantity)), "dB",
+                      {channel.total.noiseFloorDb.value_or(nothing), nothing}, false);
     }
     if (comparison.noiseKnown)
         table.put(unit, "misfit", "", {comparison.chi, nothing}, false);
@@ -263,12 +272,14 @@ void findGolden(Collection& all)
 void putLimits(Collection& all, const std::map<std::string, Limits>& limits)
 {
     for (const auto& [name, limit] : limits) {
-        const auto found = std::find_if(all.quantities.begin(), all.quantities.end(), [&name = name](const Quantities& q) { return q.name == name; });
+        const auto found = std::find_if(all.quantities.begin(), all.quantities.end(),
+                                        [&name = name](const Quantities& q) { return q.name == name; });
         if (found == all.quantities.end()) {
             std::string known;
             for (const auto& q : all.quantities)
                 known += (known.empty() ? "" : ", ") + q.name;
-            throw Error(Error::Kind::usage, "There is a limit for \"" + name + "\", which no unit has; the quantities are " + known + ".");
+            throw Error(Error::Kind::usage,
+                        "There is a limit for \"" + name + "\", which no unit has; the quantities are " + known + ".");
         }
         found->limits = limit;
     }
@@ -297,13 +308,26 @@ UnitResult resultOf(const Unit& unit)
     return result;
 }
 
-} // namespace
+}   // namespace
+
+std::vector<std::string> UnitResult::standsOutBy() const
+{
+    auto words = outlying;
+    for (const auto& effect : additional)
+        words.push_back("has " + effect);
+    for (const auto& effect : absent)
+        words.push_back("lacks " + effect);
+    if (otherVerdict)
+        words.emplace_back("its verdict");
+    return words;
+}
 
 bool Quantities::drifts() const { return std::abs(drift) > 4.0 * driftError; }
 
 const Quantities* Collection::find(const std::string& name) const
 {
-    const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const Quantities& q) { return q.name == name; });
+    const auto found =
+        std::find_if(quantities.begin(), quantities.end(), [&](const Quantities& q) { return q.name == name; });
     return found == quantities.end() ? nullptr : &*found;
 }
 
@@ -327,11 +351,13 @@ Collection collect(const Units& units, const CollectOptions& options)
         ++all.measured;
         models[k] = withKnown(units.units[k].file.ladder.model(), {});
         for (const auto& figure : thieleSmall(*models[k]))
-            table.put(k, figure.symbol, figure.sheetUnit, {figure.value * figure.perUnit, figure.standardError * figure.perUnit});
+            table.put(k, figure.symbol, figure.sheetUnit,
+                      {figure.value * figure.perUnit, figure.standardError * figure.perUnit});
         for (auto& law : lawTables(*models[k], 201)) {
             if (law.name.starts_with("Cms"))
                 continue;   // the reciprocal of K(x)
-            auto found = std::find_if(all.laws.begin(), all.laws.end(), [&](const LawsOfUnits& l) { return l.name == law.name; });
+            auto found = std::find_if(all.laws.begin(), all.laws.end(),
+                                      [&](const LawsOfUnits& l) { return l.name == law.name; });
             if (found == all.laws.end())
                 found = all.laws.insert(all.laws.end(), {law.name, law.unit, law.argument, law.argumentUnit, {}});
             found->ofUnit.emplace_back(k, std::move(law));
@@ -350,7 +376,8 @@ Collection collect(const Units& units, const CollectOptions& options)
     all.quantities = std::move(table.rows);
     for (auto& q : all.quantities)
         count(q);
-    std::erase_if(all.quantities, [&](const Quantities& q) { return q.known == 0 && !options.limits.contains(q.name); });
+    std::erase_if(all.quantities,
+                  [&](const Quantities& q) { return q.known == 0 && !options.limits.contains(q.name); });
     putLimits(all, options.limits);
     findOutliers(all);
     compareFindings(all);
@@ -358,4 +385,4 @@ Collection collect(const Units& units, const CollectOptions& options)
     return all;
 }
 
-} // namespace excursion
+}   // namespace excursion

@@ -1,37 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Batch/CollectionFile.h"
 
+#include "Engine/Document/CsvText.h"
 #include "Engine/Document/JsonField.h"
 #include "Engine/Document/JsonText.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 
 namespace excursion {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string csvNumber(double value)
-{
-    if (!std::isfinite(value))
-        return {};
-    std::array<char, 32> text {};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return {text.data(), end};
-}
-
-std::string csvText(const std::string& text)
-{
-    if (text.find_first_of(",\"\n\r") == std::string::npos)
-        return text;
-    std::string result = "\"";
-    for (const char c : text)
-        result += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return result + "\"";
-}
 
 std::string listed(const std::vector<std::string>& words)
 {
@@ -73,19 +53,26 @@ Json quantityJson(const Quantities& q)
             {"drift", numberOrNull(q.drift)},
             {"driftError", numberOrNull(q.driftError)},
             {"drifts", q.drifts()},
-            {"limits", q.limited() ? Json {{"min", optionalNumber(q.limits.least)}, {"max", optionalNumber(q.limits.most)}} : Json(nullptr)},
+            {"limits", q.limited()
+                           ? Json {{"min", optionalNumber(q.limits.least)}, {"max", optionalNumber(q.limits.most)}}
+                           : Json(nullptr)},
             {"within", q.limited() ? Json(q.within) : Json(nullptr)},
             {"Cpk", optionalNumber(q.Cpk)},
             {"values", numbersOrNulls(q.value)},
             {"standardErrors", numbersOrNulls(q.standardError)}};
 }
 
-} // namespace
+}   // namespace
 
 Json toJson(const Collection& all)
 {
-    Json document {{"format", "excursion-collection"}, {"version", 1}, {"threshold", all.threshold}, {"count", all.units.size()}, {"measured", all.measured},
-                   {"passed", all.limited ? Json(all.passed) : Json(nullptr)}, {"golden", all.golden ? Json(all.units[*all.golden].name) : Json(nullptr)}};
+    Json document {{"format", "excursion-collection"},
+                   {"version", 1},
+                   {"threshold", all.threshold},
+                   {"count", all.units.size()},
+                   {"measured", all.measured},
+                   {"passed", all.limited ? Json(all.passed) : Json(nullptr)},
+                   {"golden", all.golden ? Json(all.units[*all.golden].name) : Json(nullptr)}};
     document["units"] = Json::array();
     for (const auto& unit : all.units)
         document["units"].push_back(unitJson(unit, all.limited));
@@ -103,7 +90,8 @@ std::string collectionCsv(const Collection& all)
     std::string text = "unit,verdict,effects,passed,beyond_limits,outlying,distance";
     std::vector<bool> withError;
     for (const auto& q : all.quantities) {
-        withError.push_back(std::any_of(q.standardError.begin(), q.standardError.end(), [](double e) { return std::isfinite(e); }));
+        withError.push_back(
+            std::any_of(q.standardError.begin(), q.standardError.end(), [](double e) { return std::isfinite(e); }));
         text += "," + csvText(q.name + (q.unit.empty() ? "" : " [" + q.unit + "]"));
         if (withError.back())
             text += "," + csvText(q.name + " error");
@@ -111,16 +99,12 @@ std::string collectionCsv(const Collection& all)
     text += '\n';
     for (std::size_t k = 0; k < all.units.size(); ++k) {
         const auto& unit = all.units[k];
-        auto outlying = unit.outlying;
-        for (const auto& effect : unit.additional)
-            outlying.push_back("+ " + effect);
-        for (const auto& effect : unit.absent)
-            outlying.push_back("- " + effect);
-        if (unit.otherVerdict)
-            outlying.emplace_back("verdict");
         text += csvText(unit.name) + "," + unit.verdict + "," + csvText(listed(unit.effects)) + ","
-              + (!all.limited || !unit.measured ? "" : unit.beyondLimits.empty() ? "yes" : "no") + "," + csvText(listed(unit.beyondLimits)) + "," + csvText(listed(outlying)) + ","
-              + csvNumber(unit.distance);
+                + (!all.limited || !unit.measured ? ""
+                   : unit.beyondLimits.empty()    ? "yes"
+                                                  : "no")
+                + "," + csvText(listed(unit.beyondLimits)) + "," + csvText(listed(unit.standsOutBy())) + ","
+                + csvNumber(unit.distance);
         for (std::size_t n = 0; n < all.quantities.size(); ++n) {
             text += "," + csvNumber(all.quantities[n].value[k]);
             if (withError[n])
@@ -155,4 +139,4 @@ std::map<std::string, Limits> readLimits(const std::filesystem::path& path)
     return limits;
 }
 
-} // namespace excursion
+}   // namespace excursion

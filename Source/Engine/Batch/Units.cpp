@@ -45,11 +45,12 @@ std::vector<fs::path> foldersIn(const fs::path& place)
             folders.push_back(it->path());
     if (error)
         throw Error(Error::Kind::input, "'" + place.string() + "' cannot be read (" + error.message() + ").");
-    std::sort(folders.begin(), folders.end(), [](const auto& a, const auto& b) { return nameBefore(a.filename().string(), b.filename().string()); });
+    std::sort(folders.begin(), folders.end(),
+              [](const auto& a, const auto& b) { return nameBefore(a.filename().string(), b.filename().string()); });
     return folders;
 }
 
-} // namespace
+}   // namespace
 
 bool nameBefore(const std::string& a, const std::string& b)
 {
@@ -95,18 +96,22 @@ Units readUnits(const std::vector<fs::path>& places, const ReadUnitsOptions& opt
             if (options.goOn && folders.empty())
                 result.unread.push_back({nameOf(place / ladderName), "the folder has no ladder.json"});
             else if (ladders.size() == before)
-                throw Error(Error::Kind::input, "'" + place.string() + "' holds no ladder.json, and neither does a folder in it; give folders that excursion improve --out has "
-                                                                     "written.");
+                throw Error(Error::Kind::input, "'" + place.string()
+                                                    + "' holds no ladder.json, and neither does a folder in it; give "
+                                                      "folders that excursion improve --out has "
+                                                      "written.");
         }
     }
     if (options.order == UnitOrder::byName)
-        std::stable_sort(ladders.begin(), ladders.end(), [](const auto& a, const auto& b) { return nameBefore(nameOf(a), nameOf(b)); });
+        std::stable_sort(ladders.begin(), ladders.end(),
+                         [](const auto& a, const auto& b) { return nameBefore(nameOf(a), nameOf(b)); });
     std::map<std::string, fs::path> known;
     for (const auto& ladder : ladders) {
         const auto name = nameOf(ladder);
         if (const auto [other, isNew] = known.emplace(name, ladder); !isNew)
-            throw Error(Error::Kind::input, "Two units are named '" + name + "': '" + other->second.parent_path().string() + "' and '" + ladder.parent_path().string()
-                                                + "'; rename one, or give one of them alone.");
+            throw Error(Error::Kind::input,
+                        "Two units are named '" + name + "': '" + other->second.parent_path().string() + "' and '"
+                            + ladder.parent_path().string() + "'; rename one, or give one of them alone.");
         try {
             result.units.push_back({name, readLadder(ladder)});
         } catch (const Error& e) {
@@ -116,8 +121,10 @@ Units readUnits(const std::vector<fs::path>& places, const ReadUnitsOptions& opt
         }
     }
     if (result.units.empty())
-        throw Error(Error::Kind::data, "None of the ladders could be read; the first: " + (result.unread.empty() ? std::string("there is none") : result.unread.front().why));
+        throw Error(Error::Kind::data,
+                    "None of the ladders could be read; the first: "
+                        + (result.unread.empty() ? std::string("there is none") : result.unread.front().why));
     return result;
 }
 
-} // namespace excursion
+}   // namespace excursion

@@ -11,7 +11,7 @@ namespace excursion {
 
 /// One loudspeaker of a batch: the ladder that was made of it.
 struct Unit {
-    std::string name;    ///< of the folder that holds the ladder
+    std::string name;   ///< of the folder that holds the ladder
     LadderFile file;
 
     bool measured() const { return !file.ladder.rungs.empty(); }   ///< its take was fit for use
@@ -30,16 +30,19 @@ struct Units {
 enum class UnitOrder { byName, asGiven };
 
 struct ReadUnitsOptions {
-    UnitOrder order = UnitOrder::byName;   ///< by name: digits in it count as numbers, so that 9 comes before 10, and times as ISO 8601 writes them in order
+    UnitOrder order = UnitOrder::byName;   ///< by name: digits in it count as numbers, so that 9 comes before 10, and
+                                           ///< times as ISO 8601 writes them in order
     bool goOn = false;                     ///< what cannot be read is told in `unread`; else it throws
 };
 
 /// Reads ladders as improve() leaves them.
-/// @param places  folders that hold a ladder.json, folders of such folders (those in them without a ladder are told in `unread`), or ladder.json files
-/// @throws Error (input) for a place that is not there or holds no ladder, for a ladder that cannot be read unless `goOn`, and for two units of one name
+/// @param places  folders that hold a ladder.json, folders of such folders (those in them without a ladder are told in
+/// `unread`), or ladder.json files
+/// @throws Error (input) for a place that is not there or holds no ladder, for a ladder that cannot be read unless
+/// `goOn`, and for two units of one name
 Units readUnits(const std::vector<std::filesystem::path>& places, const ReadUnitsOptions& = {});
 
 /// Whether one name comes before another one, digits as numbers.
 bool nameBefore(const std::string&, const std::string&);
 
-} // namespace excursion
+}   // namespace excursion

@@ -3,49 +3,30 @@
 
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Design/WhatIfFile.h"
+#include "Engine/Document/CsvText.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/Network.h"
-
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 
 namespace excursion {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The shortest text that reads back as the same double; nothing for a number that is not known.
-std::string cell(double value)
-{
-    if (!std::isfinite(value))
-        return {};
-    std::array<char, 32> text {};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return {text.data(), end};
-}
-
-std::string quoted(const std::string& text)
-{
-    if (text.find_first_of(",\"\n") == std::string::npos)
-        return text;
-    std::string result = "\"";
-    for (const char c : text)
-        result += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return result + "\"";
-}
-
 Json inductanceJson(const LossyInductance& inductance)
 {
-    Json document {{"band", {inductance.low, inductance.high}}, {"Re", inductance.Re}, {"lossless", inductance.lossless},
+    Json document {{"band", {inductance.low, inductance.high}},
+                   {"Re", inductance.Re},
+                   {"lossless", inductance.lossless},
                    {"Le", inductance.lossless ? Json(inductance.Le) : Json(nullptr)}};
     document["forms"] = Json::array();
     for (const auto& form : inductance.forms) {
         Json parameters = Json::array();
         for (const auto& p : form.parameters)
             parameters.push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}});
-        document["forms"].push_back({{"id", form.id}, {"formula", form.formula}, {"parameters", std::move(parameters)}, {"errorPercent", form.errorPercent},
+        document["forms"].push_back({{"id", form.id},
+                                     {"formula", form.formula},
+                                     {"parameters", std::move(parameters)},
+                                     {"errorPercent", form.errorPercent},
                                      {"worstDb", form.worstDb}});
     }
     return document;
@@ -56,13 +37,18 @@ std::vector<std::string> remarksOn(const ScaledModel& given)
     const auto& model = given.model;
     std::vector<std::string> remarks;
     if (given.motionIsGuessed)
-        remarks.emplace_back("Voltage and current alone show Bl^2/Mms, Rms/Mms and 1/(Cms Mms): with a known moving mass or force factor the rest can be said.");
+        remarks.emplace_back("Voltage and current alone show Bl^2/Mms, Rms/Mms and 1/(Cms Mms): with a known moving "
+                             "mass or force factor the rest can be said.");
     if (model.electrical() && !given.areaIsGuessed && !model.path.parameters[0].free)
         remarks.emplace_back("The area of the cone was given, and has no error here.");
+    constexpr double sheetFrequency = 1000.0;
+    if (model.electrical() && bandOf(model).second < sheetFrequency)
+        remarks.emplace_back("The model was measured below 1 kHz: there Le is a guess.");
     for (const auto& component : model.components) {
         const auto* parts = networkPartsOf(*component.effect);
         if (parts && parts->ofEnclosure() && isAtWork(component))
-            remarks.emplace_back("Measured in a box, whose parts are left out: the moving mass has the air of the box on it, and the compliance is that of the "
+            remarks.emplace_back("Measured in a box, whose parts are left out: the moving mass has the air of the box "
+                                 "on it, and the compliance is that of the "
                                  "suspension with what of the box acts on a cone at rest.");
         if (parts && component.effect->relaxes() && isAtWork(component))
             remarks.emplace_back("The suspension creeps: Cms and Rms are those at fs; more slowly it is softer.");
@@ -70,7 +56,7 @@ std::vector<std::string> remarksOn(const ScaledModel& given)
     return remarks;
 }
 
-} // namespace
+}   // namespace
 
 Datasheet datasheetOf(const ScaledModel& given, double bandLow, double bandHigh, int lawPoints)
 {
@@ -91,14 +77,24 @@ Json toJson(const Datasheet& sheet)
     Json document {{"driver", sheet.driver}};
     document["thieleSmall"] = Json::array();
     for (const auto& f : sheet.thieleSmall)
-        document["thieleSmall"].push_back({{"symbol", f.symbol}, {"value", numberOrNull(f.value)}, {"unit", f.unit}, {"standardError", numberOrNull(f.standardError)},
-                                           {"sheetValue", numberOrNull(f.value * f.perUnit)}, {"sheetUnit", f.sheetUnit}, {"meaning", f.meaning},
+        document["thieleSmall"].push_back({{"symbol", f.symbol},
+                                           {"value", numberOrNull(f.value)},
+                                           {"unit", f.unit},
+                                           {"standardError", numberOrNull(f.standardError)},
+                                           {"sheetValue", numberOrNull(f.value * f.perUnit)},
+                                           {"sheetUnit", f.sheetUnit},
+                                           {"meaning", f.meaning},
                                            {"why", f.why.empty() ? Json(nullptr) : Json(f.why)}});
     document["inductance"] = sheet.inductance ? inductanceJson(*sheet.inductance) : Json(nullptr);
     document["laws"] = Json::array();
     for (const auto& law : sheet.laws)
-        document["laws"].push_back({{"name", law.name}, {"unit", law.unit}, {"argument", law.argument}, {"argumentUnit", law.argumentUnit},
-                                    {"at", numbersOrNulls(law.at)}, {"value", numbersOrNulls(law.value)}, {"low95", numbersOrNulls(law.low95)},
+        document["laws"].push_back({{"name", law.name},
+                                    {"unit", law.unit},
+                                    {"argument", law.argument},
+                                    {"argumentUnit", law.argumentUnit},
+                                    {"at", numbersOrNulls(law.at)},
+                                    {"value", numbersOrNulls(law.value)},
+                                    {"low95", numbersOrNulls(law.low95)},
                                     {"high95", numbersOrNulls(law.high95)}});
     document["stroke"] = sheet.stroke ? toJson(*sheet.stroke) : Json(nullptr);
     document["remarks"] = sheet.remarks;
@@ -109,14 +105,18 @@ std::string parametersCsv(const Datasheet& sheet)
 {
     std::string text = "symbol,value,standard_error,unit,remark\n";
     for (const auto& f : sheet.thieleSmall)
-        text += f.symbol + "," + cell(f.value * f.perUnit) + "," + cell(f.standardError * f.perUnit) + "," + f.sheetUnit + ","
-              + quoted(f.why.empty() ? f.meaning : "unknown: " + f.why) + "\n";
+        text += f.symbol + "," + csvNumber(f.value * f.perUnit) + "," + csvNumber(f.standardError * f.perUnit) + ","
+                + f.sheetUnit + "," + csvText(f.why.empty() ? f.meaning : "unknown: " + f.why) + "\n";
     if (!sheet.inductance)
         return text;
     for (const auto& form : sheet.inductance->forms) {
         for (const auto& p : form.parameters)
-            text += form.id + " " + p.name + "," + cell(p.value) + ",," + p.unit + "," + quoted(form.formula) + "\n";
-        text += form.id + " error," + cell(form.errorPercent) + ",,%," + quoted("rms of |Z - Z_model|/|Z_model| from " + cell(sheet.inductance->low) + " to " + cell(sheet.inductance->high) + " Hz") + "\n";
+            text +=
+                form.id + " " + p.name + "," + csvNumber(p.value) + ",," + p.unit + "," + csvText(form.formula) + "\n";
+        text += form.id + " error," + csvNumber(form.errorPercent) + ",,%,"
+                + csvText("rms of |Z - Z_model|/|Z_model| from " + csvNumber(sheet.inductance->low) + " to "
+                          + csvNumber(sheet.inductance->high) + " Hz")
+                + "\n";
     }
     return text;
 }
@@ -126,17 +126,19 @@ std::string lawsCsv(const Datasheet& sheet)
     std::string text = "law,argument,argument_unit,at,value,low_95,high_95,unit\n";
     for (const auto& law : sheet.laws)
         for (std::size_t k = 0; k < law.at.size(); ++k)
-            text += law.name + "," + law.argument + "," + law.argumentUnit + "," + cell(law.at[k]) + "," + cell(law.value[k]) + "," + cell(law.low95[k]) + ","
-                  + cell(law.high95[k]) + "," + law.unit + "\n";
+            text += law.name + "," + law.argument + "," + law.argumentUnit + "," + csvNumber(law.at[k]) + ","
+                    + csvNumber(law.value[k]) + "," + csvNumber(law.low95[k]) + "," + csvNumber(law.high95[k]) + ","
+                    + law.unit + "\n";
     if (!sheet.stroke)
         return text;
     for (const auto& limit : sheet.stroke->limits)
         for (const int side : {-1, 1}) {
             const auto place = side < 0 ? limit.inward : limit.outward;
-            text += "limit," + quoted(limit.name + " " + limit.criterion) + ",m," + (place ? cell(side * *place) : std::string()) + ","
-                  + cell(side < 0 ? limit.inwardEnd : limit.outwardEnd) + ",,,% at the end of the range\n";
+            text += "limit," + csvText(limit.name + " " + limit.criterion) + ",m,"
+                    + (place ? csvNumber(side * *place) : std::string()) + ","
+                    + csvNumber(side < 0 ? limit.inwardEnd : limit.outwardEnd) + ",,,% at the end of the range\n";
         }
     return text;
 }
 
-} // namespace excursion
+}   // namespace excursion

@@ -16,12 +16,12 @@ namespace excursion {
 
 /// What a designer takes out of a model for other programs.
 struct Datasheet {
-    std::string driver;                          ///< its name; may be empty
+    std::string driver;   ///< its name; may be empty
     std::vector<DatasheetFigure> thieleSmall;
     std::optional<LossyInductance> inductance;   ///< none without a coil
     std::vector<LawTable> laws;
-    std::optional<StrokeLimits> stroke;          ///< none where the motion is a guess
-    std::vector<std::string> remarks;            ///< whole sentences: what the numbers rest on
+    std::optional<StrokeLimits> stroke;   ///< none where the motion is a guess
+    std::vector<std::string> remarks;     ///< whole sentences: what the numbers rest on
 };
 
 /// @param bandLow, bandHigh  of lossyInductance()
@@ -31,10 +31,12 @@ Datasheet datasheetOf(const ScaledModel&, double bandLow = 0.0, double bandHigh 
 /// Document "excursion-parameters", version 1 (Docs/Formats.md), without the names of files.
 nlohmann::ordered_json toJson(const Datasheet&);
 
-/// symbol,value,standard_error,unit,remark: the parameters in the units of datasheets, then the forms of the lossy inductance.
+/// symbol,value,standard_error,unit,remark: the parameters in the units of datasheets, then the forms of the lossy
+/// inductance.
 std::string parametersCsv(const Datasheet&);
 
-/// law,argument,argument_unit,at,value,low_95,high_95,unit: one row a point, then the limits of the stroke as rows "limit".
+/// law,argument,argument_unit,at,value,low_95,high_95,unit: one row a point, then the limits of the stroke as rows
+/// "limit".
 std::string lawsCsv(const Datasheet&);
 
-} // namespace excursion
+}   // namespace excursion

@@ -24,7 +24,7 @@ std::vector<Eigen::Index> statesWithout(Eigen::Index count, std::initializer_lis
     return states;
 }
 
-} // namespace
+}   // namespace
 
 std::vector<std::complex<double>> blockedImpedance(const Model& model, const std::vector<double>& frequency)
 {
@@ -56,7 +56,8 @@ OpenCoilMechanics::At OpenCoilMechanics::at(double omega) const
     Eigen::MatrixXcd system = -A_.cast<std::complex<double>>();
     system.diagonal().array() += std::complex<double>(0.0, omega);
     const auto solver = system.partialPivLu();
-    const Eigen::VectorXcd z = solver.solve(B_.cast<std::complex<double>>()), dz = -solver.solve(z);   // d/ds (s I - A)^-1 B
+    const Eigen::VectorXcd z = solver.solve(B_.cast<std::complex<double>>()),
+                           dz = -solver.solve(z);   // d/ds (s I - A)^-1 B
     constexpr Eigen::Index cone = velocity - 1;
     return {1.0 / z[cone], -dz[cone] / (z[cone] * z[cone])};
 }
@@ -73,4 +74,4 @@ Model withoutEnclosure(Model model)
     return model;
 }
 
-} // namespace excursion
+}   // namespace excursion

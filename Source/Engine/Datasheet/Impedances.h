@@ -23,7 +23,7 @@ public:
         std::complex<double> impedance;   ///< Z(s), N s/m
         std::complex<double> slope;       ///< dZ/ds, kg
     };
-    At at(double omega) const;            ///< at s = j omega
+    At at(double omega) const;   ///< at s = j omega
 
 private:
     Eigen::MatrixXd A_;
@@ -33,4 +33,4 @@ private:
 /// The model without what belongs to its box.
 Model withoutEnclosure(Model);
 
-} // namespace excursion
+}   // namespace excursion

@@ -18,8 +18,9 @@ bool massIsHeld(const Model& model) { return model.electrical() && !model.basePa
 /// The power of the unit of length with which a parameter's number goes; an area that is not free is in true metres.
 int lengthPower(const Parameter& p)
 {
-    static constexpr std::array powers {std::pair {"kg", -2}, std::pair {"N s/m", -2}, std::pair {"N/m", -2}, std::pair {"N/A", -1}, std::pair {"N", -1},
-                                        std::pair {"s/m", -1}, std::pair {"m", 1}};
+    static constexpr std::array powers {std::pair {"kg", -2},  std::pair {"N s/m", -2}, std::pair {"N/m", -2},
+                                        std::pair {"N/A", -1}, std::pair {"N", -1},     std::pair {"s/m", -1},
+                                        std::pair {"m", 1}};
     if (p.unit == "m^2")
         return p.free ? -1 : 0;
     for (const auto& [unit, power] : powers)
@@ -34,7 +35,7 @@ void requirePositive(const std::optional<double>& value, const char* what)
         throw Error(Error::Kind::usage, std::string("The ") + what + " must be a positive number.");
 }
 
-} // namespace
+}   // namespace
 
 Model withMotion(Model model, double factor)
 {
@@ -65,11 +66,15 @@ ScaledModel withKnown(Model model, const KnownScale& known)
     requirePositive(known.coneArea, "area of the cone");
     const bool scaled = known.mass || known.forceFactor;
     if (known.mass && known.forceFactor)
-        throw Error(Error::Kind::usage, "The force factor follows from the moving mass by what the coil shows; give one of the two.");
+        throw Error(Error::Kind::usage,
+                    "The force factor follows from the moving mass by what the coil shows; give one of the two.");
     if (scaled && !massIsHeld(model))
-        throw Error(Error::Kind::usage, model.electrical() ? "The take has shown the moving mass itself: a known mass or force factor is for a model of voltage "
-                                                             "and current alone."
-                                                           : "The model has no coil: its mass follows from force and motion.");
+        throw Error(
+            Error::Kind::usage,
+            model.electrical()
+                ? "The take has shown the moving mass itself: a known mass or force factor is for a model of voltage "
+                  "and current alone."
+                : "The model has no coil: its mass follows from force and motion.");
     const bool guessed = massIsHeld(model) && !scaled;
     if (known.mass)
         model = withMotion(std::move(model), std::sqrt(model.baseParameter("m").value / *known.mass));
@@ -91,4 +96,4 @@ ScaledModel withKnown(Model model, const KnownScale& known)
     return {std::move(model), guessed, noArea};
 }
 
-} // namespace excursion
+}   // namespace excursion

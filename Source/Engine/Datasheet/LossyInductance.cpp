@@ -28,20 +28,37 @@ struct FormKind {
 Complex beside(Complex a, Complex b) { return a * b / (a + b); }
 Complex inductor(double L, double omega) { return {0.0, omega * L}; }
 /// L beside R; nothing where one of them is nothing.
-Complex cellLaw(double L, double R, double omega) { return L > 0.0 && R > 0.0 ? beside(inductor(L, omega), R) : Complex(0.0); }
+Complex cellLaw(double L, double R, double omega)
+{
+    return L > 0.0 && R > 0.0 ? beside(inductor(L, omega), R) : Complex(0.0);
+}
 
 const std::vector<FormKind>& kinds()
 {
     static const std::vector<FormKind> list {
-        {"lr2", "j w Le + j w L2 || R2", {{"Le", "H"}, {"L2", "H"}, {"R2", "ohm"}},
+        {"lr2",
+         "j w Le + j w L2 || R2",
+         {{"Le", "H"}, {"L2", "H"}, {"R2", "ohm"}},
          [](const std::vector<double>& p, double w) { return inductor(p[0], w) + cellLaw(p[1], p[2], w); }},
-        {"lr3", "j w Le + j w L2 || R2 + j w L3 || R3", {{"Le", "H"}, {"L2", "H"}, {"R2", "ohm"}, {"L3", "H"}, {"R3", "ohm"}},
-         [](const std::vector<double>& p, double w) { return inductor(p[0], w) + cellLaw(p[1], p[2], w) + cellLaw(p[3], p[4], w); }},
-        {"semi-inductance", "K w^n exp(j n pi/2)", {{"K", "ohm s^n"}, {"n", "1"}},
+        {"lr3",
+         "j w Le + j w L2 || R2 + j w L3 || R3",
+         {{"Le", "H"}, {"L2", "H"}, {"R2", "ohm"}, {"L3", "H"}, {"R3", "ohm"}},
+         [](const std::vector<double>& p, double w) {
+             return inductor(p[0], w) + cellLaw(p[1], p[2], w) + cellLaw(p[3], p[4], w);
+         }},
+        {"semi-inductance",
+         "K w^n exp(j n pi/2)",
+         {{"K", "ohm s^n"}, {"n", "1"}},
          [](const std::vector<double>& p, double w) { return std::polar(p[0] * std::pow(w, p[1]), 0.5 * pi * p[1]); }},
-        {"wright", "Kr w^Er + j Kx w^Ex", {{"Kr", "ohm s^Er"}, {"Er", "1"}, {"Kx", "ohm s^Ex"}, {"Ex", "1"}},
-         [](const std::vector<double>& p, double w) { return Complex(p[0] * std::pow(w, p[1]), p[2] * std::pow(w, p[3])); }},
-        {"thorborg-futtrup", "j w Leb + j w Le || Ke (j w)^1/2 || Rss", {{"Leb", "H"}, {"Le", "H"}, {"Ke", "ohm s^1/2"}, {"Rss", "ohm"}},
+        {"wright",
+         "Kr w^Er + j Kx w^Ex",
+         {{"Kr", "ohm s^Er"}, {"Er", "1"}, {"Kx", "ohm s^Ex"}, {"Ex", "1"}},
+         [](const std::vector<double>& p, double w) {
+             return Complex(p[0] * std::pow(w, p[1]), p[2] * std::pow(w, p[3]));
+         }},
+        {"thorborg-futtrup",
+         "j w Leb + j w Le || Ke (j w)^1/2 || Rss",
+         {{"Leb", "H"}, {"Le", "H"}, {"Ke", "ohm s^1/2"}, {"Rss", "ohm"}},
          [](const std::vector<double>& p, double w) {
              const auto semi = std::polar(p[2] * std::sqrt(w), 0.25 * pi);
              return inductor(p[0], w) + (p[1] > 0.0 ? beside(beside(inductor(p[1], w), semi), p[3]) : Complex(0.0));
@@ -70,8 +87,10 @@ std::vector<std::vector<double>> startsOf(const FormKind& kind, const Target& ta
 {
     const std::size_t last = target.omega.size() - 1, middle = last / 2;
     const double low = target.omega.front(), high = target.omega.back(), size = std::abs(target.lossy(middle));
-    const double atTop = std::max(target.lossy(last).imag() / high, 1e-9), atBottom = std::max(target.lossy(0).imag() / low, 1e-9);
-    const double slope = std::clamp(std::log(std::abs(target.lossy(last)) / std::abs(target.lossy(0))) / std::log(high / low), 0.05, 0.99);
+    const double atTop = std::max(target.lossy(last).imag() / high, 1e-9),
+                 atBottom = std::max(target.lossy(0).imag() / low, 1e-9);
+    const double slope = std::clamp(
+        std::log(std::abs(target.lossy(last)) / std::abs(target.lossy(0))) / std::log(high / low), 0.05, 0.99);
     const double K = size / std::pow(target.omega[middle], slope);
     const std::string id = kind.id;
     if (id == "semi-inductance")
@@ -82,10 +101,13 @@ std::vector<std::vector<double>> startsOf(const FormKind& kind, const Target& ta
     if (id == "thorborg-futtrup") {
         for (const double share : {0.1, 0.5})
             for (const double shunt : {1.0, 10.0})
-                starts.push_back({share * atTop, 2.0 * atBottom, size / std::sqrt(target.omega[middle]), shunt * std::abs(target.lossy(last))});
+                starts.push_back({share * atTop, 2.0 * atBottom, size / std::sqrt(target.omega[middle]),
+                                  shunt * std::abs(target.lossy(last))});
         return starts;
     }
-    const auto turn = [&](double share) { return low * std::pow(high / low, share); };   // the w at which a cell turns from L to R
+    const auto turn = [&](double share) {
+        return low * std::pow(high / low, share);
+    };   // the w at which a cell turns from L to R
     for (const double first : {0.0, 0.3, 0.6, 0.9}) {
         const double L2 = 0.5 * atBottom;
         if (id == "lr2")
@@ -147,7 +169,8 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
     };
     constexpr double reach = 16.0;   // no parameter goes farther than exp(reach)
     Eigen::VectorXd y = Eigen::VectorXd::Ones(count);
-    minimize(evaluate, y, Eigen::VectorXd::Constant(count, 1.0 - reach), Eigen::VectorXd::Constant(count, 1.0 + reach), {200, 1e-12});
+    minimize(evaluate, y, Eigen::VectorXd::Constant(count, 1.0 - reach), Eigen::VectorXd::Constant(count, 1.0 + reach),
+             {200, 1e-12});
     p = at(y);
     return costOf(kind, p, target);
 }
@@ -168,15 +191,21 @@ LossyForm fitted(const FormKind& kind, const Target& target)
         if (!(costOf(kind, best, target) < (1.0 + difference) * lowest))
             value = kept;
     }
-    LossyForm form {kind.id, kind.formula, {}, 100.0 * std::sqrt(costOf(kind, best, target) / static_cast<double>(target.omega.size())), 0.0};
+    LossyForm form {kind.id,
+                    kind.formula,
+                    {},
+                    100.0 * std::sqrt(costOf(kind, best, target) / static_cast<double>(target.omega.size())),
+                    0.0};
     for (std::size_t k = 0; k < best.size(); ++k)
         form.parameters.push_back({kind.parameters[k].first, kind.parameters[k].second, best[k]});
     for (std::size_t k = 0; k < target.omega.size(); ++k)
-        form.worstDb = std::max(form.worstDb, std::abs(20.0 * std::log10(std::abs((target.Re + kind.law(best, target.omega[k])) / target.whole[k]))));
+        form.worstDb = std::max(
+            form.worstDb,
+            std::abs(20.0 * std::log10(std::abs((target.Re + kind.law(best, target.omega[k])) / target.whole[k]))));
     return form;
 }
 
-} // namespace
+}   // namespace
 
 std::complex<double> impedanceOf(const LossyForm& form, double omega)
 {
@@ -201,9 +230,12 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
     const auto band = bandOf(model);
     LossyInductance result;
     result.high = high > 0.0 ? high : band.second;
-    result.low = low > 0.0 ? low : std::min(std::max(band.first, 3.0 * resonanceOf(model.base().parameters)), 0.1 * result.high);
+    result.low =
+        low > 0.0 ? low : std::min(std::max(band.first, 3.0 * resonanceOf(model.base().parameters)), 0.1 * result.high);
     if (!(result.high >= 2.0 * result.low) || !std::isfinite(result.high))
-        throw Error(Error::Kind::usage, "The band of the inductance must span at least an octave, from a lower to a higher frequency in Hz.");
+        throw Error(
+            Error::Kind::usage,
+            "The band of the inductance must span at least an octave, from a lower to a higher frequency in Hz.");
     result.Re = model.baseParameter("Re").value;
 
     constexpr double pointsPerOctave = 24.0;
@@ -228,4 +260,4 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
     return result;
 }
 
-} // namespace excursion
+}   // namespace excursion

@@ -12,11 +12,11 @@ namespace excursion {
 
 /// The lossy inductance of a coil in a form that other programs take, fitted to Z_blocked - Re.
 struct LossyForm {
-    std::string id;        ///< "lr2", "lr3", "semi-inductance", "wright", "thorborg-futtrup"
-    std::string formula;   ///< in plain ASCII
+    std::string id;                   ///< "lr2", "lr3", "semi-inductance", "wright", "thorborg-futtrup"
+    std::string formula;              ///< in plain ASCII
     std::vector<Figure> parameters;   ///< SI; a K's unit is that of K w^n in ohm
-    double errorPercent = 0.0;        ///< rms of |Z_form - Z|/|Z| of the whole blocked impedance, Re with it, over log f
-    double worstDb = 0.0;             ///< largest | 20 log10 |Z_form/Z| |
+    double errorPercent = 0.0;   ///< rms of |Z_form - Z|/|Z| of the whole blocked impedance, Re with it, over log f
+    double worstDb = 0.0;        ///< largest | 20 log10 |Z_form/Z| |
 };
 
 struct LossyInductance {
@@ -34,14 +34,16 @@ struct LossyInductance {
 ///     wright:            Kr w^Er + j Kx w^Ex                 (Wright, J. Audio Eng. Soc. 38, 1990)
 ///     thorborg-futtrup:  j w Leb + j w Le || Ke (j w)^1/2 || Rss   (Thorborg and Futtrup, J. Audio Eng. Soc. 59, 2011)
 /// by least squares of the relative error of the whole impedance.
-/// @param low, high  Hz, at least an octave; 0: what the model was measured over, from three times its resonance, or 10 kHz where it does not say
+/// @param low, high  Hz, at least an octave; 0: what the model was measured over, from three times its resonance, or 10
+/// kHz where it does not say
 /// @throws Error (data) for a model without a coil, (usage) for a band that is none
 LossyInductance lossyInductance(const Model&, double low = 0.0, double high = 0.0);
 
 /// Z of a form at w in rad/s, without Re.
 std::complex<double> impedanceOf(const LossyForm&, double omega);
 
-/// The lowest and highest frequency that the model's effects were fitted over, Hz; {10, 10000} of a base alone, whose file does not say.
+/// The lowest and highest frequency that the model's effects were fitted over, Hz; {10, 10000} of a base alone, whose
+/// file does not say.
 std::pair<double, double> bandOf(const Model&);
 
-} // namespace excursion
+}   // namespace excursion

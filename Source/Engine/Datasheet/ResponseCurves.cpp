@@ -26,7 +26,8 @@ void requireCoil(bool electrical)
 int levelNear(const Measurement& take, double level)
 {
     if (!take.excitation || take.excitation->lines.empty() || take.excitation->levels.empty())
-        throw Error(Error::Kind::data, "The take has no periods, so its response at a level cannot be told; excursion bla estimates one over the whole record.");
+        throw Error(Error::Kind::data, "The take has no periods, so its response at a level cannot be told; excursion "
+                                       "bla estimates one over the whole record.");
     const auto& levels = take.excitation->levels;
     if (level == 0.0)
         return static_cast<int>(std::max_element(levels.begin(), levels.end()) - levels.begin());
@@ -37,7 +38,8 @@ int levelNear(const Measurement& take, double level)
             return static_cast<int>(k);
         known += (known.empty() ? "" : ", ") + figure(levels[k], "%.3g");
     }
-    throw Error(Error::Kind::data, "The take has no level near " + figure(level, "%.3g") + " V rms; it has " + known + ".");
+    throw Error(Error::Kind::data,
+                "The take has no level near " + figure(level, "%.3g") + " V rms; it has " + known + ".");
 }
 
 void requireChannel(const Measurement& take, Quantity quantity)
@@ -56,7 +58,7 @@ void refer(Frf& frf, double distance)
     frf.totalVariance.clear();
 }
 
-} // namespace
+}   // namespace
 
 std::vector<double> curveFrequencies(double low, double high)
 {
@@ -86,9 +88,11 @@ Frf soundCurve(const ScaledModel& given, const std::vector<double>& frequency)
     requireCoil(model.electrical());
     const bool followsArea = model.path.parameters[0].free;   // then both are a guess alike, and the sound was measured
     if (given.motionIsGuessed && !followsArea)
-        throw Error(Error::Kind::data, "The take shows neither the sound nor the moving mass, so the sound cannot be told; give the mass or Bl, and the area of the cone.");
+        throw Error(Error::Kind::data, "The take shows neither the sound nor the moving mass, so the sound cannot be "
+                                       "told; give the mass or Bl, and the area of the cone.");
     if (given.areaIsGuessed)
-        throw Error(Error::Kind::data, "The take does not tell the area of the cone, so the sound cannot be told; give it.");
+        throw Error(Error::Kind::data,
+                    "The take does not tell the area of the cone, so the sound cannot be told; give it.");
     Frf frf {frequency, respond(model, {Quantity::pressure}, frequency).front().value, {}, {}};
     const double flight = model.path.parameters[1].value;
     for (std::size_t k = 0; k < frequency.size(); ++k)
@@ -132,10 +136,11 @@ Frf soundCurve(const Measurement& take, double level)
 {
     requireChannel(take, Quantity::pressure);
     if (!take.driver.microphoneDistance)
-        throw Error(Error::Kind::data, "The take does not tell the distance of the microphone (driver.microphoneDistance), so its sound at 1 m cannot be told.");
+        throw Error(Error::Kind::data, "The take does not tell the distance of the microphone "
+                                       "(driver.microphoneDistance), so its sound at 1 m cannot be told.");
     auto frf = bla(take, Quantity::pressure, levelNear(take, level)).frf;
     refer(frf, *take.driver.microphoneDistance);
     return frf;
 }
 
-} // namespace excursion
+}   // namespace excursion

@@ -61,7 +61,8 @@ double resonanceIn(const OpenCoilMechanics& mechanics, double near)
         before = after;
     }
     if (best == 0.0)
-        throw Error(Error::Kind::data, "The linear part of the model has no resonance of the cone within two octaves of its base's; Thiele/Small parameters are not "
+        throw Error(Error::Kind::data, "The linear part of the model has no resonance of the cone within two octaves "
+                                       "of its base's; Thiele/Small parameters are not "
                                        "defined for it.");
     return best;
 }
@@ -85,8 +86,10 @@ Eigen::VectorXd numbersOf(const Model& whole)
     const auto inertia = OpenCoilMechanics(withoutCreep(model)).at(omega);
     // d Im Z/dw = Re dZ/ds on the imaginary axis.
     const double mass = 0.5 * (inertia.slope.real() + inertia.impedance.imag() / omega);
-    const double losses = mechanics.at(omega).impedance.real(), compliance = 1.0 / (omega * omega * mass), Qms = omega * mass / losses;
-    const double area = model.path.parameters[0].value, volume = density * speedOfSound * speedOfSound * area * area * compliance;
+    const double losses = mechanics.at(omega).impedance.real(), compliance = 1.0 / (omega * omega * mass),
+                 Qms = omega * mass / losses;
+    const double area = model.path.parameters[0].value,
+                 volume = density * speedOfSound * speedOfSound * area * area * compliance;
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double Re = none, Le = none, Bl = none, Qes = none, Qts = none, eta0 = none, watt = none, volts = none;
     if (model.electrical()) {
@@ -109,7 +112,7 @@ Eigen::VectorXd numbersOf(const Model& whole)
 /// Whether a number is another one for a model that could be as well.
 bool differs(double a, double b) { return std::abs(a - b) > 1e-6 * std::abs(a); }
 
-} // namespace
+}   // namespace
 
 std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
 {
@@ -131,7 +134,9 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
             figure.why = "the take does not tell the area of the cone; give it";
         } else {
             figure.value = numbers[n];
-            figure.standardError = errors[n];
+            figure.standardError =
+                errors[n] > 0.0 ? errors[n]
+                                : std::numeric_limits<double>::quiet_NaN();   // of what was given it is not known
         }
     }
     return figures;
@@ -145,4 +150,4 @@ const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>& figures, 
     throw std::out_of_range(std::string(symbol));
 }
 
-} // namespace excursion
+}   // namespace excursion

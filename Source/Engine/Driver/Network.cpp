@@ -3,7 +3,8 @@
 
 namespace excursion {
 
-void NetworkDrawing::add(Network::Kind kind, double value, double inductance, const std::string& from, const std::string& to)
+void NetworkDrawing::add(Network::Kind kind, double value, double inductance, const std::string& from,
+                         const std::string& to)
 {
     if (value != 0.0)
         network_.parts.push_back({kind, of_, value, inductance, from, to});
@@ -12,8 +13,14 @@ void NetworkDrawing::add(Network::Kind kind, double value, double inductance, co
 void NetworkDrawing::resistor(double R) { add(Network::Kind::resistor, R, 0.0, {}, {}); }
 void NetworkDrawing::inductor(double L) { add(Network::Kind::inductor, L, 0.0, {}, {}); }
 void NetworkDrawing::cell(double R, double L) { add(Network::Kind::cell, R, L, {}, {}); }
-void NetworkDrawing::mass(const std::string& node, double m) { add(Network::Kind::mass, m, 0.0, node, Network::ground); }
-void NetworkDrawing::damper(const std::string& from, const std::string& to, double R) { add(Network::Kind::damper, R, 0.0, from, to); }
+void NetworkDrawing::mass(const std::string& node, double m)
+{
+    add(Network::Kind::mass, m, 0.0, node, Network::ground);
+}
+void NetworkDrawing::damper(const std::string& from, const std::string& to, double R)
+{
+    add(Network::Kind::damper, R, 0.0, from, to);
+}
 
 void NetworkDrawing::spring(const std::string& from, const std::string& to, double K)
 {
@@ -44,4 +51,4 @@ Network networkOf(const Model& model)
     return network;
 }
 
-} // namespace excursion
+}   // namespace excursion

@@ -19,7 +19,8 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
     std::vector<Eigen::Index> unseen;
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
         const auto& p = *all[static_cast<std::size_t>(k)];
-        const double deviation = std::sqrt(covariance(k, k)), size = std::min(std::max(std::abs(p.value), 1e-12), p.prior);
+        const double deviation = std::sqrt(covariance(k, k)),
+                     size = std::min(std::max(std::abs(p.value), 1e-12), p.prior);
         if (deviation == 0.0)   // held, or of no importance
             continue;
         const bool known = std::isfinite(deviation);
@@ -49,4 +50,4 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
     return errors;
 }
 
-} // namespace excursion
+}   // namespace excursion
