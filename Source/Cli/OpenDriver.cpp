@@ -24,4 +24,4 @@ Model openDriver(const std::string& path)
     return ladder.model();
 }
 
-}   // namespace excursion::cli
+} // namespace excursion::cli

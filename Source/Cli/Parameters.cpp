@@ -239,7 +239,7 @@ void run(const ParametersArguments& options, Terminal& terminal)
     terminal.document(document);
 }
 
-}   // namespace
+} // namespace
 
 void addParameters(CLI::App& app, Terminal& terminal)
 {
@@ -280,4 +280,4 @@ void addParameters(CLI::App& app, Terminal& terminal)
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-}   // namespace excursion::cli
+} // namespace excursion::cli

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t mostNames = 8;   // that stand beside one another below an axis
 constexpr std::size_t mostInKey = 4;
 
-}   // namespace
+} // namespace
 
 Plot quantityPlot(const Collection& all, const Quantities& q)
 {
@@ -101,4 +101,4 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
     return plot;
 }
 
-}   // namespace excursion
+} // namespace excursion

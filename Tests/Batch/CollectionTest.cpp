@@ -32,7 +32,7 @@ Units tenUnits()
 
 double resonanceOf(double K) { return std::sqrt(1800.0 * K / 0.0143) / (2.0 * 3.14159265358979323846); }
 
-}   // namespace
+} // namespace
 
 TEST_CASE("Medians, spreads and trends of a batch", "[batch]")
 {

@@ -92,7 +92,7 @@ const Json& figure(const Json& document, const std::string& symbol)
     throw std::out_of_range(symbol);
 }
 
-}   // namespace
+} // namespace
 
 TEST_CASE("parameters writes every file that it is asked for", "[cli]")
 {

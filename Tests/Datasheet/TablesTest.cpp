@@ -45,7 +45,7 @@ const LawTable& named(const std::vector<LawTable>& laws, const std::string& name
     throw std::out_of_range(name);
 }
 
-}   // namespace
+} // namespace
 
 TEST_CASE("Laws are told over the range with their bands, and the compliance as the reciprocal", "[datasheet]")
 {

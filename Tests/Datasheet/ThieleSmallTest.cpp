@@ -64,7 +64,7 @@ double bisect(double low, double high, const std::function<double(double)>& f)
     return 0.5 * (low + high);
 }
 
-}   // namespace
+} // namespace
 
 TEST_CASE("Thiele/Small parameters of the base are the closed forms", "[datasheet]")
 {

@@ -108,7 +108,7 @@ void requireSameImpedance(const Model& model)
     }
 }
 
-}   // namespace
+} // namespace
 
 TEST_CASE("The network of every linear effect that is felt has the impedance of its equations", "[network]")
 {

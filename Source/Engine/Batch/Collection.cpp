@@ -308,7 +308,7 @@ UnitResult resultOf(const Unit& unit)
     return result;
 }
 
-}   // namespace
+} // namespace
 
 std::vector<std::string> UnitResult::standsOutBy() const
 {
@@ -385,4 +385,4 @@ Collection collect(const Units& units, const CollectOptions& options)
     return all;
 }
 
-}   // namespace excursion
+} // namespace excursion

@@ -100,4 +100,4 @@ Collection collect(const Units&, const CollectOptions&);
 /// Of a JSON {"fs": {"min": 45, "max": 55}, "Qts": {"max": 0.6}}. @throws Error (input)
 std::map<std::string, Limits> readLimits(const std::filesystem::path&);
 
-}   // namespace excursion
+} // namespace excursion

@@ -17,4 +17,4 @@ struct Trend {
 };
 Trend trendOf(const std::vector<double>& values);
 
-}   // namespace excursion
+} // namespace excursion

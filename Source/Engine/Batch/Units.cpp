@@ -50,7 +50,7 @@ std::vector<fs::path> foldersIn(const fs::path& place)
     return folders;
 }
 
-}   // namespace
+} // namespace
 
 bool nameBefore(const std::string& a, const std::string& b)
 {
@@ -127,4 +127,4 @@ Units readUnits(const std::vector<fs::path>& places, const ReadUnitsOptions& opt
     return result;
 }
 
-}   // namespace excursion
+} // namespace excursion

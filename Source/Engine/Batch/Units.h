@@ -45,4 +45,4 @@ Units readUnits(const std::vector<std::filesystem::path>& places, const ReadUnit
 /// Whether one name comes before another one, digits as numbers.
 bool nameBefore(const std::string&, const std::string&);
 
-}   // namespace excursion
+} // namespace excursion

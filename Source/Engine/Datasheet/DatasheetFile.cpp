@@ -56,7 +56,7 @@ std::vector<std::string> remarksOn(const ScaledModel& given)
     return remarks;
 }
 
-}   // namespace
+} // namespace
 
 Datasheet datasheetOf(const ScaledModel& given, double bandLow, double bandHigh, int lawPoints)
 {
@@ -141,4 +141,4 @@ std::string lawsCsv(const Datasheet& sheet)
     return text;
 }
 
-}   // namespace excursion
+} // namespace excursion

@@ -39,4 +39,4 @@ std::string parametersCsv(const Datasheet&);
 /// "limit".
 std::string lawsCsv(const Datasheet&);
 
-}   // namespace excursion
+} // namespace excursion

@@ -24,7 +24,7 @@ std::vector<Eigen::Index> statesWithout(Eigen::Index count, std::initializer_lis
     return states;
 }
 
-}   // namespace
+} // namespace
 
 std::vector<std::complex<double>> blockedImpedance(const Model& model, const std::vector<double>& frequency)
 {
@@ -74,4 +74,4 @@ Model withoutEnclosure(Model model)
     return model;
 }
 
-}   // namespace excursion
+} // namespace excursion

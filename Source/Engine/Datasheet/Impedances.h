@@ -33,4 +33,4 @@ private:
 /// The model without what belongs to its box.
 Model withoutEnclosure(Model);
 
-}   // namespace excursion
+} // namespace excursion

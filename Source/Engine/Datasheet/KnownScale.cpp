@@ -35,7 +35,7 @@ void requirePositive(const std::optional<double>& value, const char* what)
         throw Error(Error::Kind::usage, std::string("The ") + what + " must be a positive number.");
 }
 
-}   // namespace
+} // namespace
 
 Model withMotion(Model model, double factor)
 {
@@ -96,4 +96,4 @@ ScaledModel withKnown(Model model, const KnownScale& known)
     return {std::move(model), guessed, noArea};
 }
 
-}   // namespace excursion
+} // namespace excursion

@@ -36,4 +36,4 @@ Model withMotion(Model, double factor);
 /// take has shown itself, and for numbers that are not positive
 ScaledModel withKnown(Model, const KnownScale&);
 
-}   // namespace excursion
+} // namespace excursion

@@ -38,4 +38,4 @@ std::vector<LawTable> lawTables(const ScaledModel& given, int points)
     return tables;
 }
 
-}   // namespace excursion
+} // namespace excursion

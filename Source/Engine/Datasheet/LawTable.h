@@ -20,4 +20,4 @@ struct LawTable {
 /// @param points  at least 3; an odd number has one at rest
 std::vector<LawTable> lawTables(const ScaledModel&, int points = 41);
 
-}   // namespace excursion
+} // namespace excursion

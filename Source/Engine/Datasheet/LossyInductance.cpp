@@ -205,7 +205,7 @@ LossyForm fitted(const FormKind& kind, const Target& target)
     return form;
 }
 
-}   // namespace
+} // namespace
 
 std::complex<double> impedanceOf(const LossyForm& form, double omega)
 {
@@ -260,4 +260,4 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
     return result;
 }
 
-}   // namespace excursion
+} // namespace excursion

@@ -46,4 +46,4 @@ std::complex<double> impedanceOf(const LossyForm&, double omega);
 /// file does not say.
 std::pair<double, double> bandOf(const Model&);
 
-}   // namespace excursion
+} // namespace excursion

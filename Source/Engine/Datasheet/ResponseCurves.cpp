@@ -58,7 +58,7 @@ void refer(Frf& frf, double distance)
     frf.totalVariance.clear();
 }
 
-}   // namespace
+} // namespace
 
 std::vector<double> curveFrequencies(double low, double high)
 {
@@ -143,4 +143,4 @@ Frf soundCurve(const Measurement& take, double level)
     return frf;
 }
 
-}   // namespace excursion
+} // namespace excursion

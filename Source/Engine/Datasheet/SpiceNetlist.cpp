@@ -108,7 +108,7 @@ private:
     int nodes_ = 0, parts_ = 0;
 };
 
-}   // namespace
+} // namespace
 
 std::string spiceNetlist(const Model& model, const std::string& name)
 {
@@ -145,4 +145,4 @@ std::string spiceNetlist(const Model& model, const std::string& name)
     return text;
 }
 
-}   // namespace excursion
+} // namespace excursion

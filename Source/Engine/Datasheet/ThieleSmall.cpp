@@ -112,7 +112,7 @@ Eigen::VectorXd numbersOf(const Model& whole)
 /// Whether a number is another one for a model that could be as well.
 bool differs(double a, double b) { return std::abs(a - b) > 1e-6 * std::abs(a); }
 
-}   // namespace
+} // namespace
 
 std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
 {
@@ -150,4 +150,4 @@ const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>& figures, 
     throw std::out_of_range(std::string(symbol));
 }
 
-}   // namespace excursion
+} // namespace excursion

@@ -42,4 +42,4 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel&);
 /// The figure of that symbol; throws std::out_of_range.
 const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>&, std::string_view symbol);
 
-}   // namespace excursion
+} // namespace excursion

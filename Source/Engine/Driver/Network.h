@@ -73,4 +73,4 @@ const NetworkParts* networkPartsOf(const Effect&);
 
 Network networkOf(const Model&);
 
-}   // namespace excursion
+} // namespace excursion

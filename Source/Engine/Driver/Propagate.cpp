@@ -50,4 +50,4 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
     return errors;
 }
 
-}   // namespace excursion
+} // namespace excursion
