@@ -28,6 +28,7 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
   excursion improve take --out ladder         all of this, until nothing is missing
   excursion simulate ladder/model.json in.wav --full-scale 10 --out played
                                               what the loudspeaker will do
+  excursion parameters ladder --out ts.csv    Thiele/Small parameters and more, for other programs
 
 No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with something hidden in it.
 A take is a folder (measurement.json and its WAV), a .zma or a .csv. Each verb has its own --help.)";
