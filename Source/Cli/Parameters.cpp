@@ -264,14 +264,14 @@ void addParameters(CLI::App& app, Terminal& terminal)
             "Hz, over which the lossy inductance is fitted; by default from 3 fs to where the model was measured")
         ->expected(2)
         ->delimiter(',')
-        ->type_name("LOW,HIGH");
+        ->type_name("HZ");
     verb->add_option("--spice", o->spice, "the linear model as a SPICE subcircuit")->type_name("FILE");
     verb->add_option("--zma", o->zma, "the impedance")->type_name("FILE");
     verb->add_option("--frd", o->frd, "the sound pressure level at 1 m for 2.83 V")->type_name("FILE");
     verb->add_option("--band", o->band, "Hz, of --zma and --frd; by default where the model was measured")
         ->expected(2)
         ->delimiter(',')
-        ->type_name("LOW,HIGH");
+        ->type_name("HZ");
     verb->add_option(
             "--level", o->level,
             "V rms of --zma and --frd: a model is played a multisine, of a take it is one of its levels; by default "

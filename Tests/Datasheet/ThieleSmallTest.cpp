@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Datasheet/ThieleSmall.h"
 
+#include "Engine/Datasheet/Impedances.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
@@ -171,6 +172,23 @@ TEST_CASE("Standard errors follow the covariance", "[datasheet]")
     model.covariance.resize(0, 0);
     for (const auto& figure : thieleSmall({model, false, false}))
         CHECK(std::isnan(figure.standardError));
+}
+
+TEST_CASE("Where losses in the iron stand in for a part of Re, the coil's resistance is that of the lowest frequency",
+          "[datasheet]")
+{
+    auto model = withNumbers(midbass(), "eddy-currents", {0.3, 0.4});
+    const double low = blockedImpedance(model, {15.0}).front().real();
+    CHECK(low > 6.0);
+    const auto count = parameterVector(model).size();
+    model.covariance = Eigen::MatrixXd::Zero(count, count);
+    model.covariance(0, 0) = std::pow(0.01 * 5.6, 2);
+    CHECK(valueOf(thieleSmall({model, false, false}), "Re") == 5.6);
+    model.covariance(0, 0) = std::pow(0.5 * 5.6, 2);
+    const auto figures = thieleSmall({model, false, false});
+    CHECK(valueOf(figures, "Re") == Approx(low));
+    const double w = 2.0 * pi * valueOf(figures, "fs");
+    CHECK(valueOf(figures, "Qes") == Approx(w * valueOf(figures, "Mms") * low / (7.1 * 7.1)));
 }
 
 TEST_CASE("What the take does not show is not said", "[datasheet]")

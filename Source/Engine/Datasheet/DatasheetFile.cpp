@@ -4,6 +4,7 @@
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Design/WhatIfFile.h"
 #include "Engine/Document/CsvText.h"
+#include "Engine/Document/Figures.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/Network.h"
 
@@ -41,6 +42,9 @@ std::vector<std::string> remarksOn(const ScaledModel& given)
                              "mass or force factor the rest can be said.");
     if (model.electrical() && !given.areaIsGuessed && !model.path.parameters[0].free)
         remarks.emplace_back("The area of the cone was given, and has no error here.");
+    if (const double at = model.electrical() ? resistanceFrequency(model) : 0.0; at > 0.0)
+        remarks.emplace_back("Re is the resistance of the blocked coil at " + frequencyText(at)
+                             + ", the lowest frequency of the take: below it the take does not tell Re from losses in the iron.");
     constexpr double sheetFrequency = 1000.0;
     if (model.electrical() && bandOf(model).second < sheetFrequency)
         remarks.emplace_back("The model was measured below 1 kHz: there Le is a guess.");

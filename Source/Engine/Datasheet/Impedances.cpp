@@ -7,6 +7,8 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace excursion {
@@ -41,6 +43,24 @@ std::vector<std::complex<double>> blockedImpedance(const Model& model, const std
         impedance.push_back(1.0 / system.partialPivLu().solve(B)[current]);
     }
     return impedance;
+}
+
+double resistanceFrequency(const Model& model)
+{
+    constexpr double known = 0.02;
+    const auto& Re = model.baseParameter("Re");   // the first of all parameters
+    const double error = model.covariance.size() > 0 ? std::sqrt(model.covariance(0, 0)) : 0.0;
+    if (model.components.size() < 2 || error <= known * std::abs(Re.value))   // not a number: not known
+        return 0.0;
+    const double low = model.components.back().extent.lowFrequency;
+    const double there = blockedImpedance(model, {low}).front().real();
+    constexpr double something = 1e-3;
+    return std::abs(there - Re.value) > something * there ? low : 0.0;
+}
+
+double coilResistance(const Model& model, double frequency)
+{
+    return frequency > 0.0 ? blockedImpedance(model, {frequency}).front().real() : model.baseParameter("Re").value;
 }
 
 OpenCoilMechanics::OpenCoilMechanics(const Model& model)

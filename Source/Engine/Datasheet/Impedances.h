@@ -14,6 +14,13 @@ namespace excursion {
 /// @throws Error (data) for a model without a coil
 std::vector<std::complex<double>> blockedImpedance(const Model&, const std::vector<double>& frequency);
 
+/// Where the resistance of the coil is told: 0, at which it is the base's Re; or, where losses in the iron that are
+/// slower than the band stand in for a part of Re, so that its standard error exceeds 2 %, the lowest frequency that
+/// was measured: what the blocked coil has there is known.
+double resistanceFrequency(const Model&);
+/// Re Z_blocked there, ohm.
+double coilResistance(const Model&, double resistanceFrequency);
+
 /// The linear part with the coil open (no current), as force over velocity of the cone, N s/m.
 class OpenCoilMechanics {
 public:

@@ -236,7 +236,7 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
         throw Error(
             Error::Kind::usage,
             "The band of the inductance must span at least an octave, from a lower to a higher frequency in Hz.");
-    result.Re = model.baseParameter("Re").value;
+    result.Re = coilResistance(model, resistanceFrequency(model));
 
     constexpr double pointsPerOctave = 24.0;
     const auto points = static_cast<int>(std::ceil(pointsPerOctave * std::log2(result.high / result.low))) + 1;

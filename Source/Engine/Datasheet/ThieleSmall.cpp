@@ -78,7 +78,7 @@ Model withoutCreep(Model model)
 double levelOf(double pressure) { return 20.0 * std::log10(pressure / sheetPressure); }
 
 /// One number a figure, in the order of blanks(); NaN where there is no coil to have it.
-Eigen::VectorXd numbersOf(const Model& whole)
+Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
 {
     const auto model = withoutEnclosure(linearPart(whole));
     const OpenCoilMechanics mechanics(model);
@@ -94,7 +94,7 @@ Eigen::VectorXd numbersOf(const Model& whole)
     double Re = none, Le = none, Bl = none, Qes = none, Qts = none, eta0 = none, watt = none, volts = none;
     if (model.electrical()) {
         constexpr double sheetFrequency = 1000.0;
-        Re = model.baseParameter("Re").value;
+        Re = coilResistance(model, resistanceAt);
         Bl = model.baseParameter("Bl").value;
         Le = blockedImpedance(model, {sheetFrequency}).front().imag() / (2.0 * pi * sheetFrequency);
         Qes = omega * mass * Re / (Bl * Bl);
@@ -117,11 +117,13 @@ bool differs(double a, double b) { return std::abs(a - b) > 1e-6 * std::abs(a); 
 std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
 {
     const auto& model = given.model;
-    const auto numbers = numbersOf(model), errors = standardErrorsOf(model, numbersOf);
+    const double resistanceAt = model.electrical() ? resistanceFrequency(model) : 0.0;
+    const auto of = [resistanceAt](const Model& m) { return numbersOf(m, resistanceAt); };
+    const auto numbers = of(model), errors = standardErrorsOf(model, of);
     constexpr double other = 1.25;   // any factor but 1
     auto otherArea = model;
     otherArea.path.parameters[0].value *= other;
-    const auto ifMoved = numbersOf(withMotion(model, other)), ifWider = numbersOf(otherArea);
+    const auto ifMoved = of(withMotion(model, other)), ifWider = of(otherArea);
     auto figures = blanks();
     for (std::size_t k = 0; k < figures.size(); ++k) {
         auto& figure = figures[k];
