@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -57,9 +58,13 @@ void printQuantities(const Collection& all, Terminal& terminal)
 {
     std::vector<std::vector<std::string>> rows;
     for (const auto& q : all.quantities) {
+        // As many digits as show a tenth of the spread.
+        const double scatter = q.spread > 0.0 ? std::abs(q.median) / q.spread : 0.0;
+        const int digits = scatter > 0.0 ? std::clamp(static_cast<int>(std::ceil(std::log10(scatter))) + 2, 4, 8) : 4;
         const bool limits = q.limited();
-        rows.push_back({q.name, q.unit, std::to_string(q.known), known(q.median), known(q.spread, 2), known(q.least),
-                        known(q.most), limits ? std::to_string(q.within) + " of " + std::to_string(all.measured) : "",
+        rows.push_back({q.name, q.unit, std::to_string(q.known), known(q.median, digits), known(q.spread, 2),
+                        known(q.least, digits), known(q.most, digits),
+                        limits ? std::to_string(q.within) + " of " + std::to_string(all.measured) : "",
                         q.Cpk    ? fixed(*q.Cpk, 2)
                         : limits ? "-"
                                  : "",
@@ -71,8 +76,7 @@ void printQuantities(const Collection& all, Terminal& terminal)
     terminal.table({"quantity", "unit", "units", "median", "spread", "least", "most", all.limited ? "within" : "",
                     all.limited ? "Cpk" : "", "drift per unit"},
                    rows);
-    terminal.say(
-        "Spread: 1.4826 times the median distance from the median. * drift of more than four standard errors.");
+    terminal.say("Spread: 1.4826 times the median distance from the median. * drift that is none of chance.");
 }
 
 void run(const CollectArguments& options, Terminal& terminal)

@@ -61,7 +61,9 @@ void addHeadline(Page& page, const Collection& all)
                                           : "bad");
     else
         page.headline(of(all.measured, count) + (count == 1 ? " unit is measured" : " units are measured")
-                          + (outliers > 0 ? ", " + std::to_string(outliers) + " stand out" : ""),
+                          + (outliers > 0
+                                 ? ", " + std::to_string(outliers) + (outliers == 1 ? " stands out" : " stand out")
+                                 : ""),
                       all.measured == count && outliers == 0 ? "good" : "warn");
     std::vector<std::pair<std::string, std::string>> facts {{"units", std::to_string(count)},
                                                             {"measured", std::to_string(all.measured)},
@@ -173,7 +175,7 @@ void addQuantities(Page& page, const Collection& all)
     }
     page.table(header, rows);
     page.note(std::string("Spread: 1.4826 times the median distance from the median. Drift: slope over the order of "
-                          "the batch and its standard error; a star where it exceeds four of them.")
+                          "the batch and its standard error; a star where it exceeds 4 (1 + 8/(n \u2212 3.5)) of them.")
               + (all.limited ? " Cpk: the nearer limit's distance from the mean over three standard deviations." : ""));
 }
 

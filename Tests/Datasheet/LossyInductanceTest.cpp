@@ -60,7 +60,7 @@ TEST_CASE("A semi-inductance is found where there is one", "[datasheet]")
     CHECK(wright.errorPercent <= leach.errorPercent * 1.0001);
     const auto &lr2 = formNamed(found, "lr2"), &lr3 = formNamed(found, "lr3");
     CHECK(lr3.errorPercent < 0.5 * lr2.errorPercent);
-    CHECK(lr3.errorPercent < 2.0);
+    CHECK(lr3.errorPercent < 2.5);
 
     // At a = 1/2 the semi-inductor of Thorborg and Futtrup is the whole of it.
     const auto root = lossyInductance(inIron(0.05, 0.5));

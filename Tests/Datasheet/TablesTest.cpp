@@ -75,8 +75,8 @@ TEST_CASE("A datasheet as CSV and JSON", "[datasheet]")
     const auto sheet = datasheetOf({bent(), false, false}, 0.0, 0.0, 5);
     const auto csv = parametersCsv(sheet), lawText = lawsCsv(sheet);
     CHECK_THAT(csv, Catch::StartsWith("symbol,value,standard_error,unit,remark\nRe,6,0.006")
-                        && Catch::Contains("\nMms,10,0.00") && Catch::Contains("\nSd,133,"));
-    CHECK(csv.find("nan") == std::string::npos);
+                        && Catch::Contains("\nMms,10,0.01,g,") && Catch::Contains("\nSd,133,"));
+    CHECK(csv.find(",nan") == std::string::npos);
     CHECK_THAT(lawText, Catch::Contains("K(x),x,m,0,2000,")
                             && Catch::Contains("limit,force factor Bl(x) falls to 82 %,m,-0.00"));
     const auto document = toJson(sheet);

@@ -222,9 +222,9 @@ TEST_CASE("What the take does not show is not said", "[datasheet]")
     CHECK_THROWS_AS(withKnown(model, {.coneArea = std::numeric_limits<double>::infinity()}), Error);
     CHECK_THROWS_AS(withKnown(midbass(), {.mass = 0.02}), Error);
 
-    // Where the sound was measured, it tells Sd/Mms^1/2, and so the sensitivity.
+    // Where the sound was measured, it tells Sd/Mms^1/2, and so Vas and the sensitivity.
     model.path.parameters[0].free = true;
-    CHECK(known(thieleSmall(withKnown(model, {}))) == "Re Le fs Qms Qes Qts eta0 SPL 1W SPL 2.83V ");
+    CHECK(known(thieleSmall(withKnown(model, {}))) == "Re Le fs Qms Qes Qts Vas eta0 SPL 1W SPL 2.83V ");
 
     const auto mechanical = thieleSmall(withKnown(makeModel("mechanical"), {}));
     CHECK(known(mechanical) == "Mms Cms Rms fs Qms ");

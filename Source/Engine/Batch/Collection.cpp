@@ -322,7 +322,13 @@ std::vector<std::string> UnitResult::standsOutBy() const
     return words;
 }
 
-bool Quantities::drifts() const { return std::abs(drift) > 4.0 * driftError; }
+bool Quantities::drifts() const
+{
+    // About Student's t of as many degrees of freedom where a normal value has four deviations.
+    const double most = known < fewestForOutliers ? std::numeric_limits<double>::infinity()
+                                                  : 4.0 * (1.0 + 8.0 / (static_cast<double>(known) - 3.5));
+    return std::abs(drift) > most * driftError;
+}
 
 const Quantities* Collection::find(const std::string& name) const
 {

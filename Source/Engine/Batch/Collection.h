@@ -37,7 +37,7 @@ struct Quantities {
     /// Slope of the straight line through the values over the units' places in the batch, per unit, and its standard
     /// error; NaN for fewer than four.
     double drift = std::numeric_limits<double>::quiet_NaN(), driftError = std::numeric_limits<double>::quiet_NaN();
-    bool drifts() const;   ///< the slope exceeds four of its standard errors
+    bool drifts() const;   ///< the slope exceeds 4 (1 + 8/(n - 3.5)) of its errors, n units >= 5: none of chance
 
     Limits limits;
     bool limited() const { return limits.least || limits.most; }
