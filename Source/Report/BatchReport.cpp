@@ -77,7 +77,7 @@ void addHeadline(Page& page, const Collection& all)
         facts.emplace_back(verdict, std::to_string(times));
     page.facts(facts);
     for (const auto& unread : all.unread)
-        page.paragraph("Not in the table: " + unread.name + ". " + unread.why);
+        page.paragraph("Not in the table: " + unread.name + ": " + unread.why);
 }
 
 void addUnits(Page& page, const Collection& all)
