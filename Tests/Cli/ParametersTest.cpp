@@ -62,10 +62,24 @@ Json everyLinearEffect()
         effect("eddy-currents", {{"Ks", "ohm s^a", 0.012}, {"a", "1", 0.68}}),
         effect("creep",
                {{"S", "N/m", 300.0}, {"centre", "log10 Hz", 1.0}, {"width", "decades", 3.0}, {"tilt", "1", 0.1}}),
-        effect(
-            "vented-box",
-            {{"Kb", "N/m", 1500.0}, {"fB", "Hz", 42.0}, {"1/QP", "1", 0.02}, {"1/QL", "1", 0.1}, {"1/QA", "1", 0.03}}),
-        effect("side-resonance", {{"mu1", "kg", 4e-4}, {"f1", "Hz", 900.0}, {"1/Q1", "1", 0.2}}),
+        effect("vented-box",
+               {{"Kb", "N/m", 900.0},
+                {"fB", "Hz", 42.0},
+                {"1/QP", "1", 0.02},
+                {"1/QL", "1", 0.1},
+                {"1/QA", "1", 0.03},
+                {"Kp/Ka", "1", 0.2},
+                {"port", "1", 0.0}}),
+        effect("side-resonance",
+               {{"mu1", "kg", 4e-4},
+                {"f1", "Hz", 900.0},
+                {"1/Q1", "1", 0.2},
+                {"mu2", "kg", 2e-4},
+                {"f2", "Hz", 2500.0},
+                {"1/Q2", "1", 0.1},
+                {"mu3", "kg", 0.0},
+                {"f3", "Hz", 1000.0},
+                {"1/Q3", "1", 0.3}}),
         effect("stiffness", {{"c1", "N/m", 0.0}, {"c2", "N/m", 550.0}})};
 }
 
@@ -173,7 +187,7 @@ TEST_CASE("parameters of an impedance alone say what they rest on", "[cli]")
         runProgram(scratch.folder(), {"parameters", model, "--mass", "0.02", "--cone-area", "0.0133", "--json"}),
         "excursion-parameters");
     CHECK(figure(known, "Mms").at("sheetValue").get<double>() == Approx(20.0));
-    CHECK(figure(known, "Qts") == figure(alone, "Qts"));
+    CHECK(figure(known, "Qts").at("value").get<double>() == Approx(figure(alone, "Qts").at("value").get<double>()));
     CHECK(figure(known, "Vas").at("value").get<double>()
           == Approx(1.2 * 343.0 * 343.0 * 0.0133 * 0.0133 / (1852.0 * 0.02 / 0.01435)));
     refusedWith(4, {"parameters", model, "--frd", (scratch / "p.frd").string()}, scratch, "mass");
