@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -40,13 +41,6 @@ struct Found {
 constexpr double nothing = -400.0;   ///< dB of a power of zero
 
 double decibels(double powerRatio) { return powerRatio > 1e-40 ? 10.0 * std::log10(powerRatio) : nothing; }
-
-std::string extensionOf(const std::string& path)
-{
-    auto text = std::filesystem::path(path).extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 Quantity outputOf(const Measurement& take, const std::string& wanted)
 {
@@ -176,7 +170,7 @@ void print(const Found& found, const std::string& title, Terminal& terminal)
 
 void write(const Found& found, const Measurement& take, int level, const BlaArguments& options)
 {
-    const auto extension = extensionOf(options.out);
+    const auto extension = endingOf(options.out);
     if (extension == ".json")
         return writeJson(found.document, options.out);
     if (extension == ".csv")
@@ -193,7 +187,7 @@ void write(const Found& found, const Measurement& take, int level, const BlaArgu
 /// Said before the work, not after it.
 void checkExtension(const BlaArguments& options)
 {
-    const auto extension = extensionOf(options.out);
+    const auto extension = endingOf(options.out);
     if (options.out.empty() || extension == ".csv" || extension == ".frd" || extension == ".zma" || extension == ".json")
         return;
     throw Error(Error::Kind::usage, "The file \"" + options.out + "\" should end in .csv, .frd, .zma or .json.");
@@ -205,7 +199,7 @@ void run(const BlaArguments& options, Terminal& terminal)
     auto take = readMeasurement(options.take);
     completeExcitation(take);
     const auto output = outputOf(take, options.output);
-    if (extensionOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
+    if (endingOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
         throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");
     const bool periodic = take.excitation && !take.excitation->lines.empty();
     const int level = !periodic           ? -1

@@ -10,4 +10,7 @@ namespace excursion::cli {
 void requireFilePlace(const std::string& file);       ///< a file can be written there
 void requireFolderPlace(const std::string& folder);   ///< it is a folder that files can be written to, or can become one
 
+/// What a file's name ends in, with the dot and in lower case: ".csv"; empty without one.
+std::string endingOf(const std::string& path);
+
 } // namespace excursion::cli

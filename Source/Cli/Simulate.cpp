@@ -68,13 +68,6 @@ Played fromTake(const SimulateArguments& options, const Model& model)
     return {take.sampleRate, input, take.excitation};
 }
 
-bool isWav(const std::string& path)
-{
-    auto extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".wav";
-}
-
 /// How far the model is driven beyond what it was measured at; empty where all of it was.
 std::string beyond(const Model& model, const Measurement& take)
 {
@@ -97,7 +90,7 @@ void run(const SimulateArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage, "The simulation cannot run: " + reason + ".");
     requireFolderPlace(options.out);
     const auto model = readModel(options.model);
-    const auto played = isWav(options.input) ? fromWav(options, model) : fromTake(options, model);
+    const auto played = endingOf(options.input) == ".wav" ? fromWav(options, model) : fromTake(options, model);
     SimulationSummary summary;
     auto take = simulate(model, played.channel.samples, played.sampleRate, options.simulation, &summary, terminal.progress());
     take.channels.front().fullScale = std::max(played.channel.fullScale, peakOf(played.channel.samples));

@@ -28,6 +28,7 @@ public:
 
     std::string jsonFile;   ///< where the document goes: empty: nowhere; "-": stdout
     bool quiet = false;
+    bool exitZero = false;   ///< an answer that is no is no failure of the program: exit code 0
     int answer = 0;   ///< exit code of a verb that ran well: 1 when its answer is no
 
     /// What long work is given: draws the bar and carries the stop of Ctrl-C. Valid as long as the terminal.

@@ -30,6 +30,7 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
   excursion improve take --out ladder         all of this, until nothing is missing
   excursion simulate ladder/model.json in.wav --full-scale 10 --out played
                                               what the loudspeaker will do
+  excursion parameters ladder --out ts.csv    Thiele/Small parameters and more, for other programs
 
 No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with something hidden in it.
 A take is a folder (measurement.json and its WAV), a .zma or a .csv. Each verb has its own --help.)";
@@ -72,7 +73,7 @@ int run(CLI::App& app, cli::Terminal& terminal, std::vector<std::string> argumen
     try {
         requireKnownVerb(app, arguments);
         app.parse(std::move(arguments));
-        return terminal.answer;
+        return terminal.exitZero ? 0 : terminal.answer;
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0)   // --help and --version
             return app.exit(e);
@@ -104,6 +105,7 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", EXCURSION_VERSION);
     app.add_option("--json", terminal.jsonFile, "print one JSON document and nothing else, or write it to FILE.json")
         ->type_name("[FILE.json]");
+    app.add_flag("--exit-zero", terminal.exitZero, "exit with 0, not 1, when the work is done and its answer is no; for scripts that stop at failures");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
     app.require_subcommand(1);
     app.parse_complete_callback([&terminal] {   // before the verb does its work
@@ -132,7 +134,9 @@ int main(int argc, char** argv)
     cli::addEffects(app, terminal);
     cli::addSimulate(app, terminal);
     cli::addWhatIf(app, terminal);
+    cli::addParameters(app, terminal);
     cli::addPredistort(app, terminal);
+    cli::addCollect(app, terminal);
 
     app.footer(footer);   // last, as the verbs would inherit it
 

@@ -65,6 +65,17 @@ std::optional<Estimate> estimateFrom(const JsonField& field)
 
 } // namespace
 
+Json toJson(const StrokeLimits& stroke)
+{
+    Json document {{"range", numberOrNull(stroke.range)}, {"resonance", numberOrNull(stroke.resonance)}, {"tone", numberOrNull(stroke.tone)}};
+    document["limits"] = Json::array();
+    for (const auto& limit : stroke.limits)
+        document["limits"].push_back(limitJson(limit));
+    document["gapCentre"] = estimateJson(stroke.gapCentre);
+    document["stiffnessAsymmetry"] = estimateJson(stroke.stiffnessAsymmetry);
+    return document;
+}
+
 Json toJson(const WhatIf& whatIf)
 {
     const auto& [distortion, stroke] = whatIf;
@@ -72,14 +83,7 @@ Json toJson(const WhatIf& whatIf)
     document["effects"] = Json::array();
     for (const auto& effect : distortion.effects)
         document["effects"].push_back({{"effect", effect.effect}, {"without", channelsJson(effect.without)}, {"alone", channelsJson(effect.alone)}});
-    document["range"] = numberOrNull(stroke.range);
-    document["resonance"] = numberOrNull(stroke.resonance);
-    document["tone"] = numberOrNull(stroke.tone);
-    document["limits"] = Json::array();
-    for (const auto& limit : stroke.limits)
-        document["limits"].push_back(limitJson(limit));
-    document["gapCentre"] = estimateJson(stroke.gapCentre);
-    document["stiffnessAsymmetry"] = estimateJson(stroke.stiffnessAsymmetry);
+    document.update(toJson(stroke));
     return document;
 }
 

@@ -10,6 +10,8 @@ namespace excursion {
 
 /// The fields of the document "excursion-whatif" (Docs/Formats.md), which also stand in a ladder.
 nlohmann::ordered_json toJson(const WhatIf&);
+/// Those of its fields that tell the stroke.
+nlohmann::ordered_json toJson(const StrokeLimits&);
 WhatIf whatIfFromJson(const JsonField&);
 
 } // namespace excursion

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The linear loudspeaker of seed 2.1-2.2, in the same form as an effect, so that a model is one sum.
 #include "Engine/Driver/Catalogue.h"
+#include "Engine/Driver/Network.h"
 
 namespace excursion {
 namespace {
 
-class Electrodynamic final : public EffectOf<Electrodynamic> {
+void drawCone(const double* c, NetworkDrawing& into)
+{
+    into.mass(Network::cone, c[0]);
+    into.damper(Network::cone, Network::ground, c[1]);
+    into.spring(Network::cone, Network::ground, c[2]);
+}
+
+class Electrodynamic final : public EffectOf<Electrodynamic>, public NetworkParts {
 public:
     std::string id() const override { return "electrodynamic"; }
     std::string title() const override { return "Linear electrodynamic driver"; }
@@ -37,9 +45,17 @@ public:
         sum.mass += m;
         sum.force += Bl * at.i - Rms * at.v - K * at.x;
     }
+
+    void draw(const Extent&, const double* c, NetworkDrawing& into) const override
+    {
+        into.resistor(c[0]);
+        into.inductor(c[1]);
+        into.forceFactor(c[2]);
+        drawCone(c + 3, into);
+    }
 };
 
-class Mechanical final : public EffectOf<Mechanical> {
+class Mechanical final : public EffectOf<Mechanical>, public NetworkParts {
 public:
     std::string id() const override { return "mechanical"; }
     std::string title() const override { return "Linear mechanical driver"; }
@@ -67,6 +83,8 @@ public:
         sum.mass += c[0];
         sum.force -= c[1] * at.v + c[2] * at.x;
     }
+
+    void draw(const Extent&, const double* c, NetworkDrawing& into) const override { drawCone(c, into); }
 };
 
 } // namespace

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
+#include "Engine/Driver/Network.h"
 #include "Engine/Driver/RelaxationSpectrum.h"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <string>
 
 namespace excursion {
 namespace {
@@ -18,7 +20,7 @@ namespace {
 /// even band is the logarithmic creep of Knudsen and Jensen (J. Audio Eng. Soc. 41, 1993), a wide tilted one a fractional
 /// (spring-pot) suspension, a narrow one the three-parameter solid. From there f_k and K_k depart as far as the data asks
 /// (RelaxationSpectrum.h).
-class Creep final : public EffectOf<Creep> {
+class Creep final : public EffectOf<Creep>, public NetworkParts {
 public:
     std::string id() const override { return "creep"; }
     std::string title() const override { return "Suspension creep"; }
@@ -118,6 +120,16 @@ public:
             rate[k] = c[2 * k + 1] * difference;
         }
         sum.force -= force;
+    }
+
+    /// Each cell a spring in series with a damper, K_k and K_k/(2 pi f_k).
+    void draw(const Extent&, const double* c, NetworkDrawing& into) const override
+    {
+        for (int k = 0; k < cells; ++k) {
+            const auto between = "creep" + std::to_string(k + 1);
+            into.spring(Network::cone, between, c[2 * k]);
+            into.damper(between, Network::ground, c[2 * k] / c[2 * k + 1]);
+        }
     }
 
 private:

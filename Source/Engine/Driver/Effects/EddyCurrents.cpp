@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
+#include "Engine/Driver/Network.h"
 #include "Engine/Driver/RelaxationSpectrum.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace {
 /// tail, those that the impedance shows, depart from the law in rate and weight as far as the data asks (RelaxationSpectrum.h): real
 /// coils follow K s^a within a few to thirty percent.
 /// A cell's memory is the current j_k through its inductor: dj_k/dt = p_k (i - j_k), voltage R_k (i - j_k).
-class EddyCurrents final : public EffectOf<EddyCurrents> {
+class EddyCurrents final : public EffectOf<EddyCurrents>, public NetworkParts {
 public:
     std::string id() const override { return "eddy-currents"; }
     std::string title() const override { return "Eddy currents (semi-inductance)"; }
@@ -142,6 +143,14 @@ public:
             rate[k] = cell[0] * through;
         }
         sum.drop += voltage;
+    }
+
+    void draw(const Extent& e, const double* c, NetworkDrawing& into) const override
+    {
+        into.resistor(c[0]);
+        into.inductor(c[1]);
+        for (int k = 0; k < memorySize(e); ++k)
+            into.cell(c[3 + 2 * k], c[3 + 2 * k] / c[2 + 2 * k]);
     }
 
 private:

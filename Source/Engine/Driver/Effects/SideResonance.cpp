@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
+#include "Engine/Driver/Network.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,7 +16,7 @@ namespace {
 /// That is a surround or a dust cap that swings against the cone, the air behind a dome or in a box with its standing waves, and any passive
 /// load of the cone with these resonances (Foster). Far below w such a part moves with the cone as mass, far above it stands still. The base's m
 /// is the rest of the cone. A part is light against it: one that is not is a second loudspeaker's worth of mass, that of a port above all.
-class SideResonance final : public EffectOf<SideResonance> {
+class SideResonance final : public EffectOf<SideResonance>, public NetworkParts {
 public:
     std::string id() const override { return "side-resonance"; }
     std::string title() const override { return "Side resonances (surround, dust cap, air behind the cone)"; }
@@ -110,6 +112,18 @@ public:
             rate[0] = c[2] * (at.v - memory[0]) + c[1] * (at.x - memory[1]);
             rate[1] = memory[0];
             sum.force -= c[0] * rate[0];
+        }
+    }
+
+    void draw(const Extent&, const double* c, NetworkDrawing& into) const override
+    {
+        for (int k = 0; k < resonators; ++k, c += each) {
+            if (c[0] == 0.0)
+                continue;
+            const auto part = "side" + std::to_string(k + 1);
+            into.spring(Network::cone, part, c[0] * c[1]);
+            into.damper(Network::cone, part, c[0] * c[2]);
+            into.mass(part, c[0]);
         }
     }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Effects/Effects.h"
 
+#include "Engine/Driver/Network.h"
+
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace excursion {
 namespace {
@@ -19,7 +22,7 @@ namespace {
 /// The microphone hears the cone, and the port as much as its place lets it: `port` is 1 far away, less close to the cone.
 /// The memory is w, dy/dt and y, and does not depend on Kb, which is a strength. The radiator's spring yields below a thousandth of the lowest
 /// frequency of interest, so that nothing integrates for ever. A closed box adds to K alone.
-class VentedBox final : public EffectOf<VentedBox> {
+class VentedBox final : public EffectOf<VentedBox>, public NetworkParts {
 public:
     std::string id() const override { return "vented-box"; }
     std::string title() const override { return "Vented box or passive radiator"; }
@@ -103,6 +106,29 @@ public:
         rate[2] = vy - yield * e.lowFrequency * y;
         sum.force += c[1] * at.x - c[0] * pull;
     }
+
+    /// The air spring, with its absorption, between the cone and what leaks, from there to the port, which moves inward as the cone moves
+    /// outward; the port's mass, losses and, of a radiator, its spring with what it yields.
+    void draw(const Extent& e, const double* c, NetworkDrawing& into) const override
+    {
+        const double Ka = c[0];
+        if (Ka == 0.0)
+            return;
+        const double portMass = Ka / c[2], leak = c[5] / Ka;   // leak: velocity over force
+        const std::string air = leak > 0.0 ? "air" : "port";
+        into.spring(Network::cone, Network::ground, -c[1]);
+        into.spring(Network::cone, air, Ka);
+        into.damper(Network::cone, air, Ka * c[6]);
+        if (leak > 0.0)
+            into.damper(air, "port", 1.0 / leak);
+        into.mass("port", portMass);
+        into.damper("port", Network::ground, portMass * c[3]);
+        if (c[4] > 0.0) {
+            into.spring("port", "radiator", portMass * c[4]);
+            into.damper("radiator", Network::ground, portMass * c[4] / (yield * e.lowFrequency));
+        }
+    }
+    bool ofEnclosure() const override { return true; }
 
     template <class T>
     void radiate(const Extent&, const T* c, const Motion<T>&, const T&, const T*, const T* rate, Emission<T>& sum) const
