@@ -103,6 +103,7 @@ int main(int argc, char** argv)
     app.add_option("--json", terminal.jsonFile, "print one JSON document and nothing else, or write it to FILE.json")
         ->type_name("[FILE.json]");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
+    app.add_flag("--progress", terminal.progressLines, "tell on stderr how far the work is, in lines that a program can read");
     app.require_subcommand(1);
     app.parse_complete_callback([&terminal] {   // before the verb does its work
         if (!terminal.jsonFile.empty() && terminal.jsonFile != "-")
