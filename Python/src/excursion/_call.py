@@ -24,8 +24,6 @@ _ANSWER = "answer.json"
 
 
 def _text(value: Any) -> str:
-    if isinstance(value, (bool, np.bool_)):
-        raise Error(f"An option has the value {value}, expected a number or a text.", "usage")
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (float, np.floating)):
@@ -38,12 +36,12 @@ def _text(value: Any) -> str:
 
 
 def _options(options: Mapping[str, Any]) -> list[str]:
-    """Words of the command line: None is left out, True is a flag, a sequence is joined by commas."""
+    """Words of the command line: None is left out, a truth is a flag, a sequence is joined by commas."""
     words = []
     for name, value in options.items():
-        if value is True:
-            words.append(name)
-        elif value is not None and value is not False:
+        if isinstance(value, (bool, np.bool_)):
+            words += [name] if value else []
+        elif value is not None:
             words.append(f"{name}={_text(value)}")
     return words
 

@@ -67,6 +67,8 @@ class Model:
         Re: float | None = None,
         Le: float | None = None,
         Bl: float | None = None,
+        Sd: float = 0.01,
+        microphone_distance: float = 1.0,
         name: str = "",
     ) -> Model:
         """A linear loudspeaker of known parameters; without a coil where Re, Le and Bl are left out.
@@ -77,6 +79,8 @@ class Model:
         :param Re: resistance of the coil, ohm
         :param Le: its inductance, H
         :param Bl: force factor, N/A
+        :param Sd: area of the cone, m²; only the pressure depends on it
+        :param microphone_distance: m; the pressure is that of a half space, told without its time of flight
         """
         given = {"Re": Re, "Le": Le, "Bl": Bl, "m": m, "Rms": Rms, "K": K}
         coil = [given[key] is not None for key in ("Re", "Le", "Bl")]
@@ -87,6 +91,7 @@ class Model:
             for key, value in given.items()
             if value is not None
         ]
+        path = [("Sd", float(Sd), "m^2"), ("tau", 0.0, "s")]
         return Model(
             {
                 "format": FORMAT,
@@ -94,7 +99,13 @@ class Model:
                 "name": name,
                 "base": {"id": "electrodynamic" if all(coil) else "mechanical", "parameters": parameters},
                 "effects": [],
-                "path": {"parameters": []},
+                "path": {
+                    "parameters": [
+                        {"name": key, "value": value, "unit": unit, "standardError": None, "free": False}
+                        for key, value, unit in path
+                    ],
+                    "microphoneDistance": float(microphone_distance),
+                },
                 "covariance": None,
                 "laws": [],
             }
@@ -114,6 +125,10 @@ class Model:
         """Ids of the effects, in the order in which they were added."""
         return [effect["id"] for effect in self.document["effects"]]
 
+    def _components(self) -> list[dict[str, Any]]:
+        path = {"id": "path", **self.document["path"]}
+        return [self.document["base"], *self.document["effects"], path]
+
     @property
     def parameters(self) -> pd.DataFrame:
         """One row a parameter, over its component (the base, an effect, "path") and its name.
@@ -121,9 +136,11 @@ class Model:
         ``value`` and ``standardError`` are in ``unit``, an SI unit; the standard error is NaN where the take does not
         determine the parameter.
         """
-        rows = []
-        for component in (self.document["base"], *self.document["effects"], {"id": "path", **self.document["path"]}):
-            rows += [{"of": component["id"], **parameter} for parameter in component["parameters"]]
+        rows = [
+            {"of": component["id"], **parameter}
+            for component in self._components()
+            for parameter in component["parameters"]
+        ]
         return table(rows, ["of", "name"])
 
     def table(self) -> pd.DataFrame:
@@ -131,10 +148,10 @@ class Model:
         return self.parameters
 
     def __getitem__(self, name: str | tuple[str, str]) -> float:
-        component, key = name if isinstance(name, tuple) else (None, name)
-        for part in (self.document["base"], {"id": "path", **self.document["path"]}, *self.document["effects"]):
-            if component == part["id"] or (component is None and part not in self.document["effects"]):
-                for parameter in part["parameters"]:
+        of, key = name if isinstance(name, tuple) else (None, name)
+        for component in self._components():
+            if of == component["id"] or (of is None and component["id"] not in self.effects):
+                for parameter in component["parameters"]:
                     if parameter["name"] == key:
                         return number(parameter["value"])
         raise KeyError(name)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
 from typing import Any
@@ -84,7 +85,8 @@ def write_take(take: Take, folder: str | os.PathLike[str]) -> None:
         )
         draft.replace(folder / _AUDIO)
     except (OSError, soundfile.LibsndfileError) as trouble:
-        draft.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            draft.unlink()
         raise Error(f"The take '{folder}' cannot be written ({trouble}).", "input") from trouble
     write_json(document, folder / "measurement.json")
 
@@ -116,38 +118,47 @@ def _place(path: Path) -> Path:
     raise Error(f"The folder '{path}' has no measurement.json.", "input")
 
 
+def _read_header(document: dict[str, Any], folder: Path) -> tuple[Path, list[tuple[str, str, float]], dict[str, Any]]:
+    """The WAV, quantity, unit and factor of each of its channels, and what else a Take is made with."""
+    try:
+        audio = document["audio"]
+        if Path(audio).name != audio:
+            raise Error(f"audio is {audio!r}, expected the name of a WAV in the same folder.", "input")
+        channels = []
+        for channel in document["channels"]:
+            quantity = channel["quantity"]
+            if quantity not in QUANTITIES:
+                raise Error(f"There is no quantity {quantity!r}; the known ones are {', '.join(QUANTITIES)}.", "input")
+            unit, factor = unit_of(quantity, channel["unit"])
+            channels.append((quantity, unit, factor * float(channel["fullScale"])))
+        if len({quantity for quantity, _, _ in channels}) != len(channels):
+            raise Error("A quantity is there twice.", "input")
+        told = document.get("driver") or {}
+        return (
+            folder / audio,
+            channels,
+            {
+                "rate": float(document["sampleRate"]),
+                "excitation": _read_excitation(document.get("excitation")),
+                "driver": Driver(told.get("name") or "", told.get("coneArea"), told.get("microphoneDistance")),
+            },
+        )
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as trouble:
+        raise Error(f"It is not a measurement.json: {type(trouble).__name__} at {trouble}.", "input") from trouble
+
+
 def read_take(path: str | os.PathLike[str]) -> Take:
     place = _place(Path(path))
     document = read_json(place)
     require_format(document, _FORMAT, f"'{place}'")
     try:
-        audio = place.parent / document["audio"]
-        channels = [
-            (channel["quantity"], channel["unit"], float(channel["fullScale"])) for channel in document["channels"]
-        ]
-        unknown = [quantity for quantity, _, _ in channels if quantity not in QUANTITIES]
-        if unknown:
-            raise Error(
-                f"'{place}': there is no quantity {unknown[0]!r}; the known ones are {', '.join(QUANTITIES)}.", "input"
-            )
-        if len({quantity for quantity, _, _ in channels}) != len(channels):
-            raise Error(f"'{place}': a quantity is there twice.", "input")
-        rate = float(document["sampleRate"])
-        excitation = _read_excitation(document.get("excitation"))
-        told = document.get("driver") or {}
-        driver = Driver(told.get("name") or "", told.get("coneArea"), told.get("microphoneDistance"))
-    except (KeyError, TypeError, ValueError, IndexError) as trouble:
-        raise Error(
-            f"'{place}' is not a measurement.json: {type(trouble).__name__} at {trouble}.", "input"
-        ) from trouble
-    try:
+        audio, channels, told = _read_header(document, place.parent)
         columns, _ = soundfile.read(audio, dtype="float64", always_2d=True)
+        if columns.shape[1] != len(channels):
+            raise Error(f"The WAV has {columns.shape[1]} channels, but {len(channels)} are named.", "input")
+        samples = {quantity: column * scale for column, (quantity, _, scale) in zip(columns.T, channels)}
+        return Take(units={quantity: unit for quantity, unit, _ in channels}, **told, **samples)
+    except Error as trouble:
+        raise Error(f"'{place}': {trouble}", "input") from trouble
     except (OSError, soundfile.LibsndfileError) as trouble:
         raise Error(f"'{audio}' cannot be read ({trouble}).", "input") from trouble
-    if columns.shape[1] != len(channels):
-        raise Error(f"'{audio}' has {columns.shape[1]} channels, but '{place}' names {len(channels)}.", "input")
-    samples, units = {}, {}
-    for column, (quantity, unit, full_scale) in zip(columns.T, channels):
-        units[quantity], factor = unit_of(quantity, unit)
-        samples[quantity] = column * (full_scale * factor)
-    return Take(rate, excitation=excitation, driver=driver, units=units, **samples)
