@@ -29,10 +29,23 @@ def stiff() -> excursion.Virtual:
 
 
 @pytest.fixture(scope="session")
-def linear() -> excursion.Virtual:
+def told() -> list[tuple[float, str]]:
+    """What is told while the linear one is measured."""
+    return []
+
+
+@pytest.fixture(scope="session")
+def linear(told: list[tuple[float, str]]) -> excursion.Virtual:
     """A midrange with nothing hidden in it."""
     return excursion.virtual(
-        3, driver="midrange", hidden=[], channels=["current", "displacement"], noise=-80, rate=32000, seconds=1
+        3,
+        driver="midrange",
+        hidden=[],
+        channels=["current", "displacement"],
+        noise=-80,
+        rate=32000,
+        seconds=1,
+        progress=lambda share, what: told.append((share, what)),
     )
 
 

@@ -34,14 +34,14 @@ def script(path, body: str) -> str:
 
 
 def test_a_missing_program_is_told(away):
-    with pytest.raises(excursion.Error, match="was not found.*EXCURSION") as told:
+    with pytest.raises(excursion.Error, match=r"was not found.*EXCURSION") as told:
         excursion.check(excursion.Take(8000, voltage=[1.0]))
     assert told.value.kind == "program"
 
 
 def test_a_wrong_variable_is_told(away, monkeypatch):
     monkeypatch.setenv("EXCURSION", str(away / "gone"))
-    with pytest.raises(excursion.Error, match="EXCURSION names '.*gone', which is no program") as told:
+    with pytest.raises(excursion.Error, match=r"EXCURSION names '.*gone', which is no program") as told:
         excursion.program()
     assert told.value.kind == "program"
 
@@ -197,9 +197,7 @@ def test_a_take_at_fault_is_refused_with_its_problems(stiff, scratch):
     assert ladder.table().empty and len(ladder.problems) > 0
 
 
-def test_progress_is_told_in_order(scratch):
-    told: list[tuple[float, str]] = []
-    excursion.virtual(1, hidden=[], seconds=1, rate=32000, progress=lambda share, what: told.append((share, what)))
+def test_progress_is_told_in_order(linear, told):
     shares = [share for share, _ in told]
     assert len(told) > 10 and shares == sorted(shares) and shares[0] < 0.1 and shares[-1] > 0.9
     assert all(0 <= share <= 1 and what for share, what in told)

@@ -221,7 +221,7 @@ def test_broken_files_are_refused(kept, tmp_path):
     with pytest.raises(excursion.Error, match="cannot be read"):
         excursion.Take.read(tmp_path / "nowhere")
     (tmp_path / "empty").mkdir()
-    with pytest.raises(excursion.Error, match="has no measurement.json"):
+    with pytest.raises(excursion.Error, match=r"has no measurement\.json"):
         excursion.Take.read(tmp_path / "empty")
     wav = (kept / "take.wav").read_bytes()
     (kept / "take.wav").write_bytes(wav[: len(wav) // 2])

@@ -125,7 +125,8 @@ def draw_laws(model: Model, figure: Any = None) -> Any:
         least, most = np.min(law.value) * factor, np.max(law.value) * factor
         if np.all(np.isfinite(low)):
             reach = 0.5 * (most - least) + 0.02 * abs(most)  # a wide band must not flatten the law
-            axis.set_ylim(max(low.min(), least - reach), min(high.max(), most + reach))
+            bottom, top = max(low.min(), least - reach), min(high.max(), most + reach)
+            axis.set_ylim(bottom - 0.05 * (top - bottom), top + 0.05 * (top - bottom))
     for axis in axes.flat[len(laws) :]:
         axis.set_visible(False)
     axes[0, 0].legend(frameon=False, fontsize="small")
@@ -137,21 +138,17 @@ def draw_comparison(comparison: Comparison, level: int, figure: Any = None) -> A
     axes = _axes(figure, len(channels), 1, (8, 2.5 * len(channels) + 0.6), sharex=True)
     for axis, channel in zip(axes.flat, channels):
         spectrum = comparison.spectrum(channel, level)
-        for key, colour, width in (
-            ("noise", _NOISE, 1.0),
-            ("error", _ERROR, 1.2),
-            ("measured", _MEASURED, 1.6),
-            ("model", _MODEL, 1.0),
+        shown = {key: spectrum[key].to_numpy(dtype=float) for key in spectrum}
+        # On lines that were not excited a linear model plays rounding, and any model what no comparison is about.
+        shown["model"] = np.where(shown["model"] > 0.1 * shown["measured"], shown["model"], np.nan)
+        for key, colour, style in (
+            ("noise", _NOISE, {"linewidth": 1.0}),
+            ("error", _ERROR, {"linewidth": 1.2}),
+            ("measured", _MEASURED, {"linestyle": "", "marker": "o", "markersize": 3.5}),
+            ("model", _SERIES[5], {"linestyle": "", "marker": "o", "markersize": 1.5}),
         ):
-            if key in spectrum:
-                axis.plot(spectrum.index, _decibels(spectrum[key].to_numpy()), color=colour, linewidth=width, label=key)
-        # What the model plays on lines that were not excited is rounding, far below everything that was measured.
-        least = min(
-            np.nanmin(_decibels(spectrum[key].to_numpy())[spectrum[key].to_numpy() > 0])
-            for key in ("measured", "error", "noise")
-            if key in spectrum and (spectrum[key] > 0).any()
-        )
-        axis.set_ylim(bottom=least - 6)
+            if key in shown:
+                axis.plot(spectrum.index, _decibels(shown[key]), color=colour, label=key, **style)
         unit = next(one["unit"] for one in comparison.document["channels"] if one["quantity"] == channel)
         axis.set_ylabel(f"{channel}\ndB re 1 {_WORDS.get(unit, unit)}")
     _hertz(axes[-1, 0])
