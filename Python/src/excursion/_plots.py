@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _MEASURED, _MODEL, _ERROR, _NOISE = "#333333", "#0072B2", "#D55E00", "#999999"
 _SERIES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#333333"]
 
+_NO_DISTORTION = -120.0  # dB: what the program says where there is none
+
 _PREFIXED = ("V", "A", "m", "m/s", "m/s^2", "Pa", "N", "H")
 _WORDS = {"ohm": "Ω", "N s/m": "N·s/m", "m/s^2": "m/s²"}
 
@@ -233,15 +235,19 @@ def draw_whatif(whatif: WhatIf, channel: str | None, figure: Any = None) -> Any:
     for axis, parity in zip(axes.flat, ("even", "odd")):
         for colour, (effect, variant) in zip([_MEASURED, *_SERIES], variants):
             bands = whatif.bands(effect, variant, wanted)
+            values = bands[parity].where(bands[parity] > _NO_DISTORTION)
+            name = effect if variant == "whole" else f"without {effect}"
             axis.plot(
                 bands.index,
-                bands[parity],
+                values,
+                ".-",
                 color=colour,
                 linewidth=2 if variant == "whole" else 1.2,
-                label=effect if variant == "whole" else f"without {effect}",
+                label=name if values.notna().any() else f"{name}: none",
             )
         axis.set_title(f"{parity} distortion of the {wanted}", fontsize="medium")
         _hertz(axis)
     axes[0, 0].set_ylabel("dB of the channel in the band")
-    axes[0, 1].legend(frameon=False, fontsize="small")
+    for axis in axes.flat:
+        axis.legend(frameon=False, fontsize="small")
     return axes
