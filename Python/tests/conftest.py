@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import tempfile
 
@@ -14,18 +15,31 @@ import excursion
 matplotlib.use("Agg")
 
 
+def measured(seed: int, hidden: dict[str, float], noise: float, **options) -> excursion.Virtual:
+    """A virtual midrange; of its take two levels of two realizations, as the tests have to be quick."""
+    speaker = excursion.virtual(
+        seed,
+        driver="midrange",
+        hidden=hidden,
+        channels=["current", "displacement"],
+        noise=noise,
+        rate=32000,
+        seconds=1,
+        **options,
+    )
+    take, e = speaker.take, speaker.take.excitation
+    block = e.period * (e.settle_periods + e.periods)
+    shape = (len(e.levels), e.realizations, block)
+    kept = {quantity: values[: e.samples].reshape(shape)[-2:, :2].ravel() for quantity, values in take.samples.items()}
+    shorter = dataclasses.replace(e, levels=e.levels[-2:], realizations=2)
+    speaker.take = excursion.Take(take.rate, excitation=shorter, driver=take.driver, **kept)
+    return speaker
+
+
 @pytest.fixture(scope="session")
 def stiff() -> excursion.Virtual:
     """A midrange whose stiffness depends on x; with it everything else is linear."""
-    return excursion.virtual(
-        3,
-        driver="midrange",
-        hidden={"stiffness": 0.3},
-        channels=["current", "displacement"],
-        noise=-70,
-        rate=32000,
-        seconds=1,
-    )
+    return measured(3, {"stiffness": 0.3}, noise=-70)
 
 
 @pytest.fixture(scope="session")
@@ -37,16 +51,7 @@ def told() -> list[tuple[float, str]]:
 @pytest.fixture(scope="session")
 def linear(told: list[tuple[float, str]]) -> excursion.Virtual:
     """A midrange with nothing hidden in it."""
-    return excursion.virtual(
-        3,
-        driver="midrange",
-        hidden=[],
-        channels=["current", "displacement"],
-        noise=-80,
-        rate=32000,
-        seconds=1,
-        progress=lambda share, what: told.append((share, what)),
-    )
+    return measured(3, {}, noise=-80, progress=lambda share, what: told.append((share, what)))
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 from matplotlib import pyplot
@@ -23,11 +25,11 @@ def line(axis, label: str) -> np.ndarray:
 
 
 def test_a_take(stiff):
-    axes = stiff.take.plot(start=6.0, seconds=0.5).flat
+    axes = stiff.take.plot(start=2.5, seconds=0.5).flat
     assert [axis.get_ylabel() for axis in axes] == ["voltage\nV", "current\nA", "displacement\nmm"]
     shown = axes[2].get_lines()[0]
-    np.testing.assert_allclose(shown.get_ydata(), 1e3 * stiff.take["displacement"][192000:208000])
-    assert shown.get_xdata()[0] == 6.0
+    np.testing.assert_allclose(shown.get_ydata(), 1e3 * stiff.take["displacement"][80000:96000])
+    assert shown.get_xdata()[0] == 2.5
     with pytest.raises(excursion.Error, match="ends at"):
         stiff.take.plot(start=100)
 
@@ -69,6 +71,13 @@ def test_distortion_by_effect(ladder):
     expected = ladder.whatif.bands(channel="displacement")["even"]
     np.testing.assert_allclose(line(even, "as it is"), expected.where(expected > -120))
     assert "without stiffness: none" in [text.get_text() for text in odd.get_legend().get_texts()]
+
+
+def test_without_matplotlib_everything_but_pictures_works(ladder, monkeypatch):
+    for module in ("matplotlib", "matplotlib.pyplot"):
+        monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ImportError, match="pip install"):
+        ladder.plot()
 
 
 def test_a_figure_of_ones_own(ladder):
