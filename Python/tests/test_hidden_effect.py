@@ -143,6 +143,25 @@ def test_classes_of_models_are_ranked(stiff):
     assert ranking.noise_db == pytest.approx(-73, abs=2)
 
 
+def test_an_impedance_is_enough_for_a_linear_model(tmp_path):
+    """A ZMA of a closed form: what an impedance tells is found, what it does not is told."""
+    frequency = np.geomspace(10, 5000, 200)
+    s = 2j * np.pi * frequency
+    impedance = 5.6 + 4e-4 * s + 6.5**2 * s / (0.015 * s**2 + 1.2 * s + 1200)
+    lines = (f"{f:.9g} {abs(z):.12g} {np.degrees(np.angle(z)):.12g}\n" for f, z in zip(frequency, impedance))
+    (tmp_path / "wöofer.zma").write_text("".join(lines))
+    fit = excursion.fit(tmp_path / "wöofer.zma")
+    assert fit.model["Re"] == pytest.approx(5.6, rel=1e-5) and fit.model["Le"] == pytest.approx(4e-4, rel=1e-5)
+    assert fit.model["Bl"] ** 2 / fit.model["m"] == pytest.approx(6.5**2 / 0.015, rel=1e-5)
+    assert np.isnan(fit.parameters.loc[("electrodynamic", "m"), "standardError"])
+    comparison = excursion.compare(tmp_path / "wöofer.zma", fit.model)
+    assert comparison.error.loc["current", "db"] < -100 and np.isnan(comparison.error.loc["current", "chi"])
+    assert comparison.plot().shape == (1, 1) and comparison.residuals == []
+    with pytest.raises(excursion.Error, match="no stimulus") as refused:
+        excursion.whatif(fit.model, tmp_path / "wöofer.zma")
+    assert refused.value.kind == "data"
+
+
 def test_the_catalogue_is_listed():
     effects = excursion.effects()
     assert {"stiffness", "force-factor", "doppler"} <= set(effects.index)

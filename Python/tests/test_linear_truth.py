@@ -238,6 +238,49 @@ def test_a_fractional_system_is_identified():
     np.testing.assert_allclose(found.model.response(frequency), value, rtol=1e-3)
 
 
+def test_a_mixed_impedance_is_identified():
+    frequency = np.geomspace(10, 10000, 150)
+    s, resonance, quality = 2j * np.pi * frequency, 2 * np.pi * 60, 3.0
+    impedance = 5.0 + 0.02 * s**0.7 + 2500 * s / (s**2 + resonance / quality * s + resonance**2)
+    response = excursion.Response(
+        frequency, impedance, input="current", output="voltage", noise_variance=np.full(150, 1e-8)
+    )
+    found = excursion.identify(response, alpha="free", mixed=True, output="voltage", input="current")
+    expected = {
+        "resistance": 5.0,
+        "semiInductance": 0.02,
+        "alpha": 0.7,
+        "motional": 2500,
+        "resonance": 60,
+        "quality": 3,
+    }
+    for name, value in expected.items():
+        assert found.table().loc[name, "value"] == pytest.approx(value, rel=1e-4), name
+    assert found.error_db < -80
+
+
+def test_motor_and_cone_are_told_apart():
+    """The sound of a cone that is a piston up to a resonance of its own."""
+    draw = np.random.default_rng(17)
+    spectra = multisines(draw, [2.0], 3)
+    s = 2j * np.pi * FREQUENCY
+    cone = 3.0 / (1 + s / (2 * np.pi * 1500 * 2) + (s / (2 * np.pi * 1500)) ** 2)
+    displacement = admittance_and_motion(FREQUENCY)[1]
+    measured = {"displacement": displacement, "pressure": cone * s**2 * displacement}
+    samples = {quantity: record(through(spectra, response), 3) for quantity, response in measured.items()}
+    for quantity, values in samples.items():
+        samples[quantity] = values + 1e-5 * np.std(values) * draw.standard_normal(values.size)
+    e = excursion.Excitation(
+        period=PERIOD, settle_periods=1, periods=2, realizations=3, levels=[2.0], grid="odd-random", lines=LINES
+    )
+    take = excursion.Take(RATE, voltage=record(spectra, 3), excitation=e, **samples)
+    found = excursion.identify(take, 3, cone=2, delay=0.0)
+    np.testing.assert_allclose(found.cone.response(FREQUENCY), cone, rtol=2e-3)
+    np.testing.assert_allclose(found.motor.response(FREQUENCY)[:, 0, 0], displacement, rtol=2e-3)
+    assert found.motor.outputs == ["displacement", "velocity", "acceleration"]
+    assert found.table().loc["cascade", "errorDb"] < -50
+
+
 def test_truncation_keeps_its_bound():
     frequency = np.geomspace(0.1, 1e5, 2000)
     model = excursion.StateSpace(A, B, C, D)

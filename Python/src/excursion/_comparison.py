@@ -11,7 +11,7 @@ from ._call import Call, PathLike
 from ._check import problems
 from ._document import Result, number, numbers, table
 from ._errors import Error
-from ._fit import ModelLike, errors, model_argument
+from ._fit import ModelLike, errors, known, model_argument
 from ._program import Progress
 from ._take import Samples, Take
 
@@ -64,7 +64,7 @@ class Comparison(Result):
         for channel in self.document["channels"]:
             for level in channel["levels"]:
                 kinds = {key: value for key, value in (level.get("kinds") or {}).items() if key != "noise"}
-                rows.append({"channel": channel["quantity"], "level": level["rms"], **level["error"], **kinds})
+                rows.append({"channel": channel["quantity"], "level": level["rms"], **known(level["error"]), **kinds})
         return table(rows, ["channel", "level"])
 
     def spectrum(self, channel: str | None = None, level: int = -1) -> pd.DataFrame:

@@ -17,18 +17,30 @@ from ._take import Take
 FORMAT = "excursion-diagnosis"
 
 
-class Diagnosis(Result):
-    """The verdict on a model, and the effects that it may lack, best first."""
+class Judgement(Result):
+    """A verdict, and what the check said of the take."""
 
     @property
     def verdict(self) -> str:
-        """ "missing-effect", "complete", "unknown-effect" or "bad-measurement"."""
+        """One of "missing-effect", "complete", "unknown-effect" or "bad-measurement"."""
         return str(self.document["verdict"])
 
     @property
     def sentence(self) -> str:
         """The verdict in words."""
         return str(self.document["sentence"])
+
+    @property
+    def problems(self) -> pd.DataFrame:
+        """One row a fault: ``kind``, ``channel`` (None: all), ``value``, ``unit``, ``fatal``, ``sentence``."""
+        return problems(self.document.get("problems"))
+
+    def _words(self) -> str:
+        return f"{self.verdict}: {self.sentence}"
+
+
+class Diagnosis(Judgement):
+    """The verdict on a model, and the effects that it may lack, best first."""
 
     @property
     def missing(self) -> str | None:
@@ -59,11 +71,6 @@ class Diagnosis(Result):
         """What the model leaves, in words and figures, as Docs/Formats.md describes it."""
         return self.document.get("remainder")
 
-    @property
-    def problems(self) -> pd.DataFrame:
-        """What the check said of the take."""
-        return problems(self.document.get("problems"))
-
     def table(self) -> pd.DataFrame:
         """One row an effect, best first: ``confidence`` (0 to 1), whether it was ``refitted``, the error in dB with it
         by channel (after the refit, else as predicted), ``significant``, and ``reason``."""
@@ -81,9 +88,6 @@ class Diagnosis(Result):
                 }
             )
         return table(rows, "effect")
-
-    def _words(self) -> str:
-        return f"{self.verdict}: {self.sentence}"
 
 
 def diagnose(take: Take | PathLike, model: ModelLike, *, progress: Progress | None = None) -> Diagnosis:

@@ -22,9 +22,14 @@ def model_argument(call: Call, model: ModelLike, name: str = "given.json") -> st
     return call.keep(model.document, name) if isinstance(model, Model) else call.path(model)
 
 
+def known(error: dict[str, Any]) -> dict[str, Any]:
+    """An error of a document; chi is of no meaning where the noise is not known."""
+    return error if error["noiseFloorDb"] is not None else {**error, "chi": None}
+
+
 def errors(found: dict[str, Any] | None) -> pd.DataFrame:
     """The error by channel: ``db`` and ``noiseFloorDb`` in dB of the channel, ``chi`` (1: only noise is left)."""
-    rows = [{"channel": channel, **error} for channel, error in (found or {}).items()]
+    rows = [{"channel": channel, **known(error)} for channel, error in (found or {}).items()]
     return table(rows, "channel")
 
 

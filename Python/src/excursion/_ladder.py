@@ -10,10 +10,9 @@ from typing import Any
 import pandas as pd
 
 from ._call import Call, PathLike
-from ._check import problems
 from ._comparison import Comparison
-from ._diagnosis import Diagnosis
-from ._document import Result, number, read_json, require_format, table
+from ._diagnosis import Diagnosis, Judgement
+from ._document import number, read_json, require_format, table
 from ._fit import errors
 from ._model import Model
 from ._program import Progress
@@ -48,7 +47,7 @@ class Rung:
         return f"<excursion.Rung: {'+ ' + self.added if self.added else 'first model'}>"
 
 
-class Ladder(Result):
+class Ladder(Judgement):
     """Models from the linear one on, each with one more effect, and the verdict on the last."""
 
     def __init__(self, document: dict[str, Any], report: str = "") -> None:
@@ -66,15 +65,6 @@ class Ladder(Result):
         return Ladder(document, page.read_text(encoding="utf-8") if page.is_file() else "")
 
     @property
-    def verdict(self) -> str:
-        """ "complete", "missing-effect", "unknown-effect" or "bad-measurement"."""
-        return str(self.document["verdict"])
-
-    @property
-    def sentence(self) -> str:
-        return str(self.document["sentence"])
-
-    @property
     def model(self) -> Model | None:
         """Of the last rung; None where the take was not fit for use."""
         return self.rungs[-1].model if self.rungs else None
@@ -88,11 +78,6 @@ class Ladder(Result):
     def withdrawn(self) -> list[str]:
         """Effects that were added and taken back."""
         return list(self.document["withdrawn"])
-
-    @property
-    def problems(self) -> pd.DataFrame:
-        """What the check said of the take."""
-        return problems(self.document["problems"])
 
     @property
     def whatif(self) -> WhatIf | None:
@@ -122,9 +107,6 @@ class Ladder(Result):
         from ._plots import draw_ladder
 
         return draw_ladder(self, figure=figure)
-
-    def _words(self) -> str:
-        return f"{self.verdict}: {self.sentence}"
 
 
 def improve(

@@ -120,7 +120,9 @@ class StateSpace:
         f = np.asarray(frequency, dtype=float)
         s = 2j * np.pi * f
         at = np.asarray(np.exp(s / self.rate) if self.rate > 0 else s**self.alpha)
-        inner = np.linalg.solve(at[..., None, None] * np.eye(self.order) - self.A, self.B.astype(complex))
+        resolvent = at[..., None, None] * np.eye(self.order) - self.A
+        driven = np.broadcast_to(self.B.astype(complex), (*f.shape, *self.B.shape))  # else NumPy 1 takes B for a stack
+        inner = np.linalg.solve(resolvent, driven)
         found = (self.C @ inner + self.D) * np.exp(-s * self.delay)[..., None, None]
         return np.asarray(found[..., 0, 0] if self.D.size == 1 else found, dtype=complex)
 

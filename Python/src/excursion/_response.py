@@ -97,7 +97,7 @@ class Response(Result):
 
     @property
     def method(self) -> str:
-        """ "periods", "welch", or "given"."""
+        """One of "periods", "welch" and "given"."""
         return str(self.document.get("method", "given"))
 
     @property
