@@ -117,6 +117,8 @@ def test_a_program_that_cannot_be_run(tmp_path, monkeypatch, scratch):
     with pytest.raises(excursion.Error, match="cannot be run") as told:
         excursion.check(excursion.Take(8000, voltage=[1.0]))
     assert told.value.kind == "program"
+    with pytest.raises(excursion.Error, match="does not tell its version"):
+        excursion.version()
 
 
 SHORT = excursion.Take(48000, voltage=np.sin(np.arange(4800) / 9), current=np.cos(np.arange(4800) / 9))

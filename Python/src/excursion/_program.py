@@ -60,12 +60,14 @@ def program() -> str:
 
 def version() -> str:
     """The version of the program, such as "0.1.0"."""
-    said = subprocess.run(
-        [program(), "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
-    )
-    if said.returncode != 0:
-        raise Error(f"'{program()}' does not tell its version; is it excursion?", "program")
-    return said.stdout.strip()
+    path = program()
+    try:
+        said = subprocess.run(
+            [path, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True
+        ).stdout
+    except (OSError, subprocess.CalledProcessError) as trouble:
+        raise Error(f"'{path}' does not tell its version; is it excursion?", "program") from trouble
+    return said.strip()
 
 
 def run(arguments: Sequence[str], folder: str, progress: Progress | None = None) -> tuple[int, str]:
