@@ -72,6 +72,7 @@ def test_a_ladder_is_kept_and_read_again(ladder, tmp_path):
 
 def test_an_effect_is_added(stiff, stiff_fit):
     added = excursion.add(stiff.take, "stiffness", stiff_fit.model)
+    assert excursion.fit(stiff.take, "stiffness").model.effects == ["stiffness"]  # one name needs no list
     assert added.added == "stiffness" and added.model.effects == ["stiffness"]
     assert added.error.loc["displacement", "db"] < added.error_before.loc["displacement", "db"] - 30
     assert added.model["stiffness", "c1"] == added.parameters.loc[("stiffness", "c1"), "value"]

@@ -95,7 +95,7 @@ def fit(take: Take | PathLike, effects: Sequence[str] = (), *, progress: Progres
         document = call.run(
             "fit",
             [call.take(take)],
-            {"--effects": list(effects) or None, "--out": "model.json"},
+            {"--effects": effects if len(effects) > 0 else None, "--out": "model.json"},
             "excursion-fit",
             negative=False,
         )

@@ -127,6 +127,9 @@ def improve(
     with Call(progress) as call:
         place = call.path(out) if out is not None else "ladder"
         document = call.run(
-            "improve", [call.take(take)], {"--with": list(with_effects) or None, "--out": place}, FORMAT
+            "improve",
+            [call.take(take)],
+            {"--with": with_effects if len(with_effects) > 0 else None, "--out": place},
+            FORMAT,
         )
         return Ladder(document, (call.folder / place / "report.html").read_text(encoding="utf-8"))

@@ -44,7 +44,7 @@ class Plan(Result):
 
 
 def excite(
-    levels: Sequence[float] = (0.5, 1.5, 4.0),
+    levels: float | Sequence[float] = (0.5, 1.5, 4.0),
     *,
     rate: float | None = None,
     period: int | None = None,
@@ -71,7 +71,7 @@ def excite(
     :param seed: of the lines and phases; the same seed gives the same signal
     """
     options = {
-        "--levels": list(levels),
+        "--levels": np.atleast_1d(levels).tolist(),
         "--rate": rate,
         "--period": period,
         "--periods": periods,
