@@ -10,11 +10,22 @@
 
 using namespace excursion::test;
 
+namespace {
+
+Outcome measured(const Scratch& scratch, const std::vector<std::string>& options)
+{
+    std::vector<std::string> words {"virtual", "--seed", "1", "--hidden", "none", "--rate", "32000", "--seconds", "1",
+                                    "--channels", "current", "--out", (scratch / "take").string(), "--json"};
+    words.insert(words.end(), options.begin(), options.end());
+    return runProgram(scratch.folder(), words);
+}
+
+} // namespace
+
 TEST_CASE("--progress tells the share that is done in lines, beside the document and with --quiet too", "[cli]")
 {
     const Scratch scratch;
-    const auto told = runProgram(scratch.folder(), {"virtual", "--seed", "1", "--hidden", "none", "--rate", "32000", "--seconds", "1", "--channels",
-                                                    "current", "--out", (scratch / "take").string(), "--json", "--quiet", "--progress"});
+    const auto told = measured(scratch, {"--quiet", "--progress"});
     CHECK(told.code == 0);
     CHECK(nlohmann::json::parse(told.out).at("format") == "excursion-virtual");
 
@@ -39,8 +50,7 @@ TEST_CASE("--progress tells the share that is done in lines, beside the document
 TEST_CASE("Without --progress a program that reads stderr gets nothing there", "[cli]")
 {
     const Scratch scratch;
-    const auto told = runProgram(scratch.folder(), {"virtual", "--seed", "1", "--hidden", "none", "--rate", "32000", "--seconds", "1", "--channels",
-                                                    "current", "--out", (scratch / "take").string(), "--json"});
+    const auto told = measured(scratch, {});
     CHECK(told.code == 0);
     CHECK(told.err.empty());
 }

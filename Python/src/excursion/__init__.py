@@ -24,7 +24,6 @@ from ._linear import (
     MotorCone,
     Reduction,
     Stabilization,
-    StateSpace,
     identify,
     reduce,
     stabilize,
@@ -34,6 +33,7 @@ from ._model import Law, Model
 from ._program import program, version
 from ._response import DetectionLines, Response, bla
 from ._simulation import Predistortion, Simulation, predistort, simulate
+from ._statespace import StateSpace
 from ._take import QUANTITIES, Driver, Excitation, Take
 from ._whatif import WhatIf, whatif
 

@@ -11,8 +11,8 @@ import pandas as pd
 from ._call import Call, PathLike
 from ._document import Result, number, numbers, table
 from ._errors import Error
-from ._linear import StateSpace
 from ._program import Progress
+from ._statespace import StateSpace
 from ._take import Samples, Take
 from ._takefile import read_take
 
