@@ -59,6 +59,8 @@ std::string padded(const std::string& text, std::size_t to, bool right)
     return right ? blanks + text : text + blanks;
 }
 
+double shareFrom(double fraction) { return std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0; }
+
 std::string formatted(double value, std::chars_format format, int precision)
 {
     std::array<char, 400> text {};   // a fixed 1e308 has 309 digits
@@ -85,7 +87,9 @@ Progress Terminal::progress()
 {
     Progress progress;
     progress.stop = stop_.get_token();
-    if (stderrIsTerminal_ && !quiet)
+    if (progressLines)
+        progress.report = [this](double fraction, std::string_view what) { printProgress(fraction, what); };
+    else if (stderrIsTerminal_ && !quiet)
         progress.report = [this](double fraction, std::string_view what) { drawBar(fraction, what); };
     return progress;
 }
@@ -142,10 +146,19 @@ void Terminal::complain(std::string_view sentence)
     std::cerr << "excursion: " << sentence << '\n' << std::flush;
 }
 
+void Terminal::printProgress(double fraction, std::string_view what)
+{
+    auto line = "progress " + fixed(shareFrom(fraction), 2) + " " + std::string(what);
+    if (line == lastBar_)
+        return;
+    std::cerr << line << '\n' << std::flush;
+    lastBar_ = std::move(line);
+}
+
 void Terminal::drawBar(double fraction, std::string_view what)
 {
     constexpr int cells = 32;
-    const double shown = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
+    const double shown = shareFrom(fraction);
     const auto full = static_cast<std::size_t>(std::lround(shown * cells));
     std::string bar = padded(std::string(full, '='), cells, false);
     bar.append("| ").append(padded(fixed(100 * shown, 0), 3, true)).append(" %  ").append(what.substr(0, 40));

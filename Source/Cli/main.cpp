@@ -107,6 +107,7 @@ int main(int argc, char** argv)
         ->type_name("[FILE.json]");
     app.add_flag("--exit-zero", terminal.exitZero, "exit with 0, not 1, when the work is done and its answer is no; for scripts that stop at failures");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
+    app.add_flag("--progress", terminal.progressLines, "tell on stderr how far the work is, in lines that a program can read");
     app.require_subcommand(1);
     app.parse_complete_callback([&terminal] {   // before the verb does its work
         if (!terminal.jsonFile.empty() && terminal.jsonFile != "-")
