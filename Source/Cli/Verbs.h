@@ -17,6 +17,7 @@ inline constexpr auto look = "2. See whether the take is fit for use, and what i
 inline constexpr auto fit = "3. Fit a model and see where it fails";
 inline constexpr auto diagnose = "4. Find what the model is missing, and add it";
 inline constexpr auto use = "5. Use the model";
+inline constexpr auto around = "Around it";
 } // namespace step
 
 // Declared here in the order of the method, called in the same order by main.
@@ -40,5 +41,6 @@ void addEffects(CLI::App&, Terminal&);
 void addSimulate(CLI::App&, Terminal&);
 void addWhatIf(CLI::App&, Terminal&);
 void addPredistort(CLI::App&, Terminal&);
+void addDoctor(CLI::App&, Terminal&);
 
 } // namespace excursion::cli

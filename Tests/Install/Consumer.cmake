@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # An installed Excursion, moved to another place, is found by a project that knows nothing of this one, and used by it.
 #     cmake -DBUILD=... -DSOURCE=... -DVERSION=... -DGENERATOR=... -DCOMPILER=... -P Consumer.cmake
+cmake_minimum_required(VERSION 3.25)
 set(scratch ${BUILD}/Tests/Install/scratch)
 file(REMOVE_RECURSE ${scratch})
 file(MAKE_DIRECTORY ${scratch})
