@@ -134,18 +134,19 @@ std::vector<fs::path> pluginFolders(const std::string& format, const char* varia
     return folders;
 }
 
+/// Beside the program, wherever it was installed; without /proc where it usually is.
 std::optional<std::string> presets()
 {
     std::error_code none;
-    const auto self = fs::read_symlink("/proc/self/exe", none);
-    if (none)
-        return std::nullopt;
-    return firstOf({self.parent_path().parent_path() / "share/excursion"}, {"presets"});
+    std::vector<fs::path> folders {"/usr/local/share/excursion", "/usr/share/excursion"};
+    if (const auto self = fs::read_symlink("/proc/self/exe", none); !none)
+        folders.insert(folders.begin(), self.parent_path().parent_path() / "share/excursion");
+    return firstOf(folders, {"presets"});
 }
 
 std::vector<Finding> examine()
 {
-    const std::string plugin = "build with -DEXCURSION_PLUGIN=ON, or install the package";
+    const std::string plugin = "a build with -DEXCURSION_PLUGIN=ON has it";
     return {
         {"version", "Excursion", EXCURSION_VERSION, ""},
         {"built-with", "built with", builtWith(), ""},
