@@ -8,35 +8,13 @@ namespace {
 
 constexpr std::size_t lineWidth = 112;
 
-/// CLI11 tells the type of an option and what checks it in one text: "TEXT", "TEXT:{pink,white}", "FLOAT in [1 - 120]".
-struct Type {
-    std::string word;      ///< for the value
-    std::string choices;   ///< "pink, white"; empty when it is free
-};
-
-Type typeOf(const CLI::Option& option)
-{
-    const auto text = option.get_type_name();
-    Type type;
-    type.word = text.substr(0, text.find_first_of(": "));
-    if (type.word == "TEXT")
-        type.word = "NAME";
-    else if (type.word == "FLOAT" || type.word == "INT" || type.word == "UINT")
-        type.word = "NUMBER";
-    const auto open = text.find('{'), close = text.rfind('}');
-    if (open != std::string::npos && close != std::string::npos)
-        for (const char c : text.substr(open + 1, close - open - 1))
-            type.choices += c == ',' ? std::string(", ") : std::string(1, c);
-    return type;
-}
-
 bool takesMany(const CLI::Option& option) { return option.get_expected_max() > 1; }
 
 std::string valueWord(const CLI::Option& option)
 {
     if (option.get_type_size() == 0)
         return "";
-    const auto word = typeOf(option).word;
+    const auto word = valueTypeOf(option).word;
     return " " + word + (option.get_expected_max() > 2 ? ",.." : takesMany(option) ? "," + word : "");
 }
 
@@ -49,7 +27,30 @@ std::string defaultOf(const CLI::Option& option)
     return text;
 }
 
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string text;
+    for (const auto& word : words)
+        text += (text.empty() ? "" : ", ") + word;
+    return text;
+}
+
 } // namespace
+
+ValueType valueTypeOf(const CLI::Option& option)
+{
+    const auto text = option.get_type_name();
+    ValueType type;
+    type.word = text.substr(0, text.find_first_of(": "));
+    if (type.word == "TEXT")
+        type.word = "NAME";
+    else if (type.word == "FLOAT" || type.word == "INT" || type.word == "UINT")
+        type.word = "NUMBER";
+    const auto open = text.find('{'), close = text.rfind('}');
+    if (open != std::string::npos && close != std::string::npos)
+        type.choices = CLI::detail::split(text.substr(open + 1, close - open - 1), ',');
+    return type;
+}
 
 std::string Help::make_usage(const CLI::App* app, std::string name) const
 {
@@ -86,8 +87,8 @@ std::string Help::make_option_opts(const CLI::Option* option) const
 std::string Help::make_option_desc(const CLI::Option* option) const
 {
     auto text = option->get_description();
-    if (const auto choices = typeOf(*option).choices; !choices.empty())
-        text += "; one of " + choices;
+    if (const auto choices = valueTypeOf(*option).choices; !choices.empty())
+        text += "; one of " + joined(choices);
     if (const auto value = defaultOf(*option); !value.empty() && option->get_type_size() != 0)
         text += " [" + value + "]";
     return wrapped(text, 0, lineWidth - get_column_width());

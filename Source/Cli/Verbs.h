@@ -18,6 +18,7 @@ inline constexpr auto fit = "3. Fit a model and see where it fails";
 inline constexpr auto diagnose = "4. Find what the model is missing, and add it";
 inline constexpr auto use = "5. Use the model";
 inline constexpr auto batch = "6. Many loudspeakers";
+inline constexpr auto around = "Around it";
 } // namespace step
 
 // Declared here in the order of the method, called in the same order by main.
@@ -44,5 +45,6 @@ void addWhatIf(CLI::App&, Terminal&);
 void addParameters(CLI::App&, Terminal&);
 void addPredistort(CLI::App&, Terminal&);
 void addCollect(CLI::App&, Terminal&);
+void addDoctor(CLI::App&, Terminal&);
 
 } // namespace excursion::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
 #include "Cli/Help.h"
+#include "Cli/Manual.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -8,6 +9,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <new>
 
@@ -139,7 +141,19 @@ int main(int argc, char** argv)
     cli::addPredistort(app, terminal);
     cli::addCollect(app, terminal);
 
+    cli::addDoctor(app, terminal);
+
     app.footer(footer);   // last, as the verbs would inherit it
+
+    // For packages: no group, so that --help does not show them.
+    const auto printing = [&app](auto make) {
+        return [&app, make] {
+            std::cout << make(app);
+            throw CLI::Success();
+        };
+    };
+    app.add_flag_callback("--manual", printing([](const CLI::App& a) { return cli::manualOf(a, EXCURSION_VERSION); }))->group("");
+    app.add_flag_callback("--bash-completion", printing([](const CLI::App& a) { return cli::bashCompletionOf(a); }))->group("");
 
     return run(app, terminal, argumentsFrom(argc, argv));
 }

@@ -2,9 +2,9 @@
 #pragma once
 
 /// Marks a function that is compiled for the processors of today and for any; the program takes the better one when it starts.
-/// Its loops should be plain, or on `Four`. Where the compiler cannot do that (other processors, sanitizers, which run before the choice
-/// is made) the function is compiled once.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Its loops should be plain, or on `Four`. Compiled once where there is no choice: not x86, not ELF, or sanitizers.
+#if defined(__x86_64__) && defined(__ELF__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) \
+    && !defined(__SANITIZE_THREAD__)
 #define EXCURSION_DISPATCH __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define EXCURSION_DISPATCH
