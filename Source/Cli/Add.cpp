@@ -108,7 +108,7 @@ void addAdd(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<AddArguments>();
     auto* verb = app.add_subcommand("add", "Put an effect into a model and refit everything")->group(step::diagnose);
-    verb->add_option("TAKE", o->take, "the take that the model was fitted to")->required();
+    verb->add_option("TAKE", o->take, "the take or impedance that the model was fitted to")->required();
     verb->add_option("EFFECT", o->effect, "the effect, such as stiffness; excursion effects lists them")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->add_option("--out", o->out, "the new model, a .json")->required()->type_name("FILE");

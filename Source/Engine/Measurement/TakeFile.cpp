@@ -171,7 +171,8 @@ Measurement readMeasurement(const fs::path& path)
     auto take = readTake(path);
     if (auto* measurement = std::get_if<Measurement>(&take))
         return std::move(*measurement);
-    throw Error(Error::Kind::data, "'" + path.string() + "' is a frequency response; this needs a take with samples.");
+    throw Error(Error::Kind::data, "'" + path.string() + "' is a frequency response, but this verb needs the samples of a take; identify, fit, compare, diagnose, add, improve and bla "
+                                         "work on a response.");
 }
 
 void writeMeasurement(const Measurement& measurement, const fs::path& folder)
