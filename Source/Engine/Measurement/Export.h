@@ -20,10 +20,10 @@ void writeFrd(const Frf&, const std::filesystem::path&);
 /// frequency_hz, re, im, and noise_variance and total_variance where known.
 void writeCsv(const Frf&, const std::filesystem::path&);
 
-/// time_s and one column a channel, "current [A]": importCsv reads it back.
+/// time_s and one column a channel, "current [A]": importText reads it back.
 void writeCsv(const Measurement&, const std::filesystem::path&);
 
-/// frequency_hz, voltage_re_V, voltage_im_V, ...: importCsv reads it back.
+/// frequency_hz, voltage_re_V, voltage_im_V, ...: importText reads it back.
 void writeCsv(const Spectra&, const std::filesystem::path&);
 
 } // namespace excursion

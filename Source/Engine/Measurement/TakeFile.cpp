@@ -4,8 +4,8 @@
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/ImportCsv.h"
-#include "Engine/Measurement/ImportImpedance.h"
+#include "Engine/Import/ImportText.h"
+#include "Engine/Measurement/ImportMat.h"
 #include "Engine/Measurement/MeasurementJson.h"
 #include "Engine/Measurement/WavFile.h"
 
@@ -155,15 +155,13 @@ Take readTake(const fs::path& given)
     const auto extension = lowerExtension(given);
     if (extension == ".json")
         return readFolder(given);
-    if (extension == ".zma")
-        return readZma(given);
-    if (extension == ".frd")
-        return spectraOfFrd(readFrd(given));
-    if (extension == ".csv")
-        return importCsv(given, {});
+    if (extension == ".mat")
+        return importMat(given, {});
     sizeOfFile(given);   // a path that does not exist deserves to be told so first
-    throw Error(Error::Kind::input, "'" + given.string() + "' is not a take, which is a folder with a measurement.json, a .zma, "
-                                        ".frd or .csv; turn other files into one with 'excursion import'.");
+    if (extension == ".wav")
+        throw Error(Error::Kind::input, "'" + given.string() + "' is not a take: a WAV alone does not say what its channels are; put a measurement.json "
+                                            "beside it and give the folder.");
+    return importText(given);
 }
 
 Measurement readMeasurement(const fs::path& path)
