@@ -18,18 +18,6 @@ using Kind = Error::Kind;
 
 [[noreturn]] void refuseText(Kind kind, const std::string& source, const std::string& why) { throw Error(kind, "'" + source + "' " + why); }
 
-double rateOf(const std::vector<double>& time, double unit, const std::string& source)
-{
-    if (time.size() < 3)
-        refuseText(Kind::data, source, "has fewer than 3 times, too few to tell the sample rate.");
-    const double step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
-    for (std::size_t n = 0; n < time.size(); ++n)   // against the line, so that printed digits do not add up
-        if (!(step > 0) || std::abs(time[n] - time.front() - static_cast<double>(n) * step) > 0.01 * step + 1e-9 * std::abs(time.back()))
-            refuseText(Kind::data, source, "is not evenly sampled: its time column leaves the even grid at row " + std::to_string(n)
-                                               + "; resample it, or leave the time column out and give --rate.");
-    return 1.0 / (step * unit);
-}
-
 /// One remark for all channels whose titles have no unit.
 void tellUnits(const std::vector<ColumnQuantity>& columns, Measurement& measurement, const std::string& source)
 {
@@ -51,7 +39,7 @@ Measurement timeSignals(const TextTable& table, const ImportOptions& options, co
         const auto title = columnTitle(table.titles()[c]);
         const auto unit = options.axis || !table.hasTitles() ? std::nullopt : timeFactor(title);
         if (unit && sampleRate == 0)
-            sampleRate = rateOf(table.column(c), *unit, source);
+            sampleRate = sampleRateOf(table.column(c), *unit, source);
         if (options.columns.empty() && table.hasTitles() && !timeFactor(title))
             if (const auto found = columnNamed(table.titles()[c]))
                 columns.push_back(*found);
@@ -60,7 +48,7 @@ Measurement timeSignals(const TextTable& table, const ImportOptions& options, co
         const auto index = table.find(options.axis->column);
         if (!index)
             refuseText(Kind::usage, source, "has no column '" + options.axis->column + "'.");
-        sampleRate = rateOf(table.column(*index), options.axis->factor, source);
+        sampleRate = sampleRateOf(table.column(*index), options.axis->factor, source);
     }
     std::vector<std::vector<double>> samples;
     for (const auto& mapped : columns) {

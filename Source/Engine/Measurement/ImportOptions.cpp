@@ -132,6 +132,19 @@ void addMapping(ImportOptions& options, std::string_view text)
     options.responses.push_back(mapped);
 }
 
+double sampleRateOf(const std::vector<double>& times, double unit, const std::string& source)
+{
+    const auto refuse = [&source](const std::string& why) { throw Error(Error::Kind::data, "'" + source + "' " + why); };
+    if (times.size() < 3)
+        refuse("has fewer than 3 times, too few to tell the sample rate.");
+    const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    for (std::size_t n = 0; n < times.size(); ++n)   // against the line, so that printed digits do not add up
+        if (!(step > 0) || std::abs(times[n] - times.front() - static_cast<double>(n) * step) > 0.01 * step + 1e-9 * std::abs(times.back()))
+            refuse("is not evenly sampled: its times leave the even grid at row " + std::to_string(n)
+                   + "; resample it, or leave the times out and give --rate.");
+    return 1.0 / (step * unit);
+}
+
 Measurement measurementOfColumns(const std::vector<ColumnQuantity>& columns, const std::vector<std::vector<double>>& samples,
                                  double sampleRate, const ImportOptions& options, const std::string& source)
 {

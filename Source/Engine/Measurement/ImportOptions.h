@@ -51,6 +51,10 @@ ColumnQuantity parseColumnQuantity(std::string_view);
 /// its title, else by its number from 1. Throws Error (usage).
 void addMapping(ImportOptions&, std::string_view);
 
+/// The sample rate in Hz of times that run evenly, to 1 % of a step. Throws Error (data) naming `source`.
+/// @param unit  s for each unit of the times
+double sampleRateOf(const std::vector<double>& times, double unit, const std::string& source);
+
 /// Makes a take of raw columns: takes the range, scales to SI, removes means, sets full scales a tenth
 /// above the peaks or more (powers of two). Throws Error (input, usage or data) naming `source`.
 /// @param samples  one vector a column, in the file's units
