@@ -42,7 +42,7 @@ std::vector<std::string> fuzz::seeds()
     for (int n = 0; n < 80; ++n)
         impulse += n == 10 ? "1.0\n" : "0.001\n";
     std::vector<std::string> all;
-    for (const std::string text : {std::string("* Freq(Hz)\tZ(Ohms)\tPhase(degrees)\n10.5\t8.25\t45\n21\t30\t-0.5\n42\t6.5\t-30\n"),
+    for (const std::string& text : {std::string("* Freq(Hz)\tZ(Ohms)\tPhase(degrees)\n10.5\t8.25\t45\n21\t30\t-0.5\n42\t6.5\t-30\n"),
                                    std::string("* Freq(Hz) SPL(dB) Phase(degrees)\n20 94.0 -90.0\n1000 100 180\n2000 80 0\n"),
                                    std::string("10,5;8,25;45\r\n21;30;-0,5\r\n42;6,5;-30\r\n"), std::string("10 8 90\n20 4 -45\n30 2 0\n30 2 0\n"),
                                    std::string("frequency_hz,u_re_v,u_im_v,i_re_a,i_im_a\n1,2,3,4,5\n2,2,3,4,5\n3,2,3,4,5\n"),
