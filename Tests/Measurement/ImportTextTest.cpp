@@ -279,6 +279,9 @@ TEST_CASE("Tables that cannot be understood for certain are refused", "[import]"
     bad("f [Hz],Z [Ohm],phase [deg]\n1,2,0\n3,1,0\n2,1,0\n", Kind::input, "line 4");
     bad("f [Hz],Z [Ohm],Z [Ohm],phase [deg]\n1,2,0,1\n2,1,0,1\n3,1,0,1\n", Kind::input, "more than one column");
     bad("f [Hz],temperature [C]\n1,2\n2,2\n3,2\n", Kind::input, "'temperature [C]'");
+    ImportOptions rate;
+    rate.sampleRate = 48000;
+    refused(Kind::usage, "--rate", [&] { responses("f [Hz],Z [Ohm],phase [deg]\n1,2,0\n2,1,0\n3,1,0\n", "a.txt", rate); });
     bad("what is this\n", Kind::input, "no rows of numbers");
     bad("frequency\n1\n2\n3\n", Kind::input, "one column");
     bad("f [Hz],Z [Ohm],phase [deg]\n1,1e308,0\n2,1,0\n3,inf,0\n", Kind::input, "'inf'");

@@ -108,6 +108,8 @@ Take importText(std::string text, const std::string& source, const ImportOptions
     const TextTable table(std::move(text), source);
     const auto guess = conventionOf(source);
     const auto withName = [&](Spectra spectra) {
+        if (options.sampleRate > 0 || options.from > 0 || options.to || options.removeMean)
+            refuseText(Kind::usage, source, "is a frequency response; --rate, --from, --to and --remove-mean are for time signals.");
         if (guess)
             spectra.driver.name = std::filesystem::path(source).stem().string();
         return spectra;
