@@ -16,9 +16,10 @@
 #include <string_view>
 #include <unistd.h>
 
-/// So that a finding of the sanitizer comes by the handler below. Without leaks: libraries keep theirs to the end.
+/// So that a finding of the sanitizer comes by the handler below. Without leaks: libraries keep theirs to the end. A library's malloc of what a
+/// header claims may fail, our own new may not.
 extern "C" const char* __asan_default_options();
-extern "C" const char* __asan_default_options() { return "abort_on_error=1:detect_leaks=0:allocator_may_return_null=0:max_allocation_size_mb=1024"; }
+extern "C" const char* __asan_default_options() { return "abort_on_error=1:detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=256"; }
 
 namespace {
 

@@ -50,7 +50,7 @@ std::vector<std::string> fuzz::seeds()
                                    std::string("frq\timp\tmax\tmin\n18.750\t3.7263\t4.4030\t3.0445\n23.438\t4.5925\t5.4\t3.1\n28.125\t5.1\t6.4\t3\n"),
                                    std::string("\"Magnitude of Z(f)\"\n\"Measured\"\t\t\"Fitted\"\n\"Frequency [Hz]\"\t\"[Ohm]\"\t\"Frequency [Hz]\"\t\"[Ohm]\"\n10\t6\t11\t6\n20\t9\t21\t9\n"
                                                "40\t7\t41\t7\n"),
-                                   std::string("f_hz,G_re,G_im\n10,3,4\n20,-1,0.5\n40,0.25,-7\n"), std::string("\xFF\xFE" "1\0 \0" "2\0\n\0", 12), impulse})
+                                   std::string("f_hz,G_re,G_im\n10,3,4\n20,-1,0.5\n40,0.25,-7\n"), std::string("\xFF\xFE" "1\0 \0" "2\0\n\0", 10), impulse})
         for (const char choice : {'\0', '\1', '\2', '\3', '\6', '\x0c', '\x10', '\x3a', '\x78', '\xb8', '\xf8'})
             all.push_back(choice + text);
     return all;

@@ -6,6 +6,7 @@
 #include "Engine/Measurement/ExcitationPlan.h"
 #include "Engine/Measurement/Units.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <numeric>
@@ -179,6 +180,10 @@ Measurement measurementOfColumns(const std::vector<ColumnQuantity>& columns, con
                                                : 0.0;
         for (double& value : channel.samples)
             value = (value - mean) * scale->factor;
+        constexpr double largest = 1e100, smallest = 1e-100;   // beyond them squares of samples would be
+        const auto peak = std::accumulate(channel.samples.begin(), channel.samples.end(), 0.0, [](double most, double value) { return std::max(most, std::abs(value)); });
+        if (!(peak < largest) || (peak > 0.0 && peak < smallest))
+            refuse(Error::Kind::input, "has samples in '" + column + "' that are beyond any measurement; it is damaged, or in another unit.");
         channel.fullScale = roundFullScale(channel.samples, 1.1);
         measurement.channels.push_back(std::move(channel));
     }
