@@ -72,7 +72,9 @@ TEST_CASE("fit, compare, diagnose, add and improve take an impedance", "[cli][re
     CHECK(nlohmann::json::parse(bytesOf(model)).at("base").at("parameters").at(0).at("value").get<double>() == Approx(6.0).epsilon(1e-3));
     CHECK(runProgram(scratch.folder(), {"compare", file, "--model", model}).code == 0);
     CHECK(runProgram(scratch.folder(), {"diagnose", file, "--model", model}).code == 0);
-    CHECK(runProgram(scratch.folder(), {"add", file, "eddy-currents", "--model", model, "--out", (scratch / "more.json").string()}).code == 0);
+    const auto added = runProgram(scratch.folder(), {"add", file, "eddy-currents", "--model", model, "--out", (scratch / "more.json").string()});
+    CHECK(added.code == 0);
+    CHECK_THAT(added.out, Catch::Contains("impedance"));
     CHECK(runProgram(scratch.folder(), {"improve", file, "--out", (scratch / "ladder").string()}).code == 0);
     CHECK(runProgram(scratch.folder(), {"report", (scratch / "ladder").string()}).code == 0);
 }
