@@ -131,6 +131,12 @@ TEST_CASE("A sound pressure over frequency is recognized, and what its level mea
         REQUIRE(spectra.remarks.size() == 1);
         CHECK_THAT(spectra.remarks.front(), Catch::Contains("1 V"));
     }
+    const Scratch s;
+    const auto once = responses("Freq(Hz) SPL(dB) Phase(degrees)\n20 94 -90\n1000 100 180\n2000 80 0\n");
+    writeCsv(once, s / "kept.csv");
+    const auto kept = std::get<Spectra>(readTake(s / "kept.csv"));
+    CHECK(kept.remarks == once.remarks);
+    CHECK(kept.find(Quantity::pressure)->values == once.find(Quantity::pressure)->values);
     // ARTA, described: a level whose 0 dB the file does not tell
     const std::string arta = "Frequency(Hz),Magn (dB),Phase (deg)\n20,94,-90\n1000,100,180\n2000,80,0\n";
     refused(Kind::input, "--as", [&] { responses(arta); });

@@ -7,6 +7,7 @@
 #include "Engine/Import/ResponseColumns.h"
 #include "Engine/Import/RewImpulse.h"
 #include "Engine/Import/TextTable.h"
+#include "Engine/Measurement/Export.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,8 +102,8 @@ Spectra mappedResponses(const TextTable& table, const ImportOptions& options, co
 Take importText(std::string text, const std::string& source, const ImportOptions& options)
 {
     if (isRewImpulse(text)) {
-        if (!options.columns.empty() || !options.responses.empty() || options.axis)
-            refuseText(Kind::usage, source, "is an impulse response of REW, which has no columns to map; leave --map out.");
+        if (!options.columns.empty() || !options.responses.empty() || options.axis || options.sampleRate > 0 || options.from > 0 || options.to)
+            refuseText(Kind::usage, source, "is an impulse response of REW, which has no columns to map and tells its sample rate; leave --map, --rate, --from and --to out.");
         return rewImpulse(text, source);
     }
     const TextTable table(std::move(text), source);
@@ -110,6 +111,9 @@ Take importText(std::string text, const std::string& source, const ImportOptions
     const auto withName = [&](Spectra spectra) {
         if (options.sampleRate > 0 || options.from > 0 || options.to || options.removeMean)
             refuseText(Kind::usage, source, "is a frequency response; --rate, --from, --to and --remove-mean are for time signals.");
+        for (const auto& line : table.remarks())
+            if (const auto mark = assumedMark.substr(2); line.starts_with(mark))   // what an earlier import had to assume
+                spectra.remarks.push_back(line.substr(mark.size()));
         if (guess)
             spectra.driver.name = std::filesystem::path(source).stem().string();
         return spectra;
