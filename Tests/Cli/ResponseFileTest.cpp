@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An impedance, as other programs export it, in every verb: it needs no option, or the verb says in one sentence why it cannot take it.
+// An impedance, as other programs export it, in every verb: it needs no option, or the verb says in one sentence why it
+// cannot take it.
 #include "Cli/Chain.h"
 
 #include <cmath>
@@ -40,7 +41,12 @@ std::string driver(const Scratch& scratch)
 TEST_CASE("identify and bla take an impedance for what it is, voltage over current", "[cli][response]")
 {
     const Scratch scratch;
-    for (const auto& file : {driver(scratch), scratch.file("rew.txt", impedanceText("* Measurement data measured by REW V5.31\n* Freq(Hz)\tZ(Ohms)\tPhase(degrees)\n")).string()}) {
+    for (const auto& file :
+         {driver(scratch),
+          scratch
+              .file("rew.txt",
+                    impedanceText("* Measurement data measured by REW V5.31\n* Freq(Hz)\tZ(Ohms)\tPhase(degrees)\n"))
+              .string()}) {
         const auto identified = runProgram(scratch.folder(), {"identify", file, "--quick", "--json"});
         REQUIRE(identified.code == 0);
         const auto document = documentOf(identified, "excursion-identification");
@@ -48,7 +54,8 @@ TEST_CASE("identify and bla take an impedance for what it is, voltage over curre
         CHECK(document.at("model").at("outputs").at(0) == "voltage");
         CHECK(document.at("orders").size() == 8);
         CHECK(document.at("orders").at(3).at("errorDb") < -60.0);
-        const auto shown = runProgram(scratch.folder(), {"bla", file, "--out", (scratch / "copy.zma").string(), "--json"});
+        const auto shown = runProgram(scratch.folder(),
+                                      {"bla", file, "--out", (scratch / "copy.zma").string(), "--json"});
         REQUIRE(shown.code == 0);
         const auto response = documentOf(shown, "excursion-bla");
         CHECK(response.at("input") == "current");
@@ -58,8 +65,10 @@ TEST_CASE("identify and bla take an impedance for what it is, voltage over curre
         CHECK(runProgram(scratch.folder(), {"bla", (scratch / "copy.zma").string(), "--quiet"}).code == 0);
     }
     const auto mixed = runProgram(scratch.folder(), {"identify", driver(scratch), "--alpha", "1", "--mixed", "--json"});
-    CHECK(documentOf(mixed, "excursion-mixed-impedance").at("resistance").at("value").get<double>() == Approx(6.0).epsilon(1e-3));
-    const auto admittance = runProgram(scratch.folder(), {"identify", driver(scratch), "--order", "3", "--output", "current", "--json"});
+    CHECK(documentOf(mixed, "excursion-mixed-impedance").at("resistance").at("value").get<double>()
+          == Approx(6.0).epsilon(1e-3));
+    const auto admittance = runProgram(scratch.folder(),
+                                       {"identify", driver(scratch), "--order", "3", "--output", "current", "--json"});
     CHECK(documentOf(admittance, "excursion-identification").at("model").at("inputs").at(0) == "voltage");
     refusedWith(2, {"bla", driver(scratch), "--level", "1"}, scratch, "frequency response already");
 }
@@ -68,11 +77,14 @@ TEST_CASE("fit, compare, diagnose, add and improve take an impedance", "[cli][re
 {
     const Scratch scratch;
     const auto file = driver(scratch), model = (scratch / "model.json").string();
-    const auto fitted = documentOf(runProgram(scratch.folder(), {"fit", file, "--out", model, "--json"}), "excursion-fit");
-    CHECK(nlohmann::json::parse(bytesOf(model)).at("base").at("parameters").at(0).at("value").get<double>() == Approx(6.0).epsilon(1e-3));
+    const auto fitted = documentOf(runProgram(scratch.folder(), {"fit", file, "--out", model, "--json"}),
+                                   "excursion-fit");
+    CHECK(nlohmann::json::parse(bytesOf(model)).at("base").at("parameters").at(0).at("value").get<double>()
+          == Approx(6.0).epsilon(1e-3));
     CHECK(runProgram(scratch.folder(), {"compare", file, "--model", model}).code == 0);
     CHECK(runProgram(scratch.folder(), {"diagnose", file, "--model", model}).code == 0);
-    const auto added = runProgram(scratch.folder(), {"add", file, "eddy-currents", "--model", model, "--out", (scratch / "more.json").string()});
+    const auto added = runProgram(
+        scratch.folder(), {"add", file, "eddy-currents", "--model", model, "--out", (scratch / "more.json").string()});
     CHECK(added.code == 0);
     CHECK_THAT(added.out, Catch::Contains("impedance"));
     CHECK(runProgram(scratch.folder(), {"improve", file, "--out", (scratch / "ladder").string()}).code == 0);
@@ -101,11 +113,16 @@ TEST_CASE("import says what a file lacks, and does with --as, --map or --minimum
     refusedWith(3, {"improve", bare, "--out", (scratch / "ladder").string()}, scratch, "excursion import");
     refusedWith(2, {"import", bare, "--as", "colour", "--out", csv}, scratch, "colour");
     REQUIRE(runProgram(scratch.folder(), {"import", bare, "--as", "impedance", "--out", csv}).code == 0);
-    const auto shown = documentOf(runProgram(scratch.folder(), {"bla", csv, "--json"}), "excursion-bla");   // the CSV needs no option, either
+    const auto shown = documentOf(runProgram(scratch.folder(), {"bla", csv, "--json"}),
+                                  "excursion-bla");   // the CSV needs no option, either
     CHECK(shown.at("output") == "voltage");
-    CHECK(shown.at("re").at(3).get<double>() == Approx(impedanceAt(shown.at("frequency").at(3).get<double>()).real()).epsilon(1e-6));
+    CHECK(shown.at("re").at(3).get<double>()
+          == Approx(impedanceAt(shown.at("frequency").at(3).get<double>()).real()).epsilon(1e-6));
     const auto mapped = (scratch / "m.zma").string();
-    REQUIRE(runProgram(scratch.folder(), {"import", bare, "--map", "1=frequency", "--map", "2=impedance.magnitude:ohm", "--map", "3=impedance.phase:deg", "--out", mapped}).code == 0);
+    REQUIRE(runProgram(scratch.folder(), {"import", bare, "--map", "1=frequency", "--map", "2=impedance.magnitude:ohm",
+                                          "--map", "3=impedance.phase:deg", "--out", mapped})
+                .code
+            == 0);
     CHECK(runProgram(scratch.folder(), {"bla", mapped}).code == 0);
 
     std::string qc = "frq\timp\tmax\tmin\n";
@@ -113,9 +130,12 @@ TEST_CASE("import says what a file lacks, and does with --as, --map or --minimum
         qc += std::to_string(f) + "\t" + std::to_string(std::abs(impedanceAt(f))) + "\t99\t1\n";
     const auto limits = scratch.file("qc.txt", qc).string();
     refusedWith(4, {"import", limits, "--out", csv}, scratch, "--minimum-phase");
-    const auto computed = runProgram(scratch.folder(), {"import", limits, "--minimum-phase", "--out", (scratch / "phase.zma").string(), "--json"});
+    const auto computed = runProgram(
+        scratch.folder(), {"import", limits, "--minimum-phase", "--out", (scratch / "phase.zma").string(), "--json"});
     const auto document = documentOf(computed, "excursion-import");
     CHECK(document.at("remarks").size() == 3);
-    const auto phase = documentOf(runProgram(scratch.folder(), {"bla", (scratch / "phase.zma").string(), "--json"}), "excursion-bla");
-    CHECK(phase.at("im").at(60).get<double>() == Approx(impedanceAt(phase.at("frequency").at(60).get<double>()).imag()).margin(0.5));
+    const auto phase = documentOf(runProgram(scratch.folder(), {"bla", (scratch / "phase.zma").string(), "--json"}),
+                                  "excursion-bla");
+    CHECK(phase.at("im").at(60).get<double>()
+          == Approx(impedanceAt(phase.at("frequency").at(60).get<double>()).imag()).margin(0.5));
 }

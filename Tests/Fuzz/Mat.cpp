@@ -35,7 +35,8 @@ std::vector<std::string> fuzz::seeds()
     for (const auto version : {MAT_FT_MAT5, MAT_FT_MAT73, MAT_FT_MAT4})
         for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
             auto* mat = Mat_CreateVer(name.c_str(), nullptr, version);
-            const auto add = [&](const char* variable, std::size_t rows, std::size_t columns, std::vector<double> values) {
+            const auto add = [&](const char* variable, std::size_t rows, std::size_t columns,
+                                 std::vector<double> values) {
                 values.resize(rows * columns, 0.5);
                 std::size_t dims[] {rows, columns};
                 auto* made = Mat_VarCreate(variable, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, values.data(), 0);

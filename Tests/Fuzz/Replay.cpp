@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stands in for libFuzzer: the seeds, then random mutations of them for some seconds. The same seed number, the same inputs.
+// Stands in for libFuzzer: the seeds, then random mutations of them for some seconds. The same seed number, the same
+// inputs.
 //   fuzz_text [--seconds 3] [--seed 1] [FILE...]     files are replayed alone
 #include "Fuzz/Target.h"
 
@@ -16,10 +17,13 @@
 #include <string_view>
 #include <unistd.h>
 
-/// So that a finding of the sanitizer comes by the handler below. Without leaks: libraries keep theirs to the end. A library's malloc of what a
-/// header claims may fail, our own new may not.
+/// So that a finding of the sanitizer comes by the handler below. Without leaks: libraries keep theirs to the end. A
+/// library's malloc of what a header claims may fail, our own new may not.
 extern "C" const char* __asan_default_options();
-extern "C" const char* __asan_default_options() { return "abort_on_error=1:detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=256"; }
+extern "C" const char* __asan_default_options()
+{
+    return "abort_on_error=1:detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=256";
+}
 
 namespace {
 
@@ -56,9 +60,49 @@ private:
 
     void mutate(std::string& text)
     {
-        static constexpr std::string_view tokens[] {"nan", "inf", "-inf", "1e999", "-1", "0", "1e-320", "4294967296", "18446744073709551616", "99999999999", "\"", "{", "}", "[", "]",
-                                                    ",", ";", "\t", "\r\n", "\n", "*", "#", "//", "\xEF\xBB\xBF", "\xFF\xFE", "\xC3", "\xCE\xA9", "Ohm", "[Hz]", "f", "time", "(", ")",
-                                                    "_re", "_im", "/", "dB", "phase", "null", "true", "-", "e", "."};
+        static constexpr std::string_view tokens[] {"nan",
+                                                    "inf",
+                                                    "-inf",
+                                                    "1e999",
+                                                    "-1",
+                                                    "0",
+                                                    "1e-320",
+                                                    "4294967296",
+                                                    "18446744073709551616",
+                                                    "99999999999",
+                                                    "\"",
+                                                    "{",
+                                                    "}",
+                                                    "[",
+                                                    "]",
+                                                    ",",
+                                                    ";",
+                                                    "\t",
+                                                    "\r\n",
+                                                    "\n",
+                                                    "*",
+                                                    "#",
+                                                    "//",
+                                                    "\xEF\xBB\xBF",
+                                                    "\xFF\xFE",
+                                                    "\xC3",
+                                                    "\xCE\xA9",
+                                                    "Ohm",
+                                                    "[Hz]",
+                                                    "f",
+                                                    "time",
+                                                    "(",
+                                                    ")",
+                                                    "_re",
+                                                    "_im",
+                                                    "/",
+                                                    "dB",
+                                                    "phase",
+                                                    "null",
+                                                    "true",
+                                                    "-",
+                                                    "e",
+                                                    "."};
         const auto at = below(text.size() + 1), length = std::min(below(32), text.size() - at);
         switch (below(9)) {
         case 0:
@@ -79,7 +123,18 @@ private:
             break;
         }
         case 7: {   // a number in the file, as a header has it
-            const std::uint64_t numbers[] {0, 1, 0x7F, 0x80, 0xFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x7FFFFFFFFFFFFFFF, 0xFFFFFFFFFFFFFFFF, random_()};
+            const std::uint64_t numbers[] {0,
+                                           1,
+                                           0x7F,
+                                           0x80,
+                                           0xFF,
+                                           0xFFFF,
+                                           0x7FFFFFFF,
+                                           0x80000000,
+                                           0xFFFFFFFF,
+                                           0x7FFFFFFFFFFFFFFF,
+                                           0xFFFFFFFFFFFFFFFF,
+                                           random_()};
             const auto number = numbers[below(std::size(numbers))];
             for (std::size_t k = 0, bytes = std::size_t(1) << below(4); k < bytes && at + k < text.size(); ++k)
                 text[at + k] = static_cast<char>(number >> (8 * k));

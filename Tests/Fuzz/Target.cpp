@@ -22,7 +22,9 @@ void demandSound(const Take& take)
     if (const auto* spectra = std::get_if<Spectra>(&take)) {
         demand(spectra->input() != nullptr, "spectra have an input");
         for (std::size_t k = 0; k < spectra->frequency.size(); ++k)
-            demand(std::isfinite(spectra->frequency[k]) && spectra->frequency[k] > (k == 0 ? 0.0 : spectra->frequency[k - 1]), "frequencies ascend");
+            demand(std::isfinite(spectra->frequency[k])
+                       && spectra->frequency[k] > (k == 0 ? 0.0 : spectra->frequency[k - 1]),
+                   "frequencies ascend");
         for (const auto& channel : spectra->channels) {
             demand(channel.values.size() == spectra->frequency.size(), "one value a frequency");
             for (const auto& value : channel.values)

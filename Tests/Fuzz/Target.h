@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
-/// A fuzz target reads any bytes: it may refuse them with an Error, and must do nothing else but return something sound. The entry
-/// point is libFuzzer's. Without libFuzzer, Replay.cpp calls it with the seeds and with mutations of them.
+/// A fuzz target reads any bytes: it may refuse them with an Error, and must do nothing else but return something
+/// sound. The entry point is libFuzzer's. Without libFuzzer, Replay.cpp calls it with the seeds and with mutations of
+/// them.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace excursion::fuzz {

@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const fuzz::MemoryFile file(data, size);
     try {
         const auto wav = readWav(file.path());
-        fuzz::demand(wav.sampleRate > 0 && !wav.channels.empty() && !wav.channels.front().empty(), "a WAV with samples");
+        fuzz::demand(wav.sampleRate > 0 && !wav.channels.empty() && !wav.channels.front().empty(),
+                     "a WAV with samples");
         for (const auto& channel : wav.channels)
             fuzz::demand(channel.size() == wav.channels.front().size(), "channels of one length");
     } catch (const Error& e) {
@@ -41,9 +42,10 @@ std::vector<std::string> fuzz::seeds()
             text += static_cast<char>(value >> (8 * k));
         return text;
     };
-    const auto format = "fmt " + number(16, 4) + number(1, 2) + number(1, 2) + number(44100, 4) + number(88200, 4) + number(2, 2) + number(16, 2);
+    const auto format = "fmt " + number(16, 4) + number(1, 2) + number(1, 2) + number(44100, 4) + number(88200, 4)
+                        + number(2, 2) + number(16, 2);
     all.push_back("RIFF" + number(36 + 8, 4) + "WAVE" + format + "data" + number(8, 4) + "\1\2\3\4\5\6\7\10");
-    all.push_back("RF64" + number(0xFFFFFFFF, 4) + "WAVEds64" + number(28, 4) + number(72, 8) + number(8, 8) + number(4, 8) + number(0, 4) + format + "data"
-                  + number(0xFFFFFFFF, 4) + "\1\2\3\4\5\6\7\10");
+    all.push_back("RF64" + number(0xFFFFFFFF, 4) + "WAVEds64" + number(28, 4) + number(72, 8) + number(8, 8)
+                  + number(4, 8) + number(0, 4) + format + "data" + number(0xFFFFFFFF, 4) + "\1\2\3\4\5\6\7\10");
     return all;
 }

@@ -17,7 +17,11 @@ namespace {
 /// A MAT file with real matrices of doubles, given column by column.
 class MatWriter {
 public:
-    MatWriter(const std::filesystem::path& path, mat_ft version) : path_(path), file_(Mat_CreateVer(path.c_str(), nullptr, version)) { REQUIRE(file_ != nullptr); }
+    MatWriter(const std::filesystem::path& path, mat_ft version)
+        : path_(path), file_(Mat_CreateVer(path.c_str(), nullptr, version))
+    {
+        REQUIRE(file_ != nullptr);
+    }
     ~MatWriter() { Mat_Close(file_); }
     MatWriter(const MatWriter&) = delete;
     MatWriter& operator=(const MatWriter&) = delete;
@@ -62,8 +66,9 @@ TEST_CASE("Rows and columns of a matrix are mapped by number, in MAT files of bo
                 wide ? mat.add("data", 3, 4, fourOfThree) : mat.add("data", 4, 3, threeOfFour);
                 mat.add("Fs", 1, 1, {48000});
             }
-            for (const auto& options : {mappedTo({"2=current:mA", "1=voltage", "3=displacement:um"}),
-                                        mappedTo({"data(2)=current:mA", "data(1)=voltage", "data(3)=displacement:um"})}) {
+            for (const auto& options :
+                 {mappedTo({"2=current:mA", "1=voltage", "3=displacement:um"}),
+                  mappedTo({"data(2)=current:mA", "data(1)=voltage", "data(3)=displacement:um"})}) {
                 const auto m = importMat(path, options);
                 CHECK(m.sampleRate == 48000);
                 CHECK(m.input().samples == std::vector<double> {1, 2, 3, 4});
@@ -72,7 +77,8 @@ TEST_CASE("Rows and columns of a matrix are mapped by number, in MAT files of bo
             }
             refused(Kind::usage, "3 signals", [&] { importMat(path, mappedTo({"4=voltage"})); });
             refused(Kind::usage, "data(1)=voltage", [&] { importMat(path, mappedTo({"data=voltage"})); });
-            refused(Kind::usage, wide ? "data (3 x 4)" : "data (4 x 3)", [&] { importMat(path, mappedTo({"other=voltage"})); });
+            refused(Kind::usage, wide ? "data (3 x 4)" : "data (4 x 3)",
+                    [&] { importMat(path, mappedTo({"other=voltage"})); });
             refused(Kind::input, "data(2)=current", [&] { readTake(path); });
         }
 }
@@ -100,8 +106,13 @@ TEST_CASE("The sample rate of a MAT file comes from the variables that are usual
     CHECK(timed.sampleRate == Approx(100));
     REQUIRE(timed.remarks.size() == 1);
     CHECK_THAT(timed.remarks[0], Catch::Contains("seconds"));
-    CHECK(rateOf([](MatWriter& mat) { mat.add("t", 4, 1, {0, 0.01, 0.02, 0.03}).add("fs", 1, 1, {100}); }).sampleRate == 100);
-    refused(Kind::input, "two sample rates", [&] { rateOf([](MatWriter& mat) { mat.add("t", 1, 4, {0, 10, 20, 30}).add("fs", 1, 1, {100}); }); });
+    CHECK(rateOf([](MatWriter& mat) {
+              mat.add("t", 4, 1, {0, 0.01, 0.02, 0.03}).add("fs", 1, 1, {100});
+          }).sampleRate
+          == 100);
+    refused(Kind::input, "two sample rates", [&] {
+        rateOf([](MatWriter& mat) { mat.add("t", 1, 4, {0, 10, 20, 30}).add("fs", 1, 1, {100}); });
+    });
     refused(Kind::data, "not evenly", [&] { rateOf([](MatWriter& mat) { mat.add("t", 1, 4, {0, 1, 2, 5}); }); });
     refused(Kind::input, "no positive sample rate", [&] { rateOf([](MatWriter& mat) { mat.add("fs", 1, 1, {0}); }); });
     refused(Kind::usage, "--rate", [&] { rateOf([](MatWriter&) {}); });
@@ -116,7 +127,10 @@ TEST_CASE("Matrices that cannot be signals are refused", "[import]")
 {
     const Scratch s;
     {
-        MatWriter(s / "two.mat", MAT_FT_MAT5).add("a", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8}).add("b", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8}).add("fs", 1, 1, {100});
+        MatWriter(s / "two.mat", MAT_FT_MAT5)
+            .add("a", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8})
+            .add("b", 2, 4, {1, 2, 3, 4, 5, 6, 7, 8})
+            .add("fs", 1, 1, {100});
         MatWriter(s / "square.mat", MAT_FT_MAT5).add("a", 2, 2, {1, 2, 3, 4}).add("fs", 1, 1, {100});
         MatWriter(s / "nan.mat", MAT_FT_MAT5).add("a", 2, 3, {1, 2, 3, std::nan(""), 5, 6}).add("fs", 1, 1, {100});
     }
@@ -128,11 +142,15 @@ TEST_CASE("Matrices that cannot be signals are refused", "[import]")
     for (const char* kind : {"1", "9"}) {   // a file that ends early
         const auto version = *kind == '1' ? MAT_FT_MAT5 : MAT_FT_MAT73;
         {
-            MatWriter(s / "whole.mat", version).add("voltage", 1, 2000, std::vector<double>(2000, 1.5)).add("fs", 1, 1, {100});
+            MatWriter(s / "whole.mat", version)
+                .add("voltage", 1, 2000, std::vector<double>(2000, 1.5))
+                .add("fs", 1, 1, {100});
         }
         const auto bytes = bytesOf(s / "whole.mat");
         for (const double share : {0.1, 0.5, 0.9}) {
-            const auto cut = s.file("cut.mat", std::string_view(bytes).substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
+            const auto cut = s.file(
+                "cut.mat",
+                std::string_view(bytes).substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
             CHECK_THROWS_AS(importMat(cut, {}), Error);
         }
     }

@@ -25,7 +25,9 @@ double worstDegrees(Response response, double step, double low = 10.0, double hi
     double worst = 0.0;
     for (std::size_t k = 0; k < frequency.size(); ++k)
         if (frequency[k] > 2 * low && frequency[k] < high / 2)
-            worst = std::max(worst, std::abs(phase[k] - std::arg(response(Complex(0.0, 2 * std::numbers::pi * frequency[k])))) * 180 / std::numbers::pi);
+            worst = std::max(worst,
+                             std::abs(phase[k] - std::arg(response(Complex(0.0, 2 * std::numbers::pi * frequency[k]))))
+                                 * 180 / std::numbers::pi);
     return worst;
 }
 
@@ -33,7 +35,7 @@ double worstDegrees(Response response, double step, double low = 10.0, double hi
 
 TEST_CASE("The minimum phase of a magnitude is that of poles and zeros in the left half plane", "[import]")
 {
-    CHECK(worstDegrees([](Complex s) { return s * 1e-3; }, 1.0 / 12) < 1e-9);          // a power of f is exact
+    CHECK(worstDegrees([](Complex s) { return s * 1e-3; }, 1.0 / 12) < 1e-9);   // a power of f is exact
     CHECK(worstDegrees([](Complex s) { return 5.0 / (s * s); }, 1.0 / 12) < 1e-9);
     CHECK(worstDegrees([](Complex) { return Complex(7.0); }, 1.0 / 3) < 1e-9);
     const auto loudspeaker = [](Complex s) { return 6.0 + s * 0.5e-3 + 36.0 / (1.5 + s * 0.015 + 1500.0 / s); };

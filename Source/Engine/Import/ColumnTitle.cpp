@@ -24,7 +24,10 @@ std::optional<double> lookUp(const std::array<Known, N>& known, std::string_view
     return std::nullopt;
 }
 
-bool isOneOf(std::string_view text, std::initializer_list<std::string_view> words) { return std::find(words.begin(), words.end(), text) != words.end(); }
+bool isOneOf(std::string_view text, std::initializer_list<std::string_view> words)
+{
+    return std::find(words.begin(), words.end(), text) != words.end();
+}
 
 std::string_view trimmed(std::string_view text)
 {
@@ -50,11 +53,17 @@ std::vector<std::string> wordsOf(std::string_view text)
 }
 
 /// Whether a title that is nothing but this text is a unit rather than a name: "Hz" is, "V" is not.
-bool standsAlone(std::string_view text) { return frequencyUnit(text) || resistanceUnit(text) || angleUnit(text) || isDecibel(text); }
+bool standsAlone(std::string_view text)
+{
+    return frequencyUnit(text) || resistanceUnit(text) || angleUnit(text) || isDecibel(text);
+}
 
 } // namespace
 
-bool ColumnTitle::has(std::string_view word) const { return std::find(words.begin(), words.end(), word) != words.end(); }
+bool ColumnTitle::has(std::string_view word) const
+{
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 std::string lowerCase(std::string_view text)
 {
@@ -76,7 +85,8 @@ std::string withoutBrackets(std::string_view text)
 
 std::optional<double> frequencyUnit(std::string_view text)
 {
-    static constexpr std::array<Known, 5> known {{{"hz", 1.0}, {"hertz", 1.0}, {"khz", 1e3}, {"1/s", 1.0}, {"rad/s", 0.5 / std::numbers::pi}}};
+    static constexpr std::array<Known, 5> known {
+        {{"hz", 1.0}, {"hertz", 1.0}, {"khz", 1e3}, {"1/s", 1.0}, {"rad/s", 0.5 / std::numbers::pi}}};
     return lookUp(known, text);
 }
 
@@ -84,16 +94,32 @@ std::optional<double> timeUnit(std::string_view text)
 {
     if (text == "Ms" || text == "MS")   // mega or milli
         return std::nullopt;
-    static constexpr std::array<Known, 11> known {{{"s", 1.0}, {"sec", 1.0}, {"second", 1.0}, {"seconds", 1.0}, {"ms", 1e-3}, {"msec", 1e-3},
-                                                   {"milliseconds", 1e-3}, {"us", 1e-6}, {"\u00b5s", 1e-6}, {"\u03bcs", 1e-6}, {"microseconds", 1e-6}}};
+    static constexpr std::array<Known, 11> known {{{"s", 1.0},
+                                                   {"sec", 1.0},
+                                                   {"second", 1.0},
+                                                   {"seconds", 1.0},
+                                                   {"ms", 1e-3},
+                                                   {"msec", 1e-3},
+                                                   {"milliseconds", 1e-3},
+                                                   {"us", 1e-6},
+                                                   {"\u00b5s", 1e-6},
+                                                   {"\u03bcs", 1e-6},
+                                                   {"microseconds", 1e-6}}};
     return lookUp(known, text);
 }
 
 std::optional<double> angleUnit(std::string_view text)
 {
     constexpr double degree = std::numbers::pi / 180;
-    static constexpr std::array<Known, 9> known {{{"deg", degree}, {"deg.", degree}, {"degs", degree}, {"degree", degree}, {"degrees", degree}, {"\u00b0", degree},
-                                                  {"rad", 1.0}, {"radian", 1.0}, {"radians", 1.0}}};
+    static constexpr std::array<Known, 9> known {{{"deg", degree},
+                                                  {"deg.", degree},
+                                                  {"degs", degree},
+                                                  {"degree", degree},
+                                                  {"degrees", degree},
+                                                  {"\u00b0", degree},
+                                                  {"rad", 1.0},
+                                                  {"radian", 1.0},
+                                                  {"radians", 1.0}}};
     return lookUp(known, text);
 }
 
@@ -105,7 +131,8 @@ std::optional<double> resistanceUnit(std::string_view text)
         factor = text.front() == 'm' ? 1e-3 : 1e3;
         text.remove_prefix(1);
     }
-    static constexpr std::array<Known, 6> known {{{"ohm", 1.0}, {"ohms", 1.0}, {"\u03a9", 1.0}, {"\u2126", 1.0}, {"\u03c9", 1.0}, {"v/a", 1.0}}};
+    static constexpr std::array<Known, 6> known {
+        {{"ohm", 1.0}, {"ohms", 1.0}, {"\u03a9", 1.0}, {"\u2126", 1.0}, {"\u03c9", 1.0}, {"v/a", 1.0}}};
     const auto found = lookUp(known, text);
     return found ? std::optional(*found * factor) : std::nullopt;
 }
@@ -114,9 +141,11 @@ bool isUnit(std::string_view text)
 {
     if (text.empty())
         return false;
-    if (frequencyUnit(text) || timeUnit(text) || angleUnit(text) || resistanceUnit(text) || isDecibel(text) || ratioOfUnit(text))
+    if (frequencyUnit(text) || timeUnit(text) || angleUnit(text) || resistanceUnit(text) || isDecibel(text)
+        || ratioOfUnit(text))
         return true;
-    return std::any_of(quantities.begin(), quantities.end(), [text](Quantity quantity) { return unitNamed(quantity, text).has_value(); });
+    return std::any_of(quantities.begin(), quantities.end(),
+                       [text](Quantity quantity) { return unitNamed(quantity, text).has_value(); });
 }
 
 ColumnTitle columnTitle(std::string_view title)
@@ -141,7 +170,8 @@ ColumnTitle columnTitle(std::string_view title)
     } else {
         // "f/Hz", "x / mm": the first stroke behind which a unit stands; but "X/U" is a ratio of quantities.
         const auto stroke = text.find('/');
-        if (stroke != std::string_view::npos && stroke > 0 && isUnit(trimmed(text.substr(stroke + 1))) && !responseNamed(lowerCase(text))) {
+        if (stroke != std::string_view::npos && stroke > 0 && isUnit(trimmed(text.substr(stroke + 1)))
+            && !responseNamed(lowerCase(text))) {
             take(text.substr(0, stroke), text.substr(stroke + 1));
         } else {
             for (const char separator : {'_', ' ', ','}) {
@@ -159,7 +189,8 @@ ColumnTitle columnTitle(std::string_view title)
 
 std::optional<double> frequencyFactor(const ColumnTitle& title)
 {
-    const bool named = title.words.size() == 1 && isOneOf(title.words[0], {"f", "freq", "frq", "frequency", "frequencies", "frequenz"});
+    const bool named = title.words.size() == 1
+                       && isOneOf(title.words[0], {"f", "freq", "frq", "frequency", "frequencies", "frequenz"});
     if (named && title.unit.empty())
         return 1.0;
     const bool omega = title.words.size() == 1 && isOneOf(title.words[0], {"omega", "w", "\u03c9"});

@@ -17,7 +17,10 @@ namespace {
 
 using Kind = Error::Kind;
 
-[[noreturn]] void refuseText(Kind kind, const std::string& source, const std::string& why) { throw Error(kind, "'" + source + "' " + why); }
+[[noreturn]] void refuseText(Kind kind, const std::string& source, const std::string& why)
+{
+    throw Error(kind, "'" + source + "' " + why);
+}
 
 /// One remark for all channels whose titles have no unit.
 void tellUnits(const std::vector<ColumnQuantity>& columns, Measurement& measurement, const std::string& source)
@@ -29,7 +32,8 @@ void tellUnits(const std::vector<ColumnQuantity>& columns, Measurement& measurem
             units += (units.empty() ? "" : ", ") + std::string(siUnit(column.quantity));
         }
     if (!names.empty())
-        measurement.remarks.push_back("The titles of '" + source + "' have no unit for " + names + "; taken as " + units + ".");
+        measurement.remarks.push_back("The titles of '" + source + "' have no unit for " + names + "; taken as " + units
+                                      + ".");
 }
 
 Measurement timeSignals(const TextTable& table, const ImportOptions& options, const std::string& source)
@@ -79,7 +83,8 @@ Spectra mappedResponses(const TextTable& table, const ImportOptions& options, co
     columns.columns = options.responses;
     for (const auto& column : options.columns) {
         (void)column;
-        refuseText(Kind::usage, source, "cannot be both time signals and responses; map whole quantities or parts of responses, not both.");
+        refuseText(Kind::usage, source,
+                   "cannot be both time signals and responses; map whole quantities or parts of responses, not both.");
     }
     if (options.axis && options.axis->isTime)
         refuseText(Kind::usage, source, "cannot hold responses over time; map a frequency.");
@@ -94,7 +99,8 @@ Spectra mappedResponses(const TextTable& table, const ImportOptions& options, co
             columns.frequencyFactor = *factor;
             return spectraOf(table, columns, options.minimumPhase, source);
         }
-    refuseText(Kind::usage, source, "does not say which column is the frequency; add for example --map 1=frequency:Hz.");
+    refuseText(Kind::usage, source,
+               "does not say which column is the frequency; add for example --map 1=frequency:Hz.");
 }
 
 } // namespace
@@ -102,17 +108,22 @@ Spectra mappedResponses(const TextTable& table, const ImportOptions& options, co
 Take importText(std::string text, const std::string& source, const ImportOptions& options)
 {
     if (isRewImpulse(text)) {
-        if (!options.columns.empty() || !options.responses.empty() || options.axis || options.sampleRate > 0 || options.from > 0 || options.to)
-            refuseText(Kind::usage, source, "is an impulse response of REW, which has no columns to map and tells its sample rate; leave --map, --rate, --from and --to out.");
+        if (!options.columns.empty() || !options.responses.empty() || options.axis || options.sampleRate > 0
+            || options.from > 0 || options.to)
+            refuseText(Kind::usage, source,
+                       "is an impulse response of REW, which has no columns to map and tells its sample rate; leave "
+                       "--map, --rate, --from and --to out.");
         return rewImpulse(text, source);
     }
     const TextTable table(std::move(text), source);
     const auto guess = conventionOf(source);
     const auto withName = [&](Spectra spectra) {
         if (options.sampleRate > 0 || options.from > 0 || options.to || options.removeMean)
-            refuseText(Kind::usage, source, "is a frequency response; --rate, --from, --to and --remove-mean are for time signals.");
+            refuseText(Kind::usage, source,
+                       "is a frequency response; --rate, --from, --to and --remove-mean are for time signals.");
         for (const auto& line : table.remarks())
-            if (const auto mark = assumedMark.substr(2); line.starts_with(mark))   // what an earlier import had to assume
+            if (const auto mark = assumedMark.substr(2);
+                line.starts_with(mark))   // what an earlier import had to assume
                 spectra.remarks.push_back(line.substr(mark.size()));
         if (guess)
             spectra.driver.name = std::filesystem::path(source).stem().string();
@@ -121,19 +132,27 @@ Take importText(std::string text, const std::string& source, const ImportOptions
     if (!options.responses.empty())
         return withName(mappedResponses(table, options, source));
     if (options.axis && !options.axis->isTime)
-        refuseText(Kind::usage, source, "has a mapped frequency, but no mapped response; add for example --map 2=impedance.magnitude --map 3=impedance.phase.");
+        refuseText(Kind::usage, source,
+                   "has a mapped frequency, but no mapped response; add for example --map 2=impedance.magnitude --map "
+                   "3=impedance.phase.");
     const bool overFrequency = table.hasTitles() && frequencyFactor(columnTitle(table.titles().front()));
-    if (options.columns.empty() && (overFrequency || options.as || (guess && (!table.hasTitles() || !columnNamed(table.titles().front()))))) {
+    if (options.columns.empty()
+        && (overFrequency || options.as || (guess && (!table.hasTitles() || !columnNamed(table.titles().front()))))) {
         if (table.titles().size() < 2)
             refuseText(Kind::input, source, "has one column of numbers, expected frequencies and a response.");
-        return withName(spectraOf(table, responseColumnsOf(table, options.as, guess, source), options.minimumPhase, source));
+        return withName(
+            spectraOf(table, responseColumnsOf(table, options.as, guess, source), options.minimumPhase, source));
     }
     if (!table.hasTitles() && options.columns.empty())
-        refuseText(Kind::input, source, "has no titles that say what its " + std::to_string(table.titles().size()) + " columns are; give --as impedance if they are frequency in "
-                                            "Hz, |Z| in ohm and phase in degrees, --as response if they are Hz, dB and degrees, or map them by number, for "
-                                            "example --map 1=voltage --map 2=current, with excursion import.");
+        refuseText(Kind::input, source,
+                   "has no titles that say what its " + std::to_string(table.titles().size())
+                       + " columns are; give --as impedance if they are frequency in "
+                         "Hz, |Z| in ohm and phase in degrees, --as response if they are Hz, dB and degrees, or map "
+                         "them by number, for "
+                         "example --map 1=voltage --map 2=current, with excursion import.");
     if (options.minimumPhase)
-        refuseText(Kind::usage, source, "holds time signals, which have no phase to compute; leave --minimum-phase out.");
+        refuseText(Kind::usage, source,
+                   "holds time signals, which have no phase to compute; leave --minimum-phase out.");
     return timeSignals(table, options, source);
 }
 

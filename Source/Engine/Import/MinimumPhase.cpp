@@ -56,7 +56,8 @@ std::vector<double> minimumPhase(const std::vector<double>& frequency, const std
         ++first;
     while (last > 0 && x[points - 1] - x[last] < halfOctave)
         --last;
-    const double below = (g[first] - g[0]) / (x[first] - x[0]), above = (g[points - 1] - g[last]) / (x[points - 1] - x[last]);
+    const double below = (g[first] - g[0]) / (x[first] - x[0]),
+                 above = (g[points - 1] - g[last]) / (x[points - 1] - x[last]);
     constexpr double farAway = 60.0;   // where the weight has died away
     for (std::size_t k = 0; k < phase.size(); ++k) {
         const double here = std::log(frequency[k]);

@@ -35,7 +35,9 @@ std::string fromUtf16(std::string_view bytes, bool bigEndian)
 {
     std::string text;
     text.reserve(bytes.size() / 2);
-    const auto unit = [&](std::size_t k) { return bigEndian ? byteAt(bytes, k) << 8 | byteAt(bytes, k + 1) : byteAt(bytes, k + 1) << 8 | byteAt(bytes, k); };
+    const auto unit = [&](std::size_t k) {
+        return bigEndian ? byteAt(bytes, k) << 8 | byteAt(bytes, k + 1) : byteAt(bytes, k + 1) << 8 | byteAt(bytes, k);
+    };
     for (std::size_t k = 0; k + 1 < bytes.size(); k += 2) {
         unsigned code = unit(k);
         if (code >= 0xD800 && code < 0xDC00 && k + 3 < bytes.size() && unit(k + 2) >= 0xDC00 && unit(k + 2) < 0xE000) {
@@ -53,7 +55,10 @@ bool isUtf8(std::string_view bytes)
         const unsigned lead = byteAt(bytes, k++);
         if (lead < 0x80)
             continue;
-        const int more = lead >= 0xC2 && lead < 0xE0 ? 1 : lead >= 0xE0 && lead < 0xF0 ? 2 : lead >= 0xF0 && lead < 0xF5 ? 3 : -1;
+        const int more = lead >= 0xC2 && lead < 0xE0   ? 1
+                         : lead >= 0xE0 && lead < 0xF0 ? 2
+                         : lead >= 0xF0 && lead < 0xF5 ? 3
+                                                       : -1;
         if (more < 0)
             return false;
         for (int n = 0; n < more; ++n, ++k)

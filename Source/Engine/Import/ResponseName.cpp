@@ -18,8 +18,16 @@ std::optional<Quantity> quantityOf(std::string_view text)
     if (const auto known = quantityNamed(lower))
         return known;
     static constexpr std::array<std::pair<std::string_view, Quantity>, 10> names {
-        {{"u", Quantity::voltage}, {"i", Quantity::current}, {"x", Quantity::displacement}, {"excursion", Quantity::displacement}, {"v", Quantity::velocity},
-         {"a", Quantity::acceleration}, {"p", Quantity::pressure}, {"spl", Quantity::pressure}, {"mic", Quantity::pressure}, {"f", Quantity::force}}};
+        {{"u", Quantity::voltage},
+         {"i", Quantity::current},
+         {"x", Quantity::displacement},
+         {"excursion", Quantity::displacement},
+         {"v", Quantity::velocity},
+         {"a", Quantity::acceleration},
+         {"p", Quantity::pressure},
+         {"spl", Quantity::pressure},
+         {"mic", Quantity::pressure},
+         {"f", Quantity::force}}};
     for (const auto& [name, quantity] : names)
         if (lower == name)
             return quantity;
@@ -79,7 +87,9 @@ std::string textOf(const ResponseName& response)
 std::optional<ResponsePart> responsePartNamed(std::string_view text)
 {
     const auto lower = lowerCase(text);
-    const auto isOneOf = [&lower](std::initializer_list<std::string_view> words) { return std::find(words.begin(), words.end(), lower) != words.end(); };
+    const auto isOneOf = [&lower](std::initializer_list<std::string_view> words) {
+        return std::find(words.begin(), words.end(), lower) != words.end();
+    };
     if (isOneOf({"re", "real"}))
         return ResponsePart::real;
     if (isOneOf({"im", "imag", "imaginary"}))
@@ -96,7 +106,8 @@ std::optional<ResponsePart> responsePartNamed(std::string_view text)
 bool isSoundLevel(std::string_view unit)
 {
     const auto text = squeezed(unit);
-    return text == "dbspl" || text == "spl" || text == "dbre20upa" || text == "dbre20\u00b5pa" || text == "dbre20\u03bcpa" || text == "dbre.20upa" || text == "db/20upa";
+    return text == "dbspl" || text == "spl" || text == "dbre20upa" || text == "dbre20\u00b5pa"
+           || text == "dbre20\u03bcpa" || text == "dbre.20upa" || text == "db/20upa";
 }
 
 bool isDecibel(std::string_view unit) { return squeezed(unit) == "db" || isSoundLevel(unit); }
@@ -108,7 +119,9 @@ std::optional<double> responseScale(const ResponseName& response, ResponsePart p
     if (part == ResponsePart::decibels) {
         const bool sound = response.output == Quantity::pressure;
         if (isDecibel(unit) || unit.empty())
-            return sound ? std::optional(hearingThreshold) : isSoundLevel(unit) || !response.isImpedance() ? std::nullopt : std::optional(1.0);
+            return sound                                           ? std::optional(hearingThreshold)
+                   : isSoundLevel(unit) || !response.isImpedance() ? std::nullopt
+                                                                   : std::optional(1.0);
     }
     if (unit.empty())
         return 1.0;

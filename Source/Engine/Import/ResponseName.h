@@ -18,8 +18,8 @@ struct ResponseName {
     bool isImpedance() const { return output == Quantity::voltage && input == Quantity::current; }
 };
 
-/// "impedance" (voltage/current), "admittance" (current/voltage), "displacement/voltage", "x/u", "pressure"; also "response", as others
-/// call the sound pressure of a loudspeaker: pressure/voltage. nullopt when it is none of these.
+/// "impedance" (voltage/current), "admittance" (current/voltage), "displacement/voltage", "x/u", "pressure"; also
+/// "response", as others call the sound pressure of a loudspeaker: pressure/voltage. nullopt when it is none of these.
 std::optional<ResponseName> responseNamed(std::string_view);
 
 /// "impedance" or "displacement/voltage".
@@ -30,9 +30,9 @@ enum class ResponsePart { real, imaginary, magnitude, decibels, phase };
 /// "re", "im", "magnitude" (mag, abs), "dB", "phase", in any case.
 std::optional<ResponsePart> responsePartNamed(std::string_view);
 
-/// What a number in a unit is multiplied by: to SI of a real part, imaginary part or magnitude; to rad of a phase (default degrees). Of
-/// decibels it is what 0 dB stands for, in SI: the unit says it ("mm/V"), and that of a sound pressure is 20 uPa by default.
-/// nullopt when the unit does not suit.
+/// What a number in a unit is multiplied by: to SI of a real part, imaginary part or magnitude; to rad of a phase
+/// (default degrees). Of decibels it is what 0 dB stands for, in SI: the unit says it ("mm/V"), and that of a sound
+/// pressure is 20 uPa by default. nullopt when the unit does not suit.
 std::optional<double> responseScale(const ResponseName&, ResponsePart, std::string_view unit);
 
 /// "ohm, kohm or V/A": for sentences.

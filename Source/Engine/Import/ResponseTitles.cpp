@@ -80,11 +80,14 @@ Reading read(const std::string& title)
         return reading;
     if (resistanceUnit(text.unit))
         reading.response = responseNamed("impedance");
-    else if (isSoundLevel(text.unit) || (reading.response && !reading.response->input && reading.response->output == Quantity::pressure
-                                         && reading.part == ResponsePart::decibels))
+    else if (isSoundLevel(text.unit)
+             || (reading.response && !reading.response->input && reading.response->output == Quantity::pressure
+                 && reading.part == ResponsePart::decibels))
         reading.response = responseNamed("spl");
     else if (const auto ratio = ratioOfUnit(text.unit))
-        reading.response = reading.response && responseScale(*reading.response, ResponsePart::magnitude, text.unit) ? reading.response : ratio;
+        reading.response = reading.response && responseScale(*reading.response, ResponsePart::magnitude, text.unit)
+                               ? reading.response
+                               : ratio;
     return reading;
 }
 
@@ -92,7 +95,8 @@ std::string siUnitOf(const ResponseName& response)
 {
     if (response.isImpedance())
         return "ohm";
-    return std::string(siUnit(response.output)) + (response.input ? "/" + std::string(siUnit(*response.input)) : std::string());
+    return std::string(siUnit(response.output))
+           + (response.input ? "/" + std::string(siUnit(*response.input)) : std::string());
 }
 
 std::string quotedList(const std::vector<std::string>& names)
@@ -105,10 +109,12 @@ std::string quotedList(const std::vector<std::string>& names)
 
 } // namespace
 
-ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<ResponseName>& as, const std::optional<ResponseName>& guess,
-                                  const std::string& source)
+ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<ResponseName>& as,
+                                  const std::optional<ResponseName>& guess, const std::string& source)
 {
-    const auto refuse = [&source](const std::string& why) { throw Error(Error::Kind::input, "'" + source + "' " + why); };
+    const auto refuse = [&source](const std::string& why) {
+        throw Error(Error::Kind::input, "'" + source + "' " + why);
+    };
     const auto& titles = table.titles();
     ResponseColumns found;
     found.frequency = "1";
@@ -127,7 +133,8 @@ ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<Re
         const auto& title = titles[c];
         const auto number = std::to_string(c + 1);   // titles may repeat
         if (frequencyFactor(columnTitle(title))) {
-            found.remarks.push_back("'" + source + "' holds several curves, each with frequencies of its own; the first is taken.");
+            found.remarks.push_back("'" + source
+                                    + "' holds several curves, each with frequencies of its own; the first is taken.");
             break;
         }
         const auto split = withoutPart(title);
@@ -136,7 +143,8 @@ ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<Re
             if (const auto quantity = columnNamed(plain)) {
                 found.columns.push_back({number, {quantity->quantity, std::nullopt}, part, quantity->unit});
                 if (quantity->unit.empty())
-                    found.remarks.push_back("Column '" + title + "' of '" + source + "' has no unit; it is taken as " + std::string(siUnit(quantity->quantity)) + ".");
+                    found.remarks.push_back("Column '" + title + "' of '" + source + "' has no unit; it is taken as "
+                                            + std::string(siUnit(quantity->quantity)) + ".");
                 continue;
             }
         }
@@ -154,30 +162,38 @@ ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<Re
         }
         if (!reading.response && reading.part == ResponsePart::phase)
             reading.response = last;
-        if (reading.response && !reading.response->input && reading.part == ResponsePart::phase && last && last->output == reading.response->output)
+        if (reading.response && !reading.response->input && reading.part == ResponsePart::phase && last
+            && last->output == reading.response->output)
             reading.response = last;
         if (!reading.response) {
             if (split || reading.part == ResponsePart::decibels || reading.part == ResponsePart::magnitude)
-                refuse("has a column '" + title + "' whose quantity and unit are not understood; say what it is, for example with --as impedance "
-                       "or --map " + number + "=displacement/voltage." + (split ? "re" : "magnitude") + " of excursion import.");
+                refuse(
+                    "has a column '" + title
+                    + "' whose quantity and unit are not understood; say what it is, for example with --as impedance "
+                      "or --map "
+                    + number + "=displacement/voltage." + (split ? "re" : "magnitude") + " of excursion import.");
             left.push_back(title);
             continue;
         }
         const auto part = reading.part.value_or(ResponsePart::magnitude);
         if (!responseScale(*reading.response, part, reading.unit))
-            refuse("has a column '" + title + "' whose unit does not suit the " + textOf(*reading.response) + ", expected "
-                   + acceptedUnits(*reading.response, part) + "; map it with --map of excursion import.");
+            refuse("has a column '" + title + "' whose unit does not suit the " + textOf(*reading.response)
+                   + ", expected " + acceptedUnits(*reading.response, part)
+                   + "; map it with --map of excursion import.");
         if (reading.unit.empty() && part != ResponsePart::phase && part != ResponsePart::decibels)
-            found.remarks.push_back("Column '" + title + "' of '" + source + "' has no unit; it is taken as " + siUnitOf(*reading.response) + ".");
+            found.remarks.push_back("Column '" + title + "' of '" + source + "' has no unit; it is taken as "
+                                    + siUnitOf(*reading.response) + ".");
         found.columns.push_back({number, *reading.response, part, reading.unit});
         last = reading.response;
     }
     if (found.columns.empty())
-        refuse("has a column of frequencies, but no other whose title is understood" + (left.empty() ? std::string() : " (" + quotedList(left) + ")")
-               + "; say what the file is, for example with --as impedance of excursion import, or map its columns with --map.");
+        refuse("has a column of frequencies, but no other whose title is understood"
+               + (left.empty() ? std::string() : " (" + quotedList(left) + ")")
+               + "; say what the file is, for example with --as impedance of excursion import, or map its columns with "
+                 "--map.");
     if (!left.empty())
-        found.remarks.push_back((left.size() == 1 ? "Column " : "Columns ") + quotedList(left) + " of '" + source + "' " + (left.size() == 1 ? "was" : "were")
-                                + " left out, as the title is not understood.");
+        found.remarks.push_back((left.size() == 1 ? "Column " : "Columns ") + quotedList(left) + " of '" + source + "' "
+                                + (left.size() == 1 ? "was" : "were") + " left out, as the title is not understood.");
     return found;
 }
 

@@ -32,7 +32,8 @@ std::optional<double> looseNumber(std::string_view text)
     for (std::size_t k = 0; k < text.size(); ++k) {
         const char c = text[k];
         if (c == '.' || c == ',') {
-            // A mark that three digits follow to the end separates thousands, as these are frequencies with one decimal.
+            // A mark that three digits follow to the end separates thousands, as these are frequencies with one
+            // decimal.
             if (k == lastMark && text.size() - k != 4)
                 digits += '.';
         } else if (c != ' ' && static_cast<unsigned char>(c) < 0x80) {
@@ -90,12 +91,15 @@ std::optional<double> numberOf(std::string_view text)
 bool isRewImpulse(std::string_view text)
 {
     const auto head = lowerCase(text.substr(0, 8192));
-    return head.find(intervalMark) != std::string::npos || head.find("impulse response data saved by rew") != std::string::npos;
+    return head.find(intervalMark) != std::string::npos
+           || head.find("impulse response data saved by rew") != std::string::npos;
 }
 
 Spectra rewImpulse(std::string_view text, const std::string& source)
 {
-    const auto refuse = [&source](const std::string& why) { throw Error(Error::Kind::input, "'" + source + "' is an impulse response of REW that " + why); };
+    const auto refuse = [&source](const std::string& why) {
+        throw Error(Error::Kind::input, "'" + source + "' is an impulse response of REW that " + why);
+    };
     Header header;
     std::vector<double> h;
     std::size_t number = 0;
@@ -109,9 +113,13 @@ Spectra rewImpulse(std::string_view text, const std::string& source)
             const auto what = lowerCase(line.substr(stroke));
             const auto value = numberOf(line.substr(0, stroke));
             if (!value || !std::isfinite(*value))
-                refuse("has no number before '" + std::string(line.substr(stroke, 40)) + "' in line " + std::to_string(number) + ".");
-            for (const auto& [mark, target] : {std::pair {std::string_view("// peak value"), &header.peak}, {"// response length", &header.length},
-                                               {intervalMark, &header.interval}, {"// start time", &header.start}, {"// data offset", &header.offset}})
+                refuse("has no number before '" + std::string(line.substr(stroke, 40)) + "' in line "
+                       + std::to_string(number) + ".");
+            for (const auto& [mark, target] : {std::pair {std::string_view("// peak value"), &header.peak},
+                                               {"// response length", &header.length},
+                                               {intervalMark, &header.interval},
+                                               {"// start time", &header.start},
+                                               {"// data offset", &header.offset}})
                 if (what.starts_with(mark))
                     *target = *value;
             continue;
@@ -122,19 +130,23 @@ Spectra rewImpulse(std::string_view text, const std::string& source)
             continue;
         }
         if (!sample || !std::isfinite(*sample))
-            refuse("has '" + std::string(line.substr(0, 40)) + "' in line " + std::to_string(number) + ", expected a finite sample.");
+            refuse("has '" + std::string(line.substr(0, 40)) + "' in line " + std::to_string(number)
+                   + ", expected a finite sample.");
         h.push_back(*sample);
     }
     if (!header.interval || !(*header.interval >= 1e-8 && *header.interval <= 1.0))
         refuse("does not tell its sample interval; export it with its header.");
     if (header.length && *header.length != static_cast<double>(h.size()))
-        refuse("has " + std::to_string(h.size()) + " samples, but its header claims " + std::to_string(static_cast<long long>(std::clamp(*header.length, -1e15, 1e15)))
+        refuse("has " + std::to_string(h.size()) + " samples, but its header claims "
+               + std::to_string(static_cast<long long>(std::clamp(*header.length, -1e15, 1e15)))
                + "; export it again.");
     if (h.size() < 64)
         refuse("has only " + std::to_string(h.size()) + " samples.");
 
-    const double interval = *header.interval, start = header.start.value_or(0.0), spacing = 1.0 / (interval * static_cast<double>(h.size()));
-    const double low = std::max(header.low, spacing), high = header.high > low ? std::min(header.high, 0.5 / interval) : 0.5 / interval;
+    const double interval = *header.interval, start = header.start.value_or(0.0),
+                 spacing = 1.0 / (interval * static_cast<double>(h.size()));
+    const double low = std::max(header.low, spacing),
+                 high = header.high > low ? std::min(header.high, 0.5 / interval) : 0.5 / interval;
     const double offset = header.offset.value_or(0.0), peak = header.normalised ? header.peak.value_or(1.0) : 1.0;
     if (std::abs(offset) > 1000.0 || std::abs(start) > 1e6)
         refuse("has an impossible offset or start time in its header.");
@@ -159,9 +171,13 @@ Spectra rewImpulse(std::string_view text, const std::string& source)
     if (spectra.frequency.size() < 3)
         refuse("was measured over a band in which fewer than 3 of its lines lie.");
     spectra.channels = {std::move(voltage), std::move(pressure)};
-    const auto told = [&](const std::string& sentence) { spectra.remarks.push_back("The impulse response '" + source + "' " + sentence); };
-    told(header.offset ? "is taken as sound pressure at 1 V, 0 dB being 20 uPa at its data offset, as the file does not tell the voltage; shape and phase do not depend on it."
-                       : "has no level that the file tells: a sample of 1 is taken as 1 Pa at 1 V; shape and phase do not depend on it.");
+    const auto told = [&](const std::string& sentence) {
+        spectra.remarks.push_back("The impulse response '" + source + "' " + sentence);
+    };
+    told(header.offset ? "is taken as sound pressure at 1 V, 0 dB being 20 uPa at its data offset, as the file does "
+                         "not tell the voltage; shape and phase do not depend on it."
+                       : "has no level that the file tells: a sample of 1 is taken as 1 Pa at 1 V; shape and phase do "
+                         "not depend on it.");
     if (header.normalised && !header.peak)
         told("is normalised, and its peak value is not in the file.");
     if (header.windowed)

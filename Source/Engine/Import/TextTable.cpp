@@ -139,7 +139,8 @@ bool isAxis(const std::string& title)
 bool onlyUnits(const std::vector<std::string>& cells)
 {
     return std::any_of(cells.begin(), cells.end(), [](const auto& cell) { return !cell.empty(); })
-        && std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.empty() || isUnit(withoutBrackets(cell)); });
+           && std::all_of(cells.begin(), cells.end(),
+                          [](const auto& cell) { return cell.empty() || isUnit(withoutBrackets(cell)); });
 }
 
 } // namespace
@@ -172,7 +173,8 @@ TextTable::TextTable(std::string text, std::string source) : text_(std::move(tex
             const auto count = countOf(line, candidate);
             const auto next = nextLine(first);
             // A heading such as "5 kHz" is half a number; what follows it is not.
-            if (mostlyNumbers(count) && (count.numbers == count.filled || next.empty() || mostlyNumbers(countOf(next, candidate)))) {
+            if (mostlyNumbers(count)
+                && (count.numbers == count.filled || next.empty() || mostlyNumbers(countOf(next, candidate)))) {
                 begun = true;
                 separator_ = candidate;
             }
@@ -223,7 +225,9 @@ void TextTable::findTitles(const std::vector<Row>& above, std::size_t columns)
             if (separator_ == ' ')
                 cells = wordsOf(inner);
         }
-        const auto fits = [&](const std::vector<std::string>& c) { return c.size() == columns || inUse(c).size() == filled; };
+        const auto fits = [&](const std::vector<std::string>& c) {
+            return c.size() == columns || inUse(c).size() == filled;
+        };
         bool found = !mark && cells.size() >= filled && (separator_ != ' ' || fits(cells));
         for (const char other : {'\t', ';', ','})
             if (!found && inner.find(other) != std::string_view::npos) {
@@ -235,10 +239,13 @@ void TextTable::findTitles(const std::vector<Row>& above, std::size_t columns)
             found = cells.size() == filled && (isAxis(cells.front()) || onlyUnits(cells));
         }
         if (!found) {
-            if (!mark && separator_ == ',' && looked == 0 && inUse(cellsOf(inner, ',')).size() > 1 && 2 * inUse(cellsOf(inner, ',')).size() <= filled)
-                throw Error(Error::Kind::input, "'" + source_ + "': line " + std::to_string(rows_.front().line) + " has " + std::to_string(filled)
-                                                    + " cells below " + std::to_string(inUse(cellsOf(inner, ',')).size())
-                                                    + " titles; where commas are decimal, cells need semicolons or tabs between them.");
+            if (!mark && separator_ == ',' && looked == 0 && inUse(cellsOf(inner, ',')).size() > 1
+                && 2 * inUse(cellsOf(inner, ',')).size() <= filled)
+                throw Error(Error::Kind::input,
+                            "'" + source_ + "': line " + std::to_string(rows_.front().line) + " has "
+                                + std::to_string(filled) + " cells below "
+                                + std::to_string(inUse(cellsOf(inner, ',')).size())
+                                + " titles; where commas are decimal, cells need semicolons or tabs between them.");
             continue;
         }
         if (units.empty() && onlyUnits(cells) && row + 1 != above.rend()) {
@@ -272,8 +279,8 @@ std::optional<std::size_t> TextTable::find(std::string_view column) const
 std::vector<double> TextTable::column(std::size_t index) const
 {
     const auto refuse = [&](std::size_t line, const std::string& found) {
-        throw Error(Error::Kind::input, "'" + source_ + "': line " + std::to_string(line) + ", column '" + titles_[index] + "' " + found
-                                            + ", expected a finite number.");
+        throw Error(Error::Kind::input, "'" + source_ + "': line " + std::to_string(line) + ", column '"
+                                            + titles_[index] + "' " + found + ", expected a finite number.");
     };
     std::vector<double> values;
     values.reserve(rows_.size());
@@ -296,7 +303,8 @@ std::vector<double> TextTable::column(std::size_t index) const
         points_ = points_ || text.find('.') != std::string_view::npos;
         commas_ = commas_ || (separator_ != ',' && text.find(',') != std::string_view::npos);
         if (points_ && commas_)
-            refuse(row.line, "is '" + std::string(text.substr(0, 40)) + "', in a table that has both points and commas in its numbers");
+            refuse(row.line, "is '" + std::string(text.substr(0, 40))
+                                 + "', in a table that has both points and commas in its numbers");
         values.push_back(*value);
     }
     return values;
