@@ -54,6 +54,17 @@ Added addTo(const Model& model, const Effect& effect, const Record& record, cons
     return result;
 }
 
+/// By the misfit; where the take does not tell its noise by the errors themselves.
+bool fell(const Added& added)
+{
+    if (added.before.noiseKnown && added.after.noiseKnown)
+        return added.after.chi < added.before.chi;
+    for (std::size_t k = 0; k < added.after.channels.size(); ++k)
+        if (added.after.channels[k].total.db < added.before.channels[k].total.db - 0.05)
+            return true;
+    return false;
+}
+
 void print(const Added& added, const Effect& effect, Terminal& terminal)
 {
     terminal.say("Added " + effect.title() + ". " + effect.physics());
@@ -68,7 +79,7 @@ void print(const Added& added, const Effect& effect, Terminal& terminal)
     terminal.table({"channel", "error dB before", "after", "noise dB", "misfit before", "after"}, rows);
     terminal.say("");
     printParameters(added.model, terminal);
-    if (added.after.chi >= added.before.chi) {
+    if (!fell(added)) {
         terminal.say("");
         terminal.say("The error did not fall: the take does not ask for this effect.");
     }
@@ -108,7 +119,7 @@ void addAdd(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<AddArguments>();
     auto* verb = app.add_subcommand("add", "Put an effect into a model and refit everything")->group(step::diagnose);
-    verb->add_option("TAKE", o->take, "the take that the model was fitted to")->required();
+    verb->add_option("TAKE", o->take, "the take or impedance that the model was fitted to")->required();
     verb->add_option("EFFECT", o->effect, "the effect, such as stiffness; excursion effects lists them")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->add_option("--out", o->out, "the new model, a .json")->required()->type_name("FILE");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -193,10 +194,59 @@ void checkExtension(const BlaArguments& options)
     throw Error(Error::Kind::usage, "The file \"" + options.out + "\" should end in .csv, .frd, .zma or .json.");
 }
 
+Json documentOf(const Frf& frf, const std::string& take, std::string_view input, std::string_view output)
+{
+    std::vector<double> re, im;
+    for (const auto& value : frf.value) {
+        re.push_back(value.real());
+        im.push_back(value.imag());
+    }
+    Json document {{"format", "excursion-bla"}, {"version", 1}, {"take", take}, {"input", input}, {"output", output}};
+    document["frequency"] = numbersOrNulls(frf.frequency);
+    document["re"] = numbersOrNulls(re);
+    document["im"] = numbersOrNulls(im);
+    document["noiseVariance"] = numbersOrNulls(frf.noiseVariance);
+    document["totalVariance"] = numbersOrNulls(frf.totalVariance);
+    return document;
+}
+
+/// A file that holds the response already: it is shown, and turned into another format.
+void showResponse(const BlaArguments& options, Terminal& terminal)
+{
+    if (options.level >= 0 || options.segment > 0)
+        throw Error(Error::Kind::usage, "'" + options.take + "' is a frequency response already; leave --level and --segment out.");
+    const auto open = openResponse({options.take, options.output, "", -1});
+    Found found;
+    found.frf = open.frf;
+    found.remarks = open.remarks;
+    found.document = documentOf(open.frf, options.take, open.input, open.output);
+    found.document["method"] = "file";
+    const bool impedance = open.output == "voltage" && open.input == "current";
+    if (extensionOf(options.out) == ".zma" && !impedance && (open.output != "current" || open.input != "voltage"))
+        throw Error(Error::Kind::usage, "A .zma holds an impedance, but this is " + open.output + " / " + open.input + ".");
+    print(found, impedance ? std::string("impedance, voltage / current, as the file has it") : open.output + " / " + open.input + ", as the file has it", terminal);
+    if (!options.out.empty()) {
+        if (extensionOf(options.out) == ".zma") {
+            auto z = open.frf;
+            if (!impedance)
+                for (auto& value : z.value)
+                    value = 1.0 / value;
+            writeZma(z, options.out);
+        } else {
+            write(found, {}, -1, options);
+        }
+        terminal.say("Wrote " + options.out + ".");
+    }
+    terminal.document(found.document);
+}
+
 void run(const BlaArguments& options, Terminal& terminal)
 {
     checkExtension(options);
-    auto take = readMeasurement(options.take);
+    auto read = readTake(options.take);
+    if (std::holds_alternative<Spectra>(read))
+        return showResponse(options, terminal);
+    auto& take = std::get<Measurement>(read);
     completeExcitation(take);
     const auto output = outputOf(take, options.output);
     if (endingOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
@@ -208,18 +258,8 @@ void run(const BlaArguments& options, Terminal& terminal)
     auto found = periodic ? fromPeriods(take, output, level) : fromRecord(take, output, options.segment);
 
     const auto input = take.input().quantity;
-    Json head {{"format", "excursion-bla"}, {"version", 1}, {"take", options.take}, {"input", name(input)}, {"output", name(output)}};
+    auto head = documentOf(found.frf, options.take, name(input), name(output));
     head.update(found.document);
-    std::vector<double> re, im;
-    for (const auto& value : found.frf.value) {
-        re.push_back(value.real());
-        im.push_back(value.imag());
-    }
-    head["frequency"] = numbersOrNulls(found.frf.frequency);
-    head["re"] = numbersOrNulls(re);
-    head["im"] = numbersOrNulls(im);
-    head["noiseVariance"] = numbersOrNulls(found.frf.noiseVariance);
-    head["totalVariance"] = numbersOrNulls(found.frf.totalVariance);
     found.document = std::move(head);
 
     print(found,
@@ -241,7 +281,7 @@ void addBla(CLI::App& app, Terminal& terminal)
 {
     auto* verb = app.add_subcommand("bla", "Frequency response, with its noise and its odd and even distortion")->group(step::look);
     auto options = std::make_shared<BlaArguments>();
-    verb->add_option("TAKE", options->take, "the take: a folder, or a .csv of time signals")->required();
+    verb->add_option("TAKE", options->take, "the take: a folder, a .csv of time signals, or a file that is a response already")->required();
     verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
     verb->add_option("--output", options->output, "the channel to explain; by default the first beside the input");

@@ -164,7 +164,7 @@ void addCompare(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<CompareArguments>();
     auto* verb = app.add_subcommand("compare", "Where a model and a take part, by how much, and in which way")->group(step::fit);
-    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
+    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

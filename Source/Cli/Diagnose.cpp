@@ -99,7 +99,7 @@ void addDiagnose(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<DiagnoseArguments>();
     auto* verb = app.add_subcommand("diagnose", "Name the physical effect that a model is missing")->group(step::diagnose);
-    verb->add_option("TAKE", o->take, "the take that the model was fitted to")->required();
+    verb->add_option("TAKE", o->take, "the take or impedance that the model was fitted to")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->footer("Verdicts: missing-effect, complete, unknown-effect (something is left that no effect of the catalogue\n"
                  "explains), bad-measurement. Exit code 1: bad-measurement.");

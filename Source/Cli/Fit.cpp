@@ -69,7 +69,7 @@ void addFit(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<FitArguments>();
     auto* verb = app.add_subcommand("fit", "Fit a model to a take: the linear base, and the effects that you name")->group(step::fit);
-    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
+    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")->required();
     verb->add_option("--effects", o->effects, "effects to put in, separated by commas; excursion effects lists them")->delimiter(',')->type_name("EFFECT");
     verb->add_option("--out", o->out, "the model, a .json")->required()->type_name("FILE");
     verb->footer("Exit code 1: the take is not fit for use, and no model was written.");

@@ -38,8 +38,11 @@ struct IdentifyArguments {
     bool discrete = false, unrefined = false, quick = false, unstable = false, mixed = false;
 };
 
+/// Without --order all from 1 to 8 are tried: a loudspeaker in a box with eddy currents has about 6.
 std::vector<int> ordersFrom(std::vector<int> orders)
 {
+    if (orders.empty())
+        return {1, 2, 3, 4, 5, 6, 7, 8};
     std::sort(orders.begin(), orders.end());
     orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
     return orders;
@@ -141,7 +144,7 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
 void runMixed(const IdentifyArguments& options, const OpenResponse& open, const FrequencyData& data, Terminal& terminal)
 {
     if (open.output != "voltage" || open.input != "current")
-        throw Error(Error::Kind::usage, "--mixed fits an impedance: add --output voltage --input current.");
+        throw Error(Error::Kind::usage, "--mixed fits an impedance: leave --output and --input out, or make them voltage and current.");
     if (!options.out.empty())
         throw Error(Error::Kind::usage, "A mixed-order impedance has no file of its own; take its parameters from --json and leave --out out.");
     MixedImpedanceOptions mixed;
@@ -185,15 +188,22 @@ void run(const IdentifyArguments& options, Terminal& terminal)
         requireFilePlace(options.out);
     if (!options.band.empty() && !(options.band[0] < options.band[1]))
         throw Error(Error::Kind::usage, "The band of --band begins at or beyond its end.");
-    if (options.orders.empty() != options.mixed)
-        throw Error(Error::Kind::usage, options.mixed ? "A mixed-order impedance has no order; leave --order out with --mixed." : "Give an --order.");
+    if (options.mixed && !options.orders.empty())
+        throw Error(Error::Kind::usage, "A mixed-order impedance has no order; leave --order out with --mixed.");
     if (options.mixed && options.alpha.empty())
         throw Error(Error::Kind::usage, "Give --alpha with --mixed: a number, or free.");
     if (options.cone)
         return runMotorCone(options, terminal);
     if (options.delay)
         throw Error(Error::Kind::usage, "--delay is that of the sound; give --cone with it.");
-    const auto open = openResponse(options.response);
+    auto response = options.response;
+    if (options.mixed && response.output.empty() && response.input.empty()) {   // it is one of impedances
+        response.output = "voltage";
+        response.input = "current";
+    }
+    const auto open = openResponse(response);
+    for (const auto& remark : open.remarks)
+        terminal.say(wrapped("remark  " + remark, 8));
     if (options.discrete && open.sampleRate == 0.0)
         throw Error(Error::Kind::usage, "A frequency response has no sample rate; leave --discrete out.");
     const auto data = frequencyDataOf(within(open.frf, options.band));
@@ -201,7 +211,7 @@ void run(const IdentifyArguments& options, Terminal& terminal)
         return options.mixed ? runMixed(options, open, data, terminal) : runFractional(options, open, data, terminal);
     std::optional<FrequencyData> validation;
     if (!options.validation.empty()) {
-        auto choice = options.response;
+        auto choice = response;
         choice.path = options.validation;
         validation = frequencyDataOf(within(openResponse(choice).frf, options.band));
     }
@@ -250,8 +260,8 @@ void addIdentify(CLI::App& app, Terminal& terminal)
     auto o = std::make_shared<IdentifyArguments>();
     auto* verb = app.add_subcommand("identify", "Identify a linear state-space model of a frequency response, of a given or of the best order")
                      ->group(step::fit);
-    verb->add_option("TAKE", o->response.path, "a take, a .csv, .zma or .frd, or the .json of excursion bla")->required();
-    verb->add_option("--order", o->orders, "the order, or several separated by commas to choose from")->delimiter(',')->check(CLI::Range(0, 400));
+    verb->add_option("TAKE", o->response.path, "a take, an impedance or another response (.zma, .frd, .csv, .txt), or the .json of excursion bla")->required();
+    verb->add_option("--order", o->orders, "the order, or several separated by commas to choose from; by default the best of 1 to 8")->delimiter(',')->check(CLI::Range(0, 400));
     verb->add_option("--alpha", o->alpha, "a model of fractional order, in s^alpha: alpha, or free to find it with its standard error");
     verb->add_flag("--mixed", o->mixed, "with --alpha: an impedance R + L s^alpha with one resonance, in place of a state-space model");
     verb->add_option("--cone", o->cone, "tell motor and cone apart, by displacement and pressure: the cone's order; --order is the motor's")
@@ -259,7 +269,7 @@ void addIdentify(CLI::App& app, Terminal& terminal)
     verb->add_option("--delay", o->delay, "with --cone: how long the sound is on its way, s; by default that of the microphone's distance")
         ->check(CLI::Range(0.0, 1.0));
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
-    verb->add_option("--input", o->response.input, "the channel it is explained by; by default the voltage or force");
+    verb->add_option("--input", o->response.input, "the channel it is explained by; by default the voltage or force, of an impedance the current");
     verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
     verb->add_option("--band", o->band, "lowest and highest frequency to use, Hz")->delimiter(',')->expected(2);
     verb->add_option("--validation", o->validation, "another take or response, which then chooses the order")->type_name("TAKE");

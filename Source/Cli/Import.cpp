@@ -4,8 +4,8 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Error.h"
+#include "Engine/Import/ImportText.h"
 #include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/ImportCsv.h"
 #include "Engine/Measurement/ImportMat.h"
 #include "Engine/Measurement/TakeFile.h"
 
@@ -21,12 +21,12 @@ namespace {
 
 struct ImportArguments {
     std::vector<std::string> files;
-    std::string file, out, name;   ///< the first of the files
+    std::string file, out, name, as;   ///< the first of the files
     RecordingArguments recording;
     std::vector<std::string> map;
     double rate = 0.0;
     std::size_t from = 0, to = 0;
-    bool removeMean = false;
+    bool removeMean = false, minimumPhase = false;
 };
 
 bool endsIn(const std::filesystem::path& path, const std::string& extension)
@@ -40,7 +40,14 @@ ImportOptions importOptions(const ImportArguments& options)
 {
     ImportOptions result;
     for (const auto& mapping : options.map)
-        result.columns.push_back(parseColumnQuantity(mapping));
+        addMapping(result, mapping);
+    if (!options.as.empty()) {
+        result.as = responseNamed(options.as);
+        if (!result.as || !result.as->input)
+            throw Error(Error::Kind::usage, "There is no response \"" + options.as + "\" for --as; give impedance, admittance, response (sound pressure over "
+                                                "voltage) or a ratio such as displacement/voltage.");
+    }
+    result.minimumPhase = options.minimumPhase;
     result.sampleRate = options.rate;
     result.from = options.from;
     if (options.to > 0)
@@ -60,32 +67,46 @@ void describe(const Measurement& take, Terminal& terminal, const std::string& ou
         rows.push_back({std::string(name(channel.quantity)), channel.unit, significant(peak), significant(channel.fullScale)});
         channels.push_back({{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"peak", peak}, {"fullScale", channel.fullScale}});
     }
+    for (const auto& remark : take.remarks)
+        terminal.say(wrapped("remark  " + remark, 8));
     terminal.say("Wrote the take " + out + ": " + std::to_string(take.length()) + " samples at " + significant(take.sampleRate, 8) + " Hz.");
     terminal.table({"channel", "unit", "peak", "full scale"}, rows);
     terminal.document({{"format", "excursion-import"}, {"version", 1}, {"take", out}, {"kind", "samples"},
-                       {"sampleRate", take.sampleRate}, {"samples", take.length()}, {"channels", channels}});
+                       {"sampleRate", take.sampleRate}, {"samples", take.length()}, {"channels", channels}, {"remarks", take.remarks}});
 }
 
 /// A frequency response is a take as one CSV of spectra.
 void importSpectra(const Spectra& spectra, const std::string& out, Terminal& terminal)
 {
-    if (!endsIn(out, ".csv"))
-        throw Error(Error::Kind::usage, "The file is a frequency response, which is written as one file; give --out a name that ends in .csv.");
-    writeCsv(spectra, out);
+    const auto *voltage = spectra.find(Quantity::voltage), *current = spectra.find(Quantity::current);
+    if (endsIn(out, ".zma") && voltage && current) {
+        Frf impedance {spectra.frequency, {}, {}, {}};
+        for (std::size_t k = 0; k < voltage->values.size(); ++k)
+            impedance.value.push_back(voltage->values[k] / current->values[k]);
+        writeZma(impedance, out);
+    } else if (endsIn(out, ".csv")) {
+        writeCsv(spectra, out);
+    } else {
+        throw Error(Error::Kind::usage, "The file is a frequency response, which is written as one file; give --out a name that ends in .csv"
+                                            + std::string(voltage && current ? " or .zma." : "."));
+    }
+    for (const auto& remark : spectra.remarks)
+        terminal.say(wrapped("remark  " + remark, 8));
     terminal.say("Wrote the spectra " + out + ": " + std::to_string(spectra.frequency.size()) + " frequencies from "
                  + significant(spectra.frequency.front()) + " to " + significant(spectra.frequency.back()) + " Hz.");
     terminal.document({{"format", "excursion-import"}, {"version", 1}, {"take", out}, {"kind", "spectra"},
-                       {"frequencies", spectra.frequency.size()}});
+                       {"frequencies", spectra.frequency.size()}, {"remarks", spectra.remarks}});
 }
 
 Take read(const ImportArguments& options)
 {
     if (endsIn(options.file, ".mat"))
         return importMat(options.file, importOptions(options));
-    if (endsIn(options.file, ".csv") || endsIn(options.file, ".txt"))
-        return importCsv(options.file, importOptions(options));
-    if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean)
-        throw Error(Error::Kind::usage, "--map, --rate, --from, --to and --remove-mean are for CSV and MAT files of time signals.");
+    std::error_code ignored;
+    if (!endsIn(options.file, ".json") && !endsIn(options.file, ".wav") && std::filesystem::is_regular_file(options.file, ignored))
+        return importText(options.file, importOptions(options));
+    if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean || !options.as.empty() || options.minimumPhase)
+        throw Error(Error::Kind::usage, "--map, --as, --rate, --from, --to, --remove-mean and --minimum-phase are for text and MAT files.");
     return readTake(options.file);
 }
 
@@ -99,8 +120,8 @@ void run(ImportArguments options, Terminal& terminal)
         options.recording.name = options.name;
         options.recording.from = options.from;
         options.recording.to = options.to;
-        if (options.rate > 0 || options.removeMean)
-            throw Error(Error::Kind::usage, "--rate and --remove-mean are for CSV and MAT files; a recording knows its rate.");
+        if (options.rate > 0 || options.removeMean || !options.as.empty() || options.minimumPhase)
+            throw Error(Error::Kind::usage, "--rate, --remove-mean, --as and --minimum-phase are for text and MAT files; a recording knows its rate.");
         return importRecordings(options.recording, terminal);
     }
     if (options.files.size() > 1)
@@ -125,15 +146,19 @@ void run(ImportArguments options, Terminal& terminal)
 void addImport(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ImportArguments>();
-    auto* verb = app.add_subcommand("import", "Turn recordings (WAV, AIFF, CAF, FLAC), a CSV, MAT, ZMA or FRD into a take, or a take into a CSV")->group(step::measure);
-    verb->add_option("FILE", o->files, "recordings of one --plan (.wav, .aif, .caf, .flac), or a .csv, .mat, .zma, .frd, or a take")->required();
-    verb->add_option("--out", o->out, "folder of the new take, or a .csv")->required()->type_name("PLACE");
+    auto* verb = app.add_subcommand("import", "Turn recordings or a file of another program (CSV, text, MAT, ZMA, FRD) into a take, or a take into a CSV")
+                     ->group(step::measure);
+    verb->add_option("FILE", o->files, "recordings of one --plan (.wav, .aif, .caf, .flac), or text (.csv, .txt, .zma, .frd, ...), .mat, or a take")->required();
+    verb->add_option("--out", o->out, "folder of the new take, or a .csv; of an impedance a .zma, too")->required()->type_name("PLACE");
     addRecordingOptions(*verb, o->recording);
     verb->add_option("--map", o->map,
                      "of a recording CHANNEL=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example 1=voltage:16, 2=current:-500mA (negative: "
                      "inverted), 3=loopback (the interface's output, straight into its input); channels are counted from 1 through all files, or FILE:CHANNEL. "
-                     "Of a CSV or MAT COLUMN=QUANTITY or COLUMN=QUANTITY:UNIT, for example V1=force:V. May be repeated")
+                     "Of other files what a column is, told by its title or its number from 1: V1=force:V, 2=current:mA, 1=time:ms, 1=frequency, "
+                     "G_re=impedance.re, 3=displacement/voltage.magnitude:mm/V, 4=impedance.phase:rad. May be repeated")
         ->expected(1)->take_all();
+    verb->add_option("--as", o->as, "what the response is where the file does not say it: impedance, response, displacement/voltage, ...")->type_name("RESPONSE");
+    verb->add_flag("--minimum-phase", o->minimumPhase, "compute the phase of a magnitude that has none");
     verb->add_option("--rate", o->rate, "sample rate in Hz, when the file has none")->check(CLI::PositiveNumber);
     verb->add_option("--from", o->from, "first sample to take, counted from 0");
     verb->add_option("--to", o->to, "one beyond the last sample to take")->check(CLI::PositiveNumber);

@@ -71,7 +71,7 @@ void addImprove(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ImproveArguments>();
     auto* verb = app.add_subcommand("improve", "Diagnose, add and refit until nothing is missing; keep the ladder")->group(step::diagnose);
-    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or a .zma")->required();
+    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")->required();
     verb->add_option("--with", o->with, "effects that the first model has already, separated by commas")->delimiter(',')->type_name("EFFECT");
     verb->add_option("--out", o->out, "folder for ladder.json, model.json and report.html")->required()->type_name("DIR");
     verb->footer("Exit code 1: the take is not fit for use.");

@@ -36,6 +36,26 @@ Quantity chosen(const Channels& channels, const std::string& wanted, std::option
     throw Error(Error::Kind::data, "The take has no channel beside its input.");
 }
 
+struct Ports {
+    Quantity output, input;
+};
+
+/// What was asked for; else what the spectra are responses to (of an impedance that is the current), and the first channel beside it.
+Ports portsOf(const Spectra& spectra, const ResponseChoice& choice)
+{
+    if (!choice.input.empty()) {
+        const auto input = chosen(spectra.channels, choice.input, std::nullopt);
+        return {chosen(spectra.channels, choice.output, input), input};
+    }
+    const auto* reference = spectra.input();
+    if (!reference)
+        throw Error(Error::Kind::data, "The take has neither a voltage nor a force; name an --input.");
+    const auto output = chosen(spectra.channels, choice.output, reference->quantity);
+    if (output != reference->quantity)
+        return {output, reference->quantity};
+    return {output, chosen(spectra.channels, "", output)};   // the admittance of an impedance
+}
+
 Frf ratio(const Spectra& spectra, Quantity output, Quantity input)
 {
     Frf frf;
@@ -83,14 +103,15 @@ OpenResponse openResponse(const ResponseChoice& choice)
     auto take = readTake(choice.path);
     OpenResponse open;
     if (const auto* spectra = std::get_if<Spectra>(&take)) {
-        const auto input = chosen(spectra->channels, choice.input, std::nullopt);
-        const auto output = chosen(spectra->channels, choice.output, input);
+        const auto [output, input] = portsOf(*spectra, choice);
         open.frf = ratio(*spectra, output, input);
+        open.remarks = spectra->remarks;
         open.output = name(output);
         open.input = name(input);
         return open;
     }
     auto& measurement = std::get<Measurement>(take);
+    open.remarks = measurement.remarks;
     completeExcitation(measurement);
     const auto input = choice.input.empty() ? measurement.input().quantity : chosen(measurement.channels, choice.input, std::nullopt);
     const auto output = chosen(measurement.channels, choice.output, input);

@@ -13,7 +13,7 @@ namespace excursion::cli {
 /// Which frequency response of a file or take is meant.
 struct ResponseChoice {
     std::string path;
-    std::string output, input;   ///< quantities; empty: the first beside the input; the voltage, or the force
+    std::string output, input;   ///< quantities; empty: the first beside the input; what the file is a response to, else the voltage or the force
     int level = -1;              ///< of a take with levels; below 0: the loudest
 };
 
@@ -22,10 +22,11 @@ struct OpenResponse {
     std::string output, input;   ///< quantities
     double sampleRate = 0.0;     ///< of the take; 0 for a frequency response
     std::optional<double> microphoneDistance;   ///< m, where the take tells it
+    std::vector<std::string> remarks;           ///< what the file's reader had to assume
 };
 
 /// The frequency response output / input of a take (its best linear approximation, or Welch's estimate without periods), of spectra
-/// (.csv, .zma, .frd), or of the document of `bla` (.json).
+/// (a file of responses, as a .zma or what other programs export), or of the document of `bla` (.json).
 /// Throws Error (usage) for channels that are not there, (input, data) for files that cannot be read or used.
 OpenResponse openResponse(const ResponseChoice&);
 

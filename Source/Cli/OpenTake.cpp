@@ -28,6 +28,8 @@ OpenTake openTake(const std::string& path)
         completeExcitation(*measurement);
         open.report = check(*measurement);
     }
+    for (const auto& remark : std::visit([](const auto& take) { return take.remarks; }, open.take))
+        open.report.problems.push_back({"assumption", std::nullopt, 0.0, "", false, remark});
     return open;
 }
 

@@ -19,7 +19,7 @@ class Terminal;
 struct OpenTake {
     std::string path;
     Take take;
-    CheckReport report;   ///< empty, and so fit for use, of a frequency response: it has no waveforms to check
+    CheckReport report;   ///< fit for use, of a frequency response: it has no waveforms to check; with what its reader had to assume
 
     const Spectra* spectra() const { return std::get_if<Spectra>(&take); }
     const Measurement& measurement() const { return std::get<Measurement>(take); }

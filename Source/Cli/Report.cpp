@@ -4,6 +4,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/LadderFile.h"
+#include "Engine/Error.h"
 #include "Report/ModelReport.h"
 #include "Report/Report.h"
 
@@ -33,6 +34,9 @@ void drawLadder(const std::string& folder, Terminal& terminal)
 
 void drawDocument(const std::string& path, Terminal& terminal)
 {
+    if (std::filesystem::path(path).extension() != ".json")
+        throw Error(Error::Kind::usage, "'" + path + "' is no document of this program: a page is drawn of the folder of excursion improve, or of a .json; "
+                                                "if it is a take, excursion improve '" + path + "' --out DIR draws its page.");
     const auto document = readJson(path);
     const auto page = std::filesystem::path(path).replace_extension(".html").string();
     requireFilePlace(page);

@@ -35,7 +35,7 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
   excursion parameters ladder --out ts.csv    Thiele/Small parameters and more, for other programs
 
 No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with something hidden in it.
-A take is a folder (measurement.json and its WAV), a .zma or a .csv. Each verb has its own --help.)";
+A take is a folder (measurement.json and its WAV), or a file of another program, such as a .zma, .csv or .txt. Each verb has its own --help.)";
 
 constexpr auto footer = R"(Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file that cannot be used,
 4 data that cannot answer the question, 5 a computation that failed, 6 stopped by Ctrl-C.)";

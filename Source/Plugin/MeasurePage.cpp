@@ -115,7 +115,7 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
 
 void MeasurePage::choose()
 {
-    chooser_ = std::make_unique<juce::FileChooser>("Open a take", juce::File(), "*.json;*.csv;*.zma;*.frd");
+    chooser_ = std::make_unique<juce::FileChooser>("Open a take", juce::File(), "*.json;*.csv;*.txt;*.zma;*.frd;*.mat");
     chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles, [this](const juce::FileChooser& chosen) {
         if (chosen.getResult() != juce::File())
             session().open(chosen.getResult().getFullPathName().toStdString());

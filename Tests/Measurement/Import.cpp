@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Measurement/DelimitedText.h"
+#include "Engine/Import/TextTable.h"
 #include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/ImportCsv.h"
-#include "Engine/Measurement/ImportImpedance.h"
+#include "Engine/Import/ImportText.h"
 #include "Engine/Measurement/ImportMat.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Measurement/Scratch.h"
@@ -18,7 +17,7 @@ namespace {
 
 Measurement signals(const std::filesystem::path& path, const ImportOptions& options = {})
 {
-    return std::get<Measurement>(importCsv(path, options));
+    return std::get<Measurement>(importText(path, options));
 }
 
 } // namespace
@@ -93,16 +92,16 @@ TEST_CASE("Columns are mapped, cut and freed of their means on request")
     CHECK(m.channels[0].fullScale > 1.0);
 
     o.to = 9;
-    refused(Kind::usage, "has 4 samples", [&] { importCsv(path, o); });
+    refused(Kind::usage, "has 4 samples", [&] { importText(path, o); });
     o.to.reset();
     o.from = 4;
-    refused(Kind::usage, "cannot be taken", [&] { importCsv(path, o); });
+    refused(Kind::usage, "cannot be taken", [&] { importText(path, o); });
     o.from = 0;
     o.sampleRate = 0;
-    refused(Kind::usage, "--rate", [&] { importCsv(path, o); });
+    refused(Kind::usage, "--rate", [&] { importText(path, o); });
     o.columns[0].column = "V9";
-    refused(Kind::usage, "no column 'V9'", [&] { importCsv(path, o); });
-    refused(Kind::input, "--map", [&] { importCsv(path, {}); });
+    refused(Kind::usage, "no column 'V9'", [&] { importText(path, o); });
+    refused(Kind::input, "--map", [&] { importText(path, {}); });
     refused(Kind::usage, "COLUMN=QUANTITY", [] { parseColumnQuantity("V1"); });
     refused(Kind::usage, "known quantity", [] { parseColumnQuantity("V1=heat"); });
     refused(Kind::usage, "N, mN or V", [] { parseColumnQuantity("V1=force:lb"); });
@@ -126,11 +125,11 @@ TEST_CASE("A bad CSV is refused, naming line and column")
     bad("voltage,current\n1,2\n", "--rate", Kind::usage);
     bad("time,current\n0,1\n0.1,2\n0.2,3\n", "neither a voltage nor a force", Kind::data);
     bad("time,voltage,u\n0,1,1\n0.1,2,2\n0.2,3,3\n", "more than one column for the voltage");
-    bad("\x7f""ELF\n\x01\x02\n", "--map");
-    bad("frequency_hz,u_re_v,u_im_v\n1,2,3\n1,2,3\n", "do not ascend");
-    bad("frequency_hz,u_re_v\n1,2\n", "no column 'u_im_v'");
+    bad("\x7f""ELF\n\x01\x02\n", "no rows of numbers");
+    bad("frequency_hz,u_re_v,u_im_v\n1,2,3\n1,2,4\n", "do not ascend");
+    bad("frequency_hz,u_re_v\n1,2\n2,2\n3,2\n", "no column for its imaginary part");
     bad("frequency_hz,q_re_v,q_im_v\n1,2,3\n", "not understood");
-    bad("frequency_hz,i_re_a,i_im_a\n1,2,3\n", "neither voltage nor force", Kind::data);
+    bad("frequency_hz,i_re_a,i_im_a\n1,2,3\n2,2,3\n3,2,3\n", "neither voltage nor force", Kind::data);
 }
 
 TEST_CASE("Takes and spectra survive the way through a CSV")
@@ -168,10 +167,11 @@ TEST_CASE("ZMA and FRD are read in the forms that programs write")
         CHECK(std::abs(z.find(Quantity::voltage)->values[0] - std::complex<double>(0, 8)) < 1e-12);
         CHECK(z.find(Quantity::current)->values[1] == 1.0);
     }
-    const auto frf = readFrd(s.file("a.frd", "10 20 180\n20 0 0\n30 -20 0\n"));
-    CHECK(std::abs(frf.value[0] + 10.0) < 1e-12);
-    CHECK(frf.value[2].real() == Approx(0.1));
-    CHECK(std::abs(std::get<Spectra>(readTake(s / "a.frd")).find(Quantity::pressure)->values[1]) == Approx(20e-6));
+    const auto frd = std::get<Spectra>(readTake(s.file("a.frd", "10 20 180\n20 0 0\n30 -20 0\n")));
+    CHECK(frd.find(Quantity::voltage)->values[2] == 1.0);
+    CHECK(std::abs(frd.find(Quantity::pressure)->values[0] + 10.0 * 20e-6) < 1e-12);
+    CHECK(frd.find(Quantity::pressure)->values[2].real() == Approx(2e-6));
+    CHECK(frd.remarks.size() == 1);   // the voltage
 }
 
 TEST_CASE("A bad ZMA is refused, naming the line")
@@ -182,16 +182,16 @@ TEST_CASE("A bad ZMA is refused, naming the line")
         refused(Kind::input, contains, [&] { readTake(path); });
     };
     bad("", "is empty");
-    bad("* nothing\n", "has 0 lines");
+    bad("* nothing\n", "no rows of numbers");
     bad("10 8 0\n20 8 0\n", "has 2 lines");
     bad("10 8 0\n20 8 0\n15 8 0\n", "line 3");
     bad("10 8 0\n10 9 0\n20 8 0\n", "line 2");
     bad("10 8 0\n20 nan 0\n30 8 0\n", "line 2");
-    bad("10 8 0\n20 8 0\n30\n", "line 3");
+    bad("10 8 0\n20 8 0\n30\n", "2 numbers");
     bad("10 8 0\n20 8 0\ntext\n30 8 0\n", "line 3");
-    bad("0 8 0\n20 8 0\n30 8 0\n", "line 1");
+    bad("-1 8 0\n20 8 0\n30 8 0\n", "line 1");
     bad("10 -8 0\n20 8 0\n30 8 0\n", "not positive");
-    bad(std::string_view("\0\1\2\3\n\xff\xfe\n", 8), "has 0 lines");
+    bad(std::string_view("\0\1\2\3\n\xff\xfe\n", 8), "zero bytes");
 }
 
 TEST_CASE("ZMA and FRD survive being written and read")
@@ -200,11 +200,11 @@ TEST_CASE("ZMA and FRD survive being written and read")
     Frf z {{10, 20, 30}, {{3, 4}, {-1, 0.5}, {1.0 / 3, -7}}, {}, {}};
     writeZma(z, s / "z.zma");
     writeFrd(z, s / "z.frd");
-    const auto zma = readZma(s / "z.zma");
-    const auto frd = readFrd(s / "z.frd");
+    const auto zma = std::get<Spectra>(readTake(s / "z.zma"));
+    const auto frd = std::get<Spectra>(readTake(s / "z.frd"));
     for (std::size_t k = 0; k < 3; ++k) {
-        CHECK(std::abs(zma.channels[0].values[k] - z.value[k]) < 1e-13);
-        CHECK(std::abs(frd.value[k] - z.value[k]) < 1e-12);
+        CHECK(std::abs(zma.find(Quantity::voltage)->values[k] - z.value[k]) < 1e-13);
+        CHECK(std::abs(frd.find(Quantity::pressure)->values[k] / 20e-6 - z.value[k]) < 1e-12);
     }
     z.noiseVariance = {1, 2, 3};
     writeCsv(z, s / "z.csv");

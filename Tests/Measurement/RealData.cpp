@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Measurement/ImportCsv.h"
+#include "Engine/Import/ImportText.h"
 #include "Engine/Measurement/ImportMat.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Measurement/Scratch.h"
@@ -34,7 +34,7 @@ TEST_CASE("The Silverbox is read from MAT and CSV alike")
     if (folder.empty())
         return;
     const auto mat = importMat(folder / "SNLS80mV.mat", silverbox());
-    const auto csv = std::get<Measurement>(importCsv(folder / "SNLS80mV.csv", silverbox()));
+    const auto csv = std::get<Measurement>(importText(folder / "SNLS80mV.csv", silverbox()));
     REQUIRE(mat.length() == 131072);
     REQUIRE(csv.length() == 131072);
     CHECK(mat.input().quantity == Quantity::force);
@@ -45,7 +45,7 @@ TEST_CASE("The Silverbox is read from MAT and CSV alike")
         worst = std::max(worst, std::abs(mat.channels[1].samples[n] - csv.channels[1].samples[n]));
     CHECK(worst < 1e-5);   // the CSV has five digits
 
-    const auto schroeder = std::get<Measurement>(importCsv(folder / "Schroeder80mV.csv", silverbox()));
+    const auto schroeder = std::get<Measurement>(importText(folder / "Schroeder80mV.csv", silverbox()));
     CHECK(schroeder.length() == 131072);
 
     const auto bytes = bytesOf(folder / "SNLS80mV.mat");

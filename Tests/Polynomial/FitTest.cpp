@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fits of models that are known, and of fixed problems on which other programs have been measured.
 #include "Engine/Linear/Simulation.h"
-#include "Engine/Measurement/ImportCsv.h"
+#include "Engine/Import/ImportText.h"
 #include "Engine/Measurement/Welch.h"
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Signal/Fft.h"
@@ -350,7 +350,7 @@ TEST_CASE("The Silverbox is explained to a quarter of a millivolt")
     import.columns = {parseColumnQuantity("V1=force:V"), parseColumnQuantity("V2=displacement:V")};
     import.sampleRate = 1e7 / 16384;
     import.removeMean = true;
-    auto take = std::get<Measurement>(importCsv(folder / "SNLS80mV.csv", import));
+    auto take = std::get<Measurement>(importText(folder / "SNLS80mV.csv", import));
     const auto record = [&](std::size_t from, std::size_t to, Index skip) {
         const auto cut = [&](int channel) {
             return Eigen::MatrixXd(Eigen::Map<const Eigen::VectorXd>(take.channels[static_cast<std::size_t>(channel)].samples.data() + from,

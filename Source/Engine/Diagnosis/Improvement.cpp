@@ -57,14 +57,19 @@ FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const
 
 Improvement::Improvement(const Take& take, const ImproveOptions& options, const Progress& progress) : options_(options)
 {
+    std::vector<Problem> assumed;
+    for (const auto& remark : std::visit([](const auto& t) { return t.remarks; }, take))
+        assumed.push_back({"assumption", std::nullopt, 0.0, "", false, remark});
     if (const auto* spectra = std::get_if<Spectra>(&take)) {
         data_ = *spectra;
+        ladder_.problems = std::move(assumed);
         return;
     }
     Measurement measurement = std::get<Measurement>(take);
     progress.at(0.0, "checking the take");
     completeExcitation(measurement);
     report_ = check(measurement);
+    report_.problems.insert(report_.problems.end(), assumed.begin(), assumed.end());
     ladder_.problems = report_.problems;
     if (report_.fitForUse()) {
         data_ = makeRecord(measurement);

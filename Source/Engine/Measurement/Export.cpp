@@ -3,6 +3,7 @@
 
 #include "Engine/Document/DraftFile.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -84,7 +85,12 @@ void writeCsv(const Measurement& measurement, const std::filesystem::path& path)
 
 void writeCsv(const Spectra& spectra, const std::filesystem::path& path)
 {
-    std::string text = "frequency_hz";
+    std::string text;
+    for (auto remark : spectra.remarks) {
+        std::replace(remark.begin(), remark.end(), '\n', ' ');
+        text.append(assumedMark).append(remark).append("\n");
+    }
+    text += "frequency_hz";
     for (const auto& channel : spectra.channels)
         for (const char* part : {"_re_", "_im_"})
             text.append(",").append(name(channel.quantity)).append(part).append(channel.unit);

@@ -57,4 +57,13 @@ const Channel& Measurement::input() const
                                    "the loudspeaker; record the voltage at its terminals.");
 }
 
+const Spectra::Channel* Spectra::input() const
+{
+    for (const auto& channel : channels)
+        if (!channel.values.empty() && std::all_of(channel.values.begin(), channel.values.end(), [](auto value) { return value == 1.0; }))
+            return &channel;
+    const auto* voltage = find(Quantity::voltage);
+    return voltage ? voltage : find(Quantity::force);
+}
+
 } // namespace excursion

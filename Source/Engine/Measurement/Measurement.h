@@ -62,6 +62,7 @@ struct Measurement {
     std::vector<Channel> channels;
     std::optional<Excitation> excitation;   ///< absent: music, noise or someone else's record
     DriverInfo driver;
+    std::vector<std::string> remarks {};   ///< sentences: what the reader of a foreign file had to assume, or left out
 
     std::size_t length() const { return channels.empty() ? 0 : channels.front().samples.size(); }
     const Channel* find(Quantity) const;      ///< nullptr when absent
@@ -78,8 +79,13 @@ struct Spectra {
     std::vector<double> frequency;   ///< Hz, ascending
     std::vector<Channel> channels;   ///< an impedance is voltage Z against current 1
     DriverInfo driver;
+    std::vector<std::string> remarks {};   ///< as of a Measurement
 
     const Channel* find(Quantity) const;
+
+    /// What the others are responses to: the channel that is 1 at every frequency (the current of an impedance, the voltage of
+    /// X/U), else the voltage, else the force; nullptr when there is none of these.
+    const Channel* input() const;
 };
 
 using Take = std::variant<Measurement, Spectra>;

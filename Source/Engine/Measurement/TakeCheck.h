@@ -11,7 +11,7 @@
 namespace excursion {
 
 /// Something wrong with a take. Kinds: channel-dead, clipping, dc-offset, not-settled, poor-repeatability, low-snr, hum,
-/// clock-drift, dropout, gain-jump, overload, mislabelled, assumed-input, channel-delay, polarity.
+/// clock-drift, dropout, gain-jump, overload, mislabelled, assumed-input, channel-delay, polarity; and assumption, of the reader of a foreign file.
 struct Problem {
     std::string kind;
     std::optional<Quantity> channel;   ///< absent: the take as a whole

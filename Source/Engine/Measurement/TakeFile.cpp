@@ -4,8 +4,8 @@
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/ImportCsv.h"
-#include "Engine/Measurement/ImportImpedance.h"
+#include "Engine/Import/ImportText.h"
+#include "Engine/Measurement/ImportMat.h"
 #include "Engine/Measurement/MeasurementJson.h"
 #include "Engine/Measurement/WavFile.h"
 
@@ -155,18 +155,13 @@ Take readTake(const fs::path& given)
     const auto extension = lowerExtension(given);
     if (extension == ".json")
         return readFolder(given);
-    if (extension == ".zma")
-        return readZma(given);
-    if (extension == ".frd")
-        return spectraOfFrd(readFrd(given));
-    if (extension == ".csv")
-        return importCsv(given, {});
+    if (extension == ".mat")
+        return importMat(given, {});
     sizeOfFile(given);   // a path that does not exist deserves to be told so first
     if (extension == ".wav" || extension == ".flac" || extension == ".aif" || extension == ".aiff" || extension == ".caf")
         throw Error(Error::Kind::input, "'" + given.string() + "' is a recording, not a take yet; make one of it and of the plan that was played: excursion import '"
                                             + given.string() + "' --plan plan --map 1=voltage:16 --map 2=current:4 --out take.");
-    throw Error(Error::Kind::input, "'" + given.string() + "' is not a take, which is a folder with a measurement.json, a .zma, "
-                                        ".frd or .csv; turn other files into one with 'excursion import'.");
+    return importText(given);
 }
 
 Measurement readMeasurement(const fs::path& path)
@@ -174,7 +169,8 @@ Measurement readMeasurement(const fs::path& path)
     auto take = readTake(path);
     if (auto* measurement = std::get_if<Measurement>(&take))
         return std::move(*measurement);
-    throw Error(Error::Kind::data, "'" + path.string() + "' is a frequency response; this needs a take with samples.");
+    throw Error(Error::Kind::data, "'" + path.string() + "' is a frequency response, but this verb needs the samples of a take; identify, fit, compare, diagnose, add, improve and bla "
+                                         "work on a response.");
 }
 
 void writeMeasurement(const Measurement& measurement, const fs::path& folder)

@@ -8,8 +8,8 @@
 namespace excursion {
 
 /// Reads a take: a folder with measurement.json (or the plan.json of an excitation) and its WAV, or that
-/// JSON itself; a .zma or .frd; a .csv whose header names spectra (frequency_hz, u_re_v, u_im_v, ...) or
-/// time signals with a time column. Throws Error (input) with one sentence: a sample that is not finite,
+/// JSON itself; a MAT file whose variables say by their names what they are; or any text that importText understands without being told more:
+/// impedances and responses of other programs, time signals with a time column. Throws Error (input) with one sentence: a sample that is not finite,
 /// a channel that is missing, a size beyond the file's are all refused. A take that neither a voltage
 /// nor a force drives is refused as Error (data).
 Take readTake(const std::filesystem::path&);

@@ -25,6 +25,7 @@ constexpr UnitEntry entries[] {
     {displacement, "um", "m", 1e-6, true},
     {displacement, "\u00b5m", "m", 1e-6, false},   // micro sign
     {displacement, "\u03bcm", "m", 1e-6, false},   // Greek mu
+    {displacement, "cm", "m", 1e-2, false},
     {displacement, "V", "V", 1, true},
     {velocity, "m/s", "m/s", 1, true},
     {velocity, "mm/s", "m/s", 1e-3, true},
@@ -34,16 +35,23 @@ constexpr UnitEntry entries[] {
     {acceleration, "m/s2", "m/s^2", 1, false},
     {acceleration, "m/s\u00b2", "m/s^2", 1, false},
     {acceleration, "mps2", "m/s^2", 1, false},
+    {acceleration, "g", "m/s^2", 9.80665, true},
     {pressure, "Pa", "Pa", 1, true},
     {pressure, "mPa", "Pa", 1e-3, true},
     {pressure, "kPa", "Pa", 1e3, true},
+    {pressure, "uPa", "Pa", 1e-6, false},
+    {pressure, "\u00b5Pa", "Pa", 1e-6, false},
+    {pressure, "\u03bcPa", "Pa", 1e-6, false},
     {force, "N", "N", 1, true},
     {force, "mN", "N", 1e-3, true},
     {force, "V", "V", 1, true},
 };
 
+/// A capital M is mega: "MV" is not "mV".
 bool sameButForCase(std::string_view a, std::string_view b)
 {
+    if (a.size() > 1 && b.size() > 1 && a.front() == 'm' && b.front() == 'M' && (a[1] == 'V' || a[1] == 'A' || a[1] == 'P' || a[1] == 'N'))
+        return false;
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
         return std::tolower(x) == std::tolower(y);   // ASCII letters; bytes beyond are left alone by the C locale
     });
