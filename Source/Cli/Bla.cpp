@@ -222,11 +222,11 @@ void showResponse(const BlaArguments& options, Terminal& terminal)
     found.document = documentOf(open.frf, options.take, open.input, open.output);
     found.document["method"] = "file";
     const bool impedance = open.output == "voltage" && open.input == "current";
-    if (extensionOf(options.out) == ".zma" && !impedance && (open.output != "current" || open.input != "voltage"))
+    if (endingOf(options.out) == ".zma" && !impedance && (open.output != "current" || open.input != "voltage"))
         throw Error(Error::Kind::usage, "A .zma holds an impedance, but this is " + open.output + " / " + open.input + ".");
     print(found, impedance ? std::string("impedance, voltage / current, as the file has it") : open.output + " / " + open.input + ", as the file has it", terminal);
     if (!options.out.empty()) {
-        if (extensionOf(options.out) == ".zma") {
+        if (endingOf(options.out) == ".zma") {
             auto z = open.frf;
             if (!impedance)
                 for (auto& value : z.value)

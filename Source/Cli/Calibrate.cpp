@@ -65,7 +65,7 @@ ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calib
     if (a.inverted)
         entry.inverted = true;
     if (!a.curve.empty()) {
-        readMicrophoneCurve(a.curve, entry.referenceFrequency, 48000.0);   // refused now rather than by import
+        readMicrophoneCurve(a.curve, entry.referenceFrequency);   // refused now rather than by import
         std::error_code error;
         const auto beside = fs::relative(a.curve, fs::absolute(a.out).parent_path(), error);
         entry.curve = error || beside.empty() ? fs::absolute(a.curve).string() : beside.string();

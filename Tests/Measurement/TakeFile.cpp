@@ -221,7 +221,7 @@ TEST_CASE("A measurement.json that is none is refused")
     std::filesystem::remove(t.scratch / "measurement.json");
     refused(Kind::input, "does not exist", [&] { readTake(t.scratch.folder()); });
     refused(Kind::input, "does not exist", [&] { readTake("/no/such/place"); });
-    refused(Kind::input, "is not a take", [&] { readTake(t.scratch / "take.wav"); });
+    refused(Kind::input, "is a recording, not a take yet", [&] { readTake(t.scratch / "take.wav"); });
     std::filesystem::create_directory(t.scratch / "measurement.json");
     refused(Kind::input, "is not a file", [&] { readTake(t.scratch.folder()); });
 }

@@ -3,7 +3,7 @@
 
 #include "Engine/Document/JsonField.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/DelimitedText.h"
+#include "Engine/Import/TextTable.h"
 #include "Engine/Measurement/MeasurementJson.h"
 #include "Engine/Measurement/Units.h"
 

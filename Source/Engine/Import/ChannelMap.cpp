@@ -2,7 +2,7 @@
 #include "Engine/Import/ChannelMap.h"
 
 #include "Engine/Error.h"
-#include "Engine/Measurement/DelimitedText.h"
+#include "Engine/Import/TextTable.h"
 #include "Engine/Measurement/Units.h"
 
 #include <cmath>

@@ -355,7 +355,7 @@ private:
         if (done.loopback && done.loopback->curve)
             curves.push_back(*done.loopback->curve);
         if (!a.curve.empty())
-            curves.push_back(readMicrophoneCurve(a.curve, a.referenceFrequency, plan_.sampleRate));
+            curves.push_back(readMicrophoneCurve(a.curve, a.referenceFrequency));
         if (curves.empty())
             return {};
         return [curves](double frequency) {

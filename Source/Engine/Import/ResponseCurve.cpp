@@ -2,8 +2,9 @@
 #include "Engine/Import/ResponseCurve.h"
 
 #include "Engine/Error.h"
-#include "Engine/Measurement/ImportImpedance.h"
-#include "Engine/Signal/Fft.h"
+#include "Engine/Import/MinimumPhase.h"
+#include "Engine/Import/PlainText.h"
+#include "Engine/Import/TextTable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,25 +16,6 @@ namespace {
 constexpr double largestCorrection = 60.0;   // dB; beyond it a file is no microphone's
 
 double toDb(std::complex<double> value) { return 20.0 * std::log10(std::max(std::abs(value), 1e-20)); }
-
-/// The minimum phase that belongs to a magnitude, by its cepstrum, on `length` bins of the unit circle.
-std::vector<std::complex<double>> withMinimumPhase(const ResponseCurve& magnitude, double sampleRate, std::size_t length)
-{
-    std::vector<std::complex<double>> logarithm(length / 2 + 1);
-    for (std::size_t k = 0; k < logarithm.size(); ++k) {
-        const double frequency = std::max<double>(static_cast<double>(k), 0.5) * sampleRate / static_cast<double>(length);
-        logarithm[k] = magnitude.db(frequency) * std::numbers::ln10 / 20.0;
-    }
-    auto cepstrum = inverseFft(logarithm, length);
-    for (std::size_t n = 1; n < length / 2; ++n) {
-        cepstrum[n] *= 2.0;
-        cepstrum[length - n] = 0.0;
-    }
-    auto response = fft(cepstrum);
-    for (auto& value : response)
-        value = std::exp(value);
-    return response;
-}
 
 } // namespace
 
@@ -62,32 +44,35 @@ std::complex<double> ResponseCurve::operator()(double frequency) const
 
 double ResponseCurve::db(double frequency) const { return toDb((*this)(frequency)); }
 
-ResponseCurve readMicrophoneCurve(const std::filesystem::path& path, double reference, double sampleRate)
+ResponseCurve readMicrophoneCurve(const std::filesystem::path& path, double reference)
 {
-    const auto file = readFrd(path);
-    const bool phases = std::any_of(file.value.begin(), file.value.end(), [](const auto& v) { return v.imag() != 0.0; });
-    for (std::size_t k = 0; k < file.frequency.size(); ++k)
-        if (std::abs(toDb(file.value[k])) > largestCorrection)
-            throw Error(Error::Kind::input, "'" + path.string() + "' has a correction beyond 60 dB at " + std::to_string(file.frequency[k])
-                                                + " Hz; a microphone's response in dB is expected.");
-    const ResponseCurve given(file.frequency, file.value);
-    auto frequency = file.frequency;
-    std::vector<std::complex<double>> value;
-    if (phases) {
-        value = file.value;
-    } else {
-        constexpr std::size_t length = 1u << 17;
-        const auto minimum = withMinimumPhase(given, sampleRate, length);
-        frequency.clear();
-        for (std::size_t k = 1; k < minimum.size(); ++k) {
-            frequency.push_back(static_cast<double>(k) * sampleRate / static_cast<double>(length));
-            value.push_back(minimum[k]);
-        }
+    constexpr double radian = std::numbers::pi / 180.0;
+    const auto refuse = [&](const std::string& why) { throw Error(Error::Kind::input, "'" + path.string() + "' " + why); };
+    const TextTable table(readPlainText(path), path.string());
+    if (table.titles().size() < 2 || table.rows() < 2)
+        refuse("has " + std::to_string(table.rows()) + " lines of " + std::to_string(table.titles().size())
+               + " numbers; a microphone's curve has frequencies in Hz and its response in dB.");
+    const auto frequency = table.column(0), db = table.column(1);
+    const auto degrees = table.titles().size() > 2 ? table.column(2) : std::vector<double>();
+    if (db.size() != frequency.size() || (!degrees.empty() && degrees.size() != frequency.size()))
+        refuse("has columns of different lengths.");
+    std::vector<double> magnitude;
+    for (std::size_t k = 0; k < frequency.size(); ++k) {
+        if (!(frequency[k] > (k == 0 ? 0.0 : frequency[k - 1])))
+            refuse("has a frequency that is not positive or not above the one before it in line " + std::to_string(table.lineOf(k)) + ".");
+        if (std::abs(db[k]) > largestCorrection)
+            refuse("has a correction beyond 60 dB at " + std::to_string(frequency[k]) + " Hz; a microphone's response in dB is expected.");
+        magnitude.push_back(std::pow(10.0, db[k] / 20.0));
     }
-    const double there = std::abs(given(reference));
+    const bool phases = std::any_of(degrees.begin(), degrees.end(), [](double d) { return d != 0.0; });
+    const auto minimum = phases ? std::vector<double>() : minimumPhase(frequency, magnitude);
+    std::vector<std::complex<double>> value;
+    for (std::size_t k = 0; k < frequency.size(); ++k)
+        value.push_back(std::polar(magnitude[k], phases ? degrees[k] * radian : minimum[k]));
+    const double there = std::abs(ResponseCurve(frequency, value)(reference));
     for (auto& v : value)
         v /= there;
-    return {std::move(frequency), value};
+    return {frequency, value};
 }
 
 } // namespace excursion

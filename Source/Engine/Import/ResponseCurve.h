@@ -24,12 +24,10 @@ private:
 };
 
 /// Reads the correction of a microphone: lines of frequency in Hz, dB and, maybe, phase in degrees (.cal, .txt, .frd). The values are the microphone's own response,
-/// as makers give them: what it hears too loud is positive, and is taken off. Without phases, or with none but zero, the response is that of minimum phase,
-///     arg H = -Hilbert(ln |H|),
-/// as a pressure microphone's is within the band where it is used; the curve is as at its ends beyond them. Only its shape counts: it is 0 dB at `reference`.
+/// as makers give them: what it hears too loud is positive, and is taken off. Without phases, or with none but zero, the response is that of minimum phase
+/// (MinimumPhase.h), as a pressure microphone's is within the band where it is used. Only its shape counts: it is 0 dB at `reference`.
 /// @param reference   Hz, where the channel's full scale holds
-/// @param sampleRate  Hz, of the channel
 /// Throws Error (input).
-ResponseCurve readMicrophoneCurve(const std::filesystem::path&, double reference, double sampleRate);
+ResponseCurve readMicrophoneCurve(const std::filesystem::path&, double reference);
 
 } // namespace excursion
