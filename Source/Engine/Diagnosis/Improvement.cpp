@@ -41,6 +41,14 @@ void tryOne(Model& model, const Spectra& spectra, const Effect& effect, const Fi
         throw Error(Error::Kind::numerical, "The effect \"" + effect.id() + "\" could not be fitted to the frequency response.");
 }
 
+/// The effects as they were added; the fit that follows makes the covariance anew.
+void putInOrder(Model& model, const std::vector<std::string>& effects)
+{
+    const auto place = [&](const Component& c) { return std::find(effects.begin(), effects.end(), c.effect->id()); };
+    std::stable_sort(model.components.begin() + 1, model.components.end(), [&](const Component& a, const Component& b) { return place(a) < place(b); });
+    model.covariance.resize(0, 0);
+}
+
 FitSummary settle(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
 {
     return refine(model, record, options, progress);
@@ -115,6 +123,9 @@ bool Improvement::addSteps(const Spectra& spectra, const Progress& progress)
         Rung rung;
         rung.added = steps[n].added;
         rung.model = ladder_.rungs.back().diagnosis.ranking.front().model;   // the step's, or what leaves less
+        auto order = ladder_.rungs.back().model.effectIds();
+        order.push_back(rung.added);
+        putInOrder(rung.model, order);
         rung.fit = settle(rung.model, spectra, options_.diagnose.fit, {});
         rung.comparison = compare(rung.model, spectra);
         ladder_.rungs.push_back(std::move(rung));
