@@ -10,7 +10,10 @@ inline Model allEffects()
 {
     /// What is plausible where an effect says nothing of it beforehand, by the unit of the strength.
     const auto plausible = [](const Parameter& strength) {
-        return strength.unit == "N/m" ? 300.0 : strength.unit == "ohm s^a" ? 0.02 : strength.unit == "s/m" ? 1.0 / 344.0 : 0.1;
+        return strength.unit == "N/m"       ? 300.0
+               : strength.unit == "ohm s^a" ? 0.02
+               : strength.unit == "s/m"     ? 1.0 / 344.0
+                                            : 0.1;
     };
     auto model = midbass();
     for (const auto* effect : catalogue()) {
@@ -25,4 +28,4 @@ inline Model allEffects()
     return model;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measured impedances (EXCURSION_DATA, else ../shared/data) by models of integer order 1 .. 10, of order 1/2 and of free order, and by a
-// resonance with R + L s or R + L s^alpha: error over the number of parameters, and with how many each comes within 1 dB of the best. A
-// file name as argument receives all as CSV.
+// Measured impedances (EXCURSION_DATA, else ../shared/data) by models of integer order 1 .. 10, of order 1/2 and of
+// free order, and by a resonance with R + L s or R + L s^alpha: error over the number of parameters, and with how many
+// each comes within 1 dB of the best. A file name as argument receives all as CSV.
 #include "RealData/OrderComparison.h"
 
 #include <algorithm>
@@ -42,8 +42,8 @@ int main(int argc, char** argv)
             for (const auto& member : family.members) {
                 best = std::min(best, member.errorDb);
                 if (csv)
-                    csv << driver.stem().string() << ',' << family.name << ',' << member.parameters << ',' << member.alpha << ','
-                        << member.errorDb << ',' << member.stable << '\n';
+                    csv << driver.stem().string() << ',' << family.name << ',' << member.parameters << ','
+                        << member.alpha << ',' << member.errorDb << ',' << member.stable << '\n';
             }
         }
         std::printf("\nwithin 1 dB of the best, %.1f dB:", best);

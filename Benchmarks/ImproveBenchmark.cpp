@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time of the whole `improve` of one hidden effect, on a 4-channel 48 kHz take of about 12 s, against the take's length, with
-// two threads. Target: at most 5.
+// The time of the whole `improve` of one hidden effect, on a 4-channel 48 kHz take of about 12 s, against the take's
+// length, with two threads. Target: at most 5.
 //     benchmark_improvebenchmark [EFFECT ...]     default: each effect that is drawn
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/Improve.h"
@@ -31,8 +31,8 @@ int main(int argc, char** argv)
         const auto ladder = improve(take);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         worst = std::max(worst, seconds / length);
-        std::printf("improve, %s hidden, take of %.1f s: %.1f s = %.2f x its length; %s\n", effect.c_str(), length, seconds,
-                    seconds / length, ladder.sentence.c_str());
+        std::printf("improve, %s hidden, take of %.1f s: %.1f s = %.2f x its length; %s\n", effect.c_str(), length,
+                    seconds, seconds / length, ladder.sentence.c_str());
         std::fflush(stdout);
     }
     std::printf("worst %.2f x; target at most 5 x on two cores\n", worst);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One Levenberg-Marquardt iteration of a PNLSS model of order 3 and degree 3 (136 parameters, 16384 samples): the Jacobian and the
-// factorization, beside the same recursion in NumPy where python3-numpy is at hand, and beside plain loops, one parameter after the other; and the
-// kernel of the Jacobian beside what the core can do at most.
+// One Levenberg-Marquardt iteration of a PNLSS model of order 3 and degree 3 (136 parameters, 16384 samples): the
+// Jacobian and the factorization, beside the same recursion in NumPy where python3-numpy is at hand, and beside plain
+// loops, one parameter after the other; and the kernel of the Jacobian beside what the core can do at most.
 #include "Engine/Linear/TallQr.h"
 #include "Engine/Polynomial/Lanes.h"
 #include "Engine/Polynomial/Recursion.h"
@@ -99,7 +99,8 @@ double plainLoops(const Pnlss& m, const MatrixXd& u, const MatrixXd& states)
     return sum;
 }
 
-/// The recursion with all parameters of a step as one matrix, as a NumPy user would write it; seconds for 16384 samples, 0 without NumPy.
+/// The recursion with all parameters of a step as one matrix, as a NumPy user would write it; seconds for 16384
+/// samples, 0 without NumPy.
 double numpySeconds()
 {
     const std::string script = R"(
@@ -133,15 +134,17 @@ print(jacobian, time.process_time() - t0)
     return jacobian + step;
 }
 
-/// What one core can do at most: multiplications and additions in ten chains that do not wait for each other, in registers; in GFlop/s.
+/// What one core can do at most: multiplications and additions in ten chains that do not wait for each other, in
+/// registers; in GFlop/s.
 EXCURSION_WIDEST
 double peak()
 {
     using Eight = double __attribute__((vector_size(64)));
     constexpr long rounds = 2000000;
     double by = 0.999, plus = 1e-3;
-    asm volatile("" : "+x"(by), "+x"(plus));   // not known when this is compiled, or nothing would be left of it
-    Eight a {}, b = a + by, c = b + by, d = c + by, e = d + by, f = e + by, g = f + by, h = g + by, i = h + by, j = i + by;
+    asm volatile("" : "+x"(by), "+x"(plus));  // not known when this is compiled, or nothing would be left of it
+    Eight a {}, b = a + by, c = b + by, d = c + by, e = d + by, f = e + by, g = f + by, h = g + by, i = h + by,
+                j = i + by;
     double least = 1e9;
     for (int k = 0; k < 5; ++k) {
         const double before = seconds();
@@ -167,12 +170,13 @@ double kernel()
     const Eigen::Vector3d g(1.0, 0.0, 0.0);
     const double taken = best([&] {
         for (int k = 0; k < passes; ++k)
-            columnsThroughBlock(3, MG.data(), MG.data() + 9 * pitch, 1, r.data(), g.data(), 0, X.data(), next.data(), J.data(), J.size(), stretch);
+            columnsThroughBlock(3, MG.data(), MG.data() + 9 * pitch, 1, r.data(), g.data(), 0, X.data(), next.data(),
+                                J.data(), J.size(), stretch);
     });
     return 1e-9 * passes * static_cast<double>(stretch * abreast) * 2.0 * 12.0 / taken;
 }
 
-} // namespace
+}  // namespace
 
 int main()
 {
@@ -184,9 +188,8 @@ int main()
     recursion.run(m, u, Eigen::Vector3d::Zero(), 1e6, states, outputs);
     const double simulation = best([&] { recursion.run(m, u, Eigen::Vector3d::Zero(), 1e6, states, outputs); });
     double sink = 0.0;
-    const double jacobian = best([&] {
-        recursion.differentiate(m, u, states, [&](Index, std::vector<MatrixXd>& d) { sink += d[0](0, 0); });
-    });
+    const double jacobian = best(
+        [&] { recursion.differentiate(m, u, states, [&](Index, std::vector<MatrixXd>& d) { sink += d[0](0, 0); }); });
     const auto P = recursion.parameters();
     const double iteration = best([&] {
         TallQr qr(P + 1);
@@ -204,12 +207,15 @@ int main()
     const double operations = 2.0 * static_cast<double>(samples) * 102.0 * 12.0;
     const double alone = kernel(), most = peak();
     std::cout << "simulation   " << 1e3 * simulation << " ms\n"
-              << "Jacobian     " << 1e3 * jacobian << " ms, " << 1e-9 * operations / jacobian << " GFlop/s of the recursion alone\n"
-              << "kernel       " << alone << " GFlop/s, " << 100.0 * alone / most << " % of the " << most << " GFlop/s that this core can do\n"
+              << "Jacobian     " << 1e3 * jacobian << " ms, " << 1e-9 * operations / jacobian
+              << " GFlop/s of the recursion alone\n"
+              << "kernel       " << alone << " GFlop/s, " << 100.0 * alone / most << " % of the " << most
+              << " GFlop/s that this core can do\n"
               << "with factor  " << 1e3 * iteration << " ms\n"
               << "plain loops  " << 1e3 * plain << " ms for the Jacobian, " << plain / jacobian << " times as long\n";
     if (const double numpy = numpySeconds(); numpy > 0.0)
-        std::cout << "NumPy        " << 1e3 * numpy << " ms for Jacobian and SVD, " << numpy / iteration << " times as long\n";
+        std::cout << "NumPy        " << 1e3 * numpy << " ms for Jacobian and SVD, " << numpy / iteration
+                  << " times as long\n";
     else
         std::cout << "NumPy        not at hand (EXCURSION_PYTHON names a Python that has it)\n";
     return sink == 12345.0;

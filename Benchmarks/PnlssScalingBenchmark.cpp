@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one Levenberg-Marquardt iteration of a PNLSS model of order 20 and degree 3 costs as the record grows and as monomials are added,
-// linear part held: processor time and peak memory, each run in a process of its own. Everything is told as a ratio to the first run of
-// its row, with a line fitted through it. A file name as argument receives the table as CSV:
+// What one Levenberg-Marquardt iteration of a PNLSS model of order 20 and degree 3 costs as the record grows and as
+// monomials are added, linear part held: processor time and peak memory, each run in a process of its own. Everything
+// is told as a ratio to the first run of its row, with a line fitted through it. A file name as argument receives the
+// table as CSV:
 //     gnuplot -e "set datafile separator ','; plot 'scaling.csv' using 2:5 every ::1"
 #include "Engine/Polynomial/PnlssFit.h"
 
@@ -73,7 +74,7 @@ Cost costOf(Index samples, Index monomials)
             const auto fit = fitPnlss(start, {{u, y, 0, false}}, {}, options);
             cost.seconds = std::min(cost.seconds, static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC);
             if (!(fit.iterations == 1 && fit.history.size() == 2))
-                _exit(1);   // it refused its step, so this was another work
+                _exit(1);  // it refused its step, so this was another work
         }
         cost.parameters = (order + 1) * monomials;
         _exit(write(pipes[1], &cost, sizeof cost) == sizeof cost ? 0 : 1);
@@ -97,7 +98,8 @@ struct Line {
     double offset = 0.0, slope = 0.0, r2 = 0.0, exponent = 0.0;
 };
 
-/// y = offset + slope x by least squares, the share of the variance that it explains, and the slope of log y over log x.
+/// y = offset + slope x by least squares, the share of the variance that it explains, and the slope of log y over log
+/// x.
 Line through(const std::vector<double>& x, const std::vector<double>& y)
 {
     const auto n = static_cast<double>(x.size());
@@ -126,30 +128,31 @@ Line through(const std::vector<double>& x, const std::vector<double>& y)
 
 void study(const char* name, const std::vector<std::pair<Index, Index>>& runs, bool bySamples, std::ofstream& csv)
 {
-    std::printf("\n%s\n%10s %10s %10s %10s %8s %10s %8s\n", name, "samples", "monomials", "parameters", "seconds", "ratio", "MB", "ratio");
+    std::printf("\n%s\n%10s %10s %10s %10s %8s %10s %8s\n", name, "samples", "monomials", "parameters", "seconds",
+                "ratio", "MB", "ratio");
     std::vector<double> x, time, memory;
     for (const auto& [samples, monomials] : runs) {
         const auto cost = costOf(samples, monomials);
-        x.push_back(static_cast<double>(bySamples ? samples : monomials) / static_cast<double>(bySamples ? runs[0].first : runs[0].second));
+        x.push_back(static_cast<double>(bySamples ? samples : monomials)
+                    / static_cast<double>(bySamples ? runs[0].first : runs[0].second));
         time.push_back(cost.seconds);
         memory.push_back(cost.megabytes);
         std::printf("%10td %10td %10td %10.3f %8.2f %10.1f %8.2f\n", samples, monomials, cost.parameters, cost.seconds,
-                    cost.seconds / time[0], cost.megabytes,
-                    cost.megabytes / memory[0]);
+                    cost.seconds / time[0], cost.megabytes, cost.megabytes / memory[0]);
         std::fflush(stdout);
         if (csv)
-            csv << (bySamples ? "samples" : "monomials") << ',' << samples << ',' << monomials << ',' << cost.parameters << ','
-                << cost.seconds << ','
-                << cost.megabytes << '\n';
+            csv << (bySamples ? "samples" : "monomials") << ',' << samples << ',' << monomials << ',' << cost.parameters
+                << ',' << cost.seconds << ',' << cost.megabytes << '\n';
     }
     for (const auto& [what, values] : {std::pair {"time", &time}, std::pair {"memory", &memory}}) {
         const auto line = through(x, *values);
-        std::printf("%-6s  a line explains %.2f %% of its variance, offset %.0f %% of the first run; it grows as the power %.2f\n", what,
-                    100.0 * line.r2, 100.0 * line.offset / (*values)[0], line.exponent);
+        std::printf("%-6s  a line explains %.2f %% of its variance, offset %.0f %% of the first run; it grows as the "
+                    "power %.2f\n",
+                    what, 100.0 * line.r2, 100.0 * line.offset / (*values)[0], line.exponent);
     }
 }
 
-} // namespace
+}  // namespace
 
 int main(int argc, char** argv)
 {
@@ -159,7 +162,8 @@ int main(int argc, char** argv)
         csv << "row,samples,monomials,parameters,seconds,megabytes\n";
     }
     study("against samples", {{4096, 12}, {8192, 12}, {16384, 12}, {32768, 12}, {65536, 12}}, true, csv);
-    study("against active monomials", {{8192, 6}, {8192, 12}, {8192, 18}, {8192, 24}, {8192, 30}, {8192, 36}, {8192, 42}}, false, csv);
+    study("against active monomials",
+          {{8192, 6}, {8192, 12}, {8192, 18}, {8192, 24}, {8192, 30}, {8192, 36}, {8192, 42}}, false, csv);
     if (argc > 1 && !csv.good()) {
         std::fprintf(stderr, "%s could not be written.\n", argv[1]);
         return 1;

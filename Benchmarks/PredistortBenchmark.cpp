@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What share of one core a channel in real time takes, with every effect of the catalogue, in blocks of 64. Target at 48 kHz,
-// oversampling 2: 4 % each for the predistorter, which plays what it reckons with (Effect::undone), and the speaker, which plays all.
+// What share of one core a channel in real time takes, with every effect of the catalogue, in blocks of 64. Target at
+// 48 kHz, oversampling 2: 4 % each for the predistorter, which plays what it reckons with (Effect::undone), and the
+// speaker, which plays all.
 #include "AllEffects.h"
 
 #include "Engine/Linearization/Predistorter.h"
@@ -23,8 +24,8 @@ double coreNow()
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// The share of a core, the least and the median of many stretches of a tenth of a second: others who use the machine make it
-/// larger, never smaller.
+/// The share of a core, the least and the median of many stretches of a tenth of a second: others who use the machine
+/// make it larger, never smaller.
 template <class Engine>
 void measure(const char* name, Engine& engine, const std::vector<double>& input, double sampleRate, int oversampling)
 {
@@ -38,11 +39,11 @@ void measure(const char* name, Engine& engine, const std::vector<double>& input,
         shares.push_back(100.0 * (coreNow() - start) / (static_cast<double>(stretch) / sampleRate));
     }
     std::sort(shares.begin(), shares.end());
-    std::printf("%-12s %5.1f kHz, oversampling %d: %.2f %% of a core (median %.2f %%), %.0f x real time\n", name, 1e-3 * sampleRate, oversampling,
-                shares.front(), shares[shares.size() / 2], 100.0 / shares.front());
+    std::printf("%-12s %5.1f kHz, oversampling %d: %.2f %% of a core (median %.2f %%), %.0f x real time\n", name,
+                1e-3 * sampleRate, oversampling, shares.front(), shares[shares.size() / 2], 100.0 / shares.front());
 }
 
-} // namespace
+}  // namespace
 
 int main()
 {

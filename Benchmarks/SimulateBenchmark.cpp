@@ -16,7 +16,7 @@ namespace {
 double wallNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double coreNow() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-} // namespace
+}  // namespace
 
 int main()
 {
@@ -34,9 +34,10 @@ int main()
         SimulationSummary summary;
         const double wall = wallNow(), core = coreNow();
         simulate(model, input, stimulus.sampleRate, options, &summary);
-        std::printf("simulate, %zu effects, 48 kHz, tolerance %.0e: %d steps a sample, accuracy %.1e, %.1f x real time of core time "
+        std::printf("simulate, %zu effects, 48 kHz, tolerance %.0e: %d steps a sample, accuracy %.1e, %.1f x real time "
+                    "of core time "
                     "(%.1f x by the clock); target 15 x\n",
-                    model.effectIds().size(), tolerance, summary.substeps, summary.accuracy, seconds / (coreNow() - core),
-                    seconds / (wallNow() - wall));
+                    model.effectIds().size(), tolerance, summary.substeps, summary.accuracy,
+                    seconds / (coreNow() - core), seconds / (wallNow() - wall));
     }
 }

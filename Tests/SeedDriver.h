@@ -24,10 +24,11 @@ inline bench::Draw drawSeedDriver(std::vector<bench::HiddenEffect> hidden, std::
     return bench::draw(7, options);
 }
 
-inline Measurement seedTake(std::vector<bench::HiddenEffect> hidden, std::vector<Quantity> outputs = {Quantity::current, Quantity::displacement})
+inline Measurement seedTake(std::vector<bench::HiddenEffect> hidden,
+                            std::vector<Quantity> outputs = {Quantity::current, Quantity::displacement})
 {
     const auto drawn = drawSeedDriver(std::move(hidden), std::move(outputs));
     return bench::measure(drawn.speaker, drawn.setup);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A loudspeaker is measured, a linear model is fitted, and what it lacks is named. The loudspeaker is a virtual one, in which a force factor that
-// falls with excursion is hidden; a take of a real one comes from readMeasurement(folder).
+// A loudspeaker is measured, a linear model is fitted, and what it lacks is named. The loudspeaker is a virtual one, in
+// which a force factor that falls with excursion is hidden; a take of a real one comes from readMeasurement(folder).
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/Diagnose.h"
 #include "Engine/Diagnosis/FitEffects.h"
@@ -16,7 +16,7 @@ int main()
 {
     try {
         bench::DrawOptions options;
-        options.driver = "seed";   // the woofer of Brunet (2014)
+        options.driver = "seed";  // the woofer of Brunet (2014)
         options.hidden = {{"force-factor", 0.3}};
         options.noiseDb = -70.0;
         options.sampleRate = 44100.0;
@@ -34,12 +34,14 @@ int main()
         const Model linear = fitEffects(record, {}, {});
         const auto diagnosis = diagnose(linear, record);
         for (const auto& [quantity, error] : diagnosis.error)
-            std::cout << name(quantity) << ": error " << error.db << " dB, noise " << error.noiseFloorDb.value_or(0.0) << " dB\n";
+            std::cout << name(quantity) << ": error " << error.db << " dB, noise " << error.noiseFloorDb.value_or(0.0)
+                      << " dB\n";
         for (const auto& ranked : diagnosis.ranking)
             if (ranked.confidence > 0.01)
                 std::cout << 100.0 * ranked.confidence << " % " << ranked.effect << "\n";
         std::cout << name(diagnosis.verdict) << ": " << diagnosis.sentence << "\n";
-        return diagnosis.verdict == Verdict::missingEffect && diagnosis.ranking.front().effect == "force-factor" ? 0 : 1;
+        return diagnosis.verdict == Verdict::missingEffect && diagnosis.ranking.front().effect == "force-factor" ? 0
+                                                                                                                 : 1;
     } catch (const Error& error) {
         std::cerr << error.what() << "\n";
         return error.exitCode();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A polynomial state-space model, which knows no physics, learns an oscillator with a hardening spring from two records, and predicts a third.
+// A polynomial state-space model, which knows no physics, learns an oscillator with a hardening spring from two
+// records, and predicts a third.
 #include "Engine/Linear/Identify.h"
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Signal/Fft.h"
@@ -13,7 +14,8 @@ using namespace excursion;
 PnlssRecord play(const std::vector<double>& period)
 {
     const auto length = static_cast<Eigen::Index>(period.size());
-    Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), length).replicate(2, 1), y = Eigen::VectorXd::Zero(2 * length);
+    Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), length).replicate(2, 1),
+                    y = Eigen::VectorXd::Zero(2 * length);
     for (Eigen::Index t = 1; t + 1 < 2 * length; ++t)
         y[t + 1] = 1.6 * y[t] - 0.8 * y[t - 1] - 0.05 * y[t] * y[t] * y[t] + 0.2 * u[t];
     return periodicRecord(u.tail(length), y.tail(length), 256);
@@ -44,11 +46,12 @@ int main()
     IdentifyOptions options;
     options.order = 2;
     options.sampleRate = signal.sampleRate;
-    const auto start = withTerms(identify(frequencyDataOf(response), options).model, 3);   // all monomials of degree 2 and 3
+    // all monomials of degree 2 and 3
+    const auto start = withTerms(identify(frequencyDataOf(response), options).model, 3);
 
     const std::vector<PnlssRecord> estimation(records.begin(), records.begin() + 2), validation {records[2]};
     const auto fit = fitPnlss(start, estimation, validation);
-    std::cout << "linear model " << relativeErrorDb(start, validation) << " dB, with " << start.terms() << " monomials " << fit.validationDb
-              << " dB, on a record that no fit saw; " << fit.iterations << " iterations\n";
+    std::cout << "linear model " << relativeErrorDb(start, validation) << " dB, with " << start.terms() << " monomials "
+              << fit.validationDb << " dB, on a record that no fit saw; " << fit.iterations << " iterations\n";
     return fit.stable && fit.validationDb < -80.0 ? 0 : 1;
 }

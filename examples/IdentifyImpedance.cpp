@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The impedance of a loudspeaker on 200 frequencies becomes a linear model of order 3, from which its resonance and losses are read.
+// The impedance of a loudspeaker on 200 frequencies becomes a linear model of order 3, from which its resonance and
+// losses are read.
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
 
@@ -10,19 +11,21 @@
 
 using namespace excursion;
 
-constexpr double Re = 5.6, Le = 0.4e-3, Bl = 7.2, m = 0.02, Rms = 1.5, K = 1800.0;   // SI units
+constexpr double Re = 5.6, Le = 0.4e-3, Bl = 7.2, m = 0.02, Rms = 1.5, K = 1800.0;  // SI units
 
 int main()
 {
-    // What a meter would show: Z = Re + s Le + Bl^2 s / (m s^2 + Rms s + K), with noise of 0.1 %. Z grows with frequency for ever, which a
-    // state-space model cannot; so the model is of the admittance 1/Z, the current that a voltage drives.
+    // What a meter would show: Z = Re + s Le + Bl^2 s / (m s^2 + Rms s + K), with noise of 0.1 %. Z grows with
+    // frequency for ever, which a state-space model cannot; so the model is of the admittance 1/Z, the current that a
+    // voltage drives.
     std::mt19937 generator(1);
     std::normal_distribution<double> noise(0.0, 1e-3 / std::numbers::sqrt2);
     Frf admittance;
     for (int k = 0; k < 200; ++k) {
-        const double f = 10.0 * std::pow(500.0, k / 199.0);   // 10 Hz to 5 kHz
+        const double f = 10.0 * std::pow(500.0, k / 199.0);  // 10 Hz to 5 kHz
         const std::complex<double> s(0.0, 2.0 * std::numbers::pi * f);
-        const auto measured = (Re + s * Le + Bl * Bl * s / (m * s * s + Rms * s + K)) * (1.0 + std::complex(noise(generator), noise(generator)));
+        const auto measured = (Re + s * Le + Bl * Bl * s / (m * s * s + Rms * s + K))
+                              * (1.0 + std::complex(noise(generator), noise(generator)));
         admittance.frequency.push_back(f);
         admittance.value.push_back(1.0 / measured);
         admittance.noiseVariance.push_back(1e-6 * std::norm(1.0 / measured));
@@ -31,7 +34,8 @@ int main()
     IdentifyOptions options;
     options.order = 3;
     const auto result = identify(frequencyDataOf(admittance), options);
-    std::cout << "error " << result.errorDb << " dB, " << (result.stable ? "stable" : "not stable") << "; " << result.reason << "\n";
+    std::cout << "error " << result.errorDb << " dB, " << (result.stable ? "stable" : "not stable") << "; "
+              << result.reason << "\n";
 
     // The zeros of the admittance are the poles of the impedance: 0, and the mechanical resonance.
     for (const auto zero : zeros(result.model)) {

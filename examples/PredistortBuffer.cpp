@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two tones are bent so that a loudspeaker plays them as if it were linear, block by block as an audio thread does it, and a simulation of that
-// loudspeaker tells what is gained.
+// Two tones are bent so that a loudspeaker plays them as if it were linear, block by block as an audio thread does it,
+// and a simulation of that loudspeaker tells what is gained.
 //     example_predistortbuffer MODEL.json
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Driver/Simulate.h"
@@ -15,7 +15,7 @@
 using namespace excursion;
 
 constexpr double sampleRate = 48000.0;
-constexpr std::size_t window = 4800;   // 0.1 s: 40 Hz and 300 Hz stand on lines 4 and 30
+constexpr std::size_t window = 4800;  // 0.1 s: 40 Hz and 300 Hz stand on lines 4 and 30
 
 // What the cone's acceleration holds beside the two tones, over these, in dB.
 double distortionDb(const Model& model, const std::vector<double>& voltage)
@@ -35,21 +35,25 @@ int main(int argc, char** argv)
         std::vector<double> plain(48000);
         for (std::size_t n = 0; n < plain.size(); ++n) {
             const double t = static_cast<double>(n) / sampleRate;
-            plain[n] = 5.0 * std::sin(2.0 * std::numbers::pi * 40.0 * t) + 2.0 * std::sin(2.0 * std::numbers::pi * 300.0 * t);   // V
+            // V
+            plain[n] = 5.0 * std::sin(2.0 * std::numbers::pi * 40.0 * t)
+                       + 2.0 * std::sin(2.0 * std::numbers::pi * 300.0 * t);
         }
 
         LinearizationControls controls;
         controls.displacementLimit = measuredDisplacement(model);
         controls.voltageLimit = 30.0;
-        Predistorter predistorter(model, RealTimeOptions {sampleRate}, controls);   // allocates; what follows does not
+        // allocates; what follows does not
+        Predistorter predistorter(model, RealTimeOptions {sampleRate}, controls);
         auto bent = plain;
         for (std::size_t n = 0; n < bent.size(); n += 256)
             predistorter.process(&bent[n], &bent[n], std::min<std::size_t>(256, bent.size() - n));
 
         const double before = distortionDb(model, plain), after = distortionDb(model, bent);
         const auto meters = predistorter.take();
-        std::cout << model.name << ": distortion " << before << " dB, linearized " << after << " dB, " << predistorter.latency()
-                  << " samples later; the cone moves " << 1e3 * meters.displacement << " mm, at " << meters.voltage << " V\n";
+        std::cout << model.name << ": distortion " << before << " dB, linearized " << after << " dB, "
+                  << predistorter.latency() << " samples later; the cone moves " << 1e3 * meters.displacement
+                  << " mm, at " << meters.voltage << " V\n";
         return after < before - 30.0 && meters.faults == 0 ? 0 : 1;
     } catch (const Error& error) {
         std::cerr << error.what() << "\n";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A woofer whose suspension hardens plays a tone of 20 Hz. How far does its cone go, and what harmonics does the motion get?
+// A woofer whose suspension hardens plays a tone of 20 Hz. How far does its cone go, and what harmonics does the motion
+// get?
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Signal/Fft.h"
@@ -10,7 +11,7 @@
 
 using namespace excursion;
 
-constexpr double sampleRate = 48000.0, tone = 20.0, volts = 8.0;   // Hz, Hz, V peak
+constexpr double sampleRate = 48000.0, tone = 20.0, volts = 8.0;  // Hz, Hz, V peak
 
 // Amplitudes of the displacement in mm: of the tone, of its second harmonic, its third, ...
 std::vector<double> harmonics(const Model& model)
@@ -33,26 +34,31 @@ std::vector<double> harmonics(const Model& model)
 int main()
 {
     Model linear = makeModel("electrodynamic");
-    for (const auto& [name, value] : {std::pair {"Re", 5.6}, {"Le", 0.4e-3}, {"Bl", 7.2}, {"m", 0.02}, {"Rms", 1.5}, {"K", 1800.0}})
+    for (const auto& [name, value] :
+         {std::pair {"Re", 5.6}, {"Le", 0.4e-3}, {"Bl", 7.2}, {"m", 0.02}, {"Rms", 1.5}, {"K", 1800.0}})
         linear.baseParameter(name).value = value;
 
-    // K(x) = K + c1 [T1(x/X) - T1(0)] + c2 [T2(x/X) - T2(0)] with Chebyshev polynomials T and X = 6 mm. T2(s) - T2(0) = 2 s^2,
-    // so c2 = K/2 doubles the stiffness at the ends.
+    // K(x) = K + c1 [T1(x/X) - T1(0)] + c2 [T2(x/X) - T2(0)] with Chebyshev polynomials T and X = 6 mm. T2(s) - T2(0) =
+    // 2 s^2, so c2 = K/2 doubles the stiffness at the ends.
     Extent extent;
     extent.displacement = 6e-3;
     extent.degree = 2;
-    extent.relaxed = false;   // no creep beside it
+    extent.relaxed = false;  // no creep beside it
     Model hardening = withEffect(linear, effectNamed("stiffness"), extent);
     hardening.components.back().parameters[1].value = 900.0;
 
     const auto without = harmonics(linear), with = harmonics(hardening);
-    std::cout << "linear:    " << without[0] << " mm, second harmonic " << without[1] << ", third " << without[2] << "\n"
+    std::cout << "linear:    " << without[0] << " mm, second harmonic " << without[1] << ", third " << without[2]
+              << "\n"
               << "hardening: " << with[0] << " mm, second harmonic " << with[1] << ", third " << with[2] << "\n";
 
     // In closed form: X = Bl U / (Ze Zm + j w Bl^2) with Ze = Re + j w Le and Zm = K - m w^2 + j w Rms.
     const double w = 2.0 * std::numbers::pi * tone;
     const std::complex<double> j(0.0, 1.0);
-    const double truth = 1e3 * std::abs(7.2 * volts / ((5.6 + j * w * 0.4e-3) * (1800.0 - 0.02 * w * w + j * w * 1.5) + j * w * 7.2 * 7.2));
-    const bool right = std::abs(without[0] / truth - 1.0) < 1e-4 && with[0] < 0.95 * without[0] && with[2] > 100.0 * with[1];
+    const double truth =
+        1e3
+        * std::abs(7.2 * volts / ((5.6 + j * w * 0.4e-3) * (1800.0 - 0.02 * w * w + j * w * 1.5) + j * w * 7.2 * 7.2));
+    const bool right = std::abs(without[0] / truth - 1.0) < 1e-4 && with[0] < 0.95 * without[0]
+                       && with[2] > 100.0 * with[1];
     return right ? 0 : 1;
 }

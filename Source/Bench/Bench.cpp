@@ -13,16 +13,20 @@
 namespace excursion::bench {
 namespace {
 
-constexpr int tail = 2048;   // samples played after the last kept one, so that the decimator has a future
+constexpr int tail = 2048;  // samples played after the last kept one, so that the decimator has a future
 
 void check(const BenchSetup& setup)
 {
     const auto& plan = setup.excitation;
-    const auto refuse = [](const std::string& reason) { throw Error(Error::Kind::usage, "The virtual bench cannot play this: " + reason); };
+    const auto refuse = [](const std::string& reason) {
+        throw Error(Error::Kind::usage, "The virtual bench cannot play this: " + reason);
+    };
     if (!(setup.sampleRate > 0.0))
         refuse("the sample rate must be positive.");
-    if (plan.period < 1536 || plan.settlePeriods < 1 || plan.periods < 1 || plan.realizations < 1 || plan.levels.empty())
-        refuse("it needs a period of at least 1536 samples, one settling and one kept period, one realization and one level.");
+    if (plan.period < 1536 || plan.settlePeriods < 1 || plan.periods < 1 || plan.realizations < 1
+        || plan.levels.empty())
+        refuse("it needs a period of at least 1536 samples, one settling and one kept period, one realization and one "
+               "level.");
     if (!(plan.bandLow > 0.0 && plan.bandLow < plan.bandHigh && plan.bandHigh <= 0.42 * setup.sampleRate))
         refuse("the band must be positive, ascending and end below 0.42 times the sample rate.");
     if (std::find(setup.channels.begin(), setup.channels.end(), Quantity::force) != setup.channels.end())
@@ -31,7 +35,7 @@ void check(const BenchSetup& setup)
 
 Channel channelOf(Quantity quantity) { return {quantity, std::string(siUnit(quantity)), 1.0, {}}; }
 
-} // namespace
+}  // namespace
 
 Measurement measure(const Loudspeaker& speaker, const BenchSetup& setup, const Progress& progress)
 {
@@ -51,8 +55,8 @@ Measurement measure(const Loudspeaker& speaker, const BenchSetup& setup, const P
                       setup.oversampling, progress);
 
     const auto total = static_cast<std::size_t>(plan.totalSamples());
-    const auto loudest = static_cast<std::size_t>(
-        std::max_element(plan.levels.begin(), plan.levels.end()) - plan.levels.begin());
+    const auto loudest = static_cast<std::size_t>(std::max_element(plan.levels.begin(), plan.levels.end())
+                                                  - plan.levels.begin());
     const auto levelLength = total / plan.levels.size();
     for (const auto quantity : setup.channels) {
         auto channel = channelOf(quantity);
@@ -89,4 +93,4 @@ Measurement play(const Loudspeaker& speaker, std::span<const double> voltage, do
     return take;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

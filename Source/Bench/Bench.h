@@ -14,17 +14,26 @@
 namespace excursion::bench {
 
 struct BenchSetup {
-    double sampleRate = 48000.0;   ///< Hz
-    Excitation excitation {.period = 16384, .settlePeriods = 1, .periods = 3, .realizations = 4, .levels = {0.44, 1.7, 4.4},
-                           .grid = "odd-random", .shape = "pink", .bandLow = 15.0, .bandHigh = 8000.0, .lines = {}};
+    double sampleRate = 48000.0;  ///< Hz
+    Excitation excitation {.period = 16384,
+                           .settlePeriods = 1,
+                           .periods = 3,
+                           .realizations = 4,
+                           .levels = {0.44, 1.7, 4.4},
+                           .grid = "odd-random",
+                           .shape = "pink",
+                           .bandLow = 15.0,
+                           .bandHigh = 8000.0,
+                           .lines = {}};
     std::vector<Quantity> channels {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure};
-    double microphoneDistance = 0.3;   ///< m
-    double noiseDb = -70.0;            ///< rms of each sensor's noise against that channel at the loudest level; -infinity: none
-    std::map<Quantity, double> channelNoiseDb;   ///< where a channel differs
+    double microphoneDistance = 0.3;  ///< m
+    /// rms of each sensor's noise against that channel at the loudest level; -infinity: none
+    double noiseDb = -70.0;
+    std::map<Quantity, double> channelNoiseDb;  ///< where a channel differs
     NoiseColour noiseColour = NoiseColour::white;
-    std::uint64_t seed = 1;            ///< of the multisines and of the noise
+    std::uint64_t seed = 1;  ///< of the multisines and of the noise
     std::vector<Fault> faults;
-    int oversampling = 0;              ///< steps of the simulation per sample; 0: chosen
+    int oversampling = 0;  ///< steps of the simulation per sample; 0: chosen
 };
 
 /// Plays all levels and realizations one after another, starting from rest, and records them:
@@ -35,7 +44,7 @@ Measurement measure(const Loudspeaker&, const BenchSetup&, const Progress& = {})
 
 /// Plays any voltage (V, from silence to silence) and returns what perfect sensors see at the same
 /// rate and instants. The record has no excitation.
-Measurement play(const Loudspeaker&, std::span<const double> voltage, double sampleRate, const std::vector<Quantity>& channels,
-                 double microphoneDistance = 0.3, const Progress& = {});
+Measurement play(const Loudspeaker&, std::span<const double> voltage, double sampleRate,
+                 const std::vector<Quantity>& channels, double microphoneDistance = 0.3, const Progress& = {});
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -59,7 +59,7 @@ std::array<std::array<double, 6>, 3> makeExtrapolation()
     return weights;
 }
 
-} // namespace
+}  // namespace
 
 const Triple& Radau::points()
 {
@@ -136,8 +136,7 @@ Triple solve(const Square& M, const Triple& r)
             inverse * (c * r[0] + f * r[1] + k * r[2])};
 }
 
-RelaxationBank::RelaxationBank(const Relaxations& cells, double step)
-    : state_(cells.rate.size(), 0.0)
+RelaxationBank::RelaxationBank(const Relaxations& cells, double step) : state_(cells.rate.size(), 0.0)
 {
     for (std::size_t k = 0; k < cells.rate.size(); ++k) {
         const double q = cells.rate[k] * step;
@@ -167,4 +166,4 @@ void RelaxationBank::advance(const Triple& input)
         state_[k] = decay_[k] * state_[k] + take_[0][k] * input[0] + take_[1][k] * input[1] + take_[2][k] * input[2];
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -9,15 +9,15 @@
 
 namespace excursion::bench {
 
-using Triple = std::array<double, 3>;            ///< a quantity at the three points of a step
+using Triple = std::array<double, 3>;  ///< a quantity at the three points of a step
 using Square = std::array<Triple, 3>;
 
 /// Three-point Radau IIA collocation (order 5, stiffly accurate, L-stable): within a step of length 1
 /// a signal is the parabola through its values at c = (4 - sqrt 6)/10, (4 + sqrt 6)/10 and 1.
 struct Radau {
-    static const Triple& points();   ///< c
-    static const Square& once();     ///< A: integral of the parabola through unit l, from 0 to c_j
-    static const Square& twice();    ///< A*A: its double integral
+    static const Triple& points();  ///< c
+    static const Square& once();    ///< A: integral of the parabola through unit l, from 0 to c_j
+    static const Square& twice();   ///< A*A: its double integral
     /// Values at this step's points extrapolated from the three of the step before and the three of
     /// the one before that: a polynomial of degree 5; weights [point][0..2 older, 3..5 newer].
     static const std::array<std::array<double, 6>, 3>& extrapolation();
@@ -36,7 +36,7 @@ Triple solve(const Square& M, const Triple& r);
 class RelaxationBank {
 public:
     RelaxationBank() = default;
-    RelaxationBank(const Relaxations&, double step);   ///< step in s
+    RelaxationBank(const Relaxations&, double step);  ///< step in s
 
     /// The output at the three points is history() + gain() * input.
     Triple history() const;
@@ -45,10 +45,10 @@ public:
 
 private:
     std::vector<double> state_;
-    std::array<std::vector<double>, 3> look_;     // weight exp(-rate c_j h)
+    std::array<std::vector<double>, 3> look_;  // weight exp(-rate c_j h)
     std::vector<double> decay_;
-    std::array<std::vector<double>, 3> take_;     // what the input at point l leaves at the end
+    std::array<std::vector<double>, 3> take_;  // what the input at point l leaves at the end
     Square gain_ {};
 };
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

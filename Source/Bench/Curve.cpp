@@ -14,8 +14,8 @@ Curve::Point evaluate(Shape shape, double y, double a, double e)
 {
     switch (shape) {
     case Shape::erfGap:
-        return {std::erf(y + e) - std::erf(y - e), 2.0 * std::numbers::inv_sqrtpi
-                                                       * (std::exp(-(y + e) * (y + e)) - std::exp(-(y - e) * (y - e)))};
+        return {std::erf(y + e) - std::erf(y - e),
+                2.0 * std::numbers::inv_sqrtpi * (std::exp(-(y + e) * (y + e)) - std::exp(-(y - e) * (y - e)))};
     case Shape::logisticGap: {
         const double right = 1.0 / (1.0 + std::exp(y - e)), left = 1.0 / (1.0 + std::exp(-y - e));
         return {left * right, left * right * (right - left)};
@@ -79,7 +79,7 @@ Curve::Point evaluate(Shape shape, double y, double a, double e)
 
 bool hasAmount(Shape shape) { return shape >= Shape::tanhStep && shape != Shape::saturation; }
 
-} // namespace
+}  // namespace
 
 Curve::Point Curve::at(double y) const { return evaluate(shape, y, amount, extra); }
 
@@ -99,7 +99,8 @@ Curve Curve::scaledTo(double strength, double range) const
 {
     Curve curve = *this;
     // Bisection on the logarithm: a larger amount, or a smaller width, always changes more.
-    double low = std::log(hasAmount(shape) ? 1e-4 : 0.02 * range), high = std::log(hasAmount(shape) ? 20.0 : 1e3 * range);
+    double low = std::log(hasAmount(shape) ? 1e-4 : 0.02 * range),
+           high = std::log(hasAmount(shape) ? 20.0 : 1e3 * range);
     for (int n = 0; n < 60; ++n) {
         const double middle = 0.5 * (low + high);
         if (hasAmount(shape))
@@ -116,9 +117,10 @@ Curve Curve::scaledTo(double strength, double range) const
 std::string_view name(Shape shape)
 {
     static constexpr std::array<std::string_view, 15> names {
-        "erf-gap",   "logistic-gap", "quartic-gap", "gaussian-gap", "cosh-spring", "exp-spring", "rational-spring", "skewed-spring",
-        "tanh-step", "arctan-step",  "root-step",   "saturation",   "root-drag",   "power-drag", "tanh-drag"};
+        "erf-gap",    "logistic-gap",    "quartic-gap",   "gaussian-gap", "cosh-spring",
+        "exp-spring", "rational-spring", "skewed-spring", "tanh-step",    "arctan-step",
+        "root-step",  "saturation",      "root-drag",     "power-drag",   "tanh-drag"};
     return names[static_cast<std::size_t>(shape)];
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -47,7 +47,7 @@ void requirePressure(BenchSetup& setup)
         setup.channels.push_back(Quantity::pressure);
 }
 
-} // namespace
+}  // namespace
 
 const std::vector<std::string>& drawnEffects()
 {
@@ -92,7 +92,8 @@ Visited visit(const Loudspeaker& speaker, const BenchSetup& setup)
 Draw draw(std::uint64_t seed, const DrawOptions& options)
 {
     // Each part has its own stream, so that fixing one choice leaves the others as they were.
-    Random classChoice(seed, 10), driverChoice(seed, 11), setupChoice(seed, 12), effectChoice(seed, 13), levelChoice(seed, 14);
+    Random classChoice(seed, 10), driverChoice(seed, 11), setupChoice(seed, 12), effectChoice(seed, 13),
+        levelChoice(seed, 14);
 
     Draw result;
     const auto& classes = driverClasses();
@@ -135,4 +136,4 @@ Loudspeaker drawLoudspeaker(std::uint64_t seed, const std::vector<HiddenEffect>&
     return draw(seed, options).speaker;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -13,34 +13,35 @@ namespace excursion::bench {
 
 struct HiddenEffect {
     std::string id;
-    double strength = 0.0;   ///< what the law changes over the visited range, 0.05 .. 0.6; 0: drawn, log-uniform
-    std::optional<bool> chain {};   ///< eddy currents and creep: cells of random size instead of a law; absent: drawn, 2 in 5
+    double strength = 0.0;  ///< what the law changes over the visited range, 0.05 .. 0.6; 0: drawn, log-uniform
+    /// eddy currents and creep: cells of random size instead of a law; absent: drawn, 2 in 5
+    std::optional<bool> chain {};
 };
 
 /// What is asked of a draw; what is left open is drawn from the seed.
 struct DrawOptions {
-    std::optional<std::string> driver;                  ///< micro, midrange, midbass, woofer, subwoofer or seed
-    std::optional<std::vector<HiddenEffect>> hidden;    ///< absent: one of drawnEffects(); empty: none
-    std::optional<double> noiseDb;                      ///< drawn from -50 .. -85
-    std::optional<double> sampleRate;                   ///< drawn from 44.1, 48, 88.2 and 96 kHz
+    std::optional<std::string> driver;                ///< micro, midrange, midbass, woofer, subwoofer or seed
+    std::optional<std::vector<HiddenEffect>> hidden;  ///< absent: one of drawnEffects(); empty: none
+    std::optional<double> noiseDb;                    ///< drawn from -50 .. -85
+    std::optional<double> sampleRate;                 ///< drawn from 44.1, 48, 88.2 and 96 kHz
     std::optional<std::vector<Quantity>> channels;
-    double seconds = 12.0;                              ///< about; long periods may take up to twice as much
+    double seconds = 12.0;  ///< about; long periods may take up to twice as much
 };
 
 /// Where the linear driver goes at the loudest level: the ranges over which laws change by their strength.
 struct Visited {
-    double displacement = 0.0;   ///< m, the largest size
-    double velocity = 0.0;       ///< m/s
-    double current = 0.0;        ///< A
-    double power = 0.0;          ///< W, Re i^2 on average
+    double displacement = 0.0;  ///< m, the largest size
+    double velocity = 0.0;      ///< m/s
+    double current = 0.0;       ///< A
+    double power = 0.0;         ///< W, Re i^2 on average
 };
 
 struct Draw {
-    std::string driver;              ///< its class
+    std::string driver;  ///< its class
     Loudspeaker speaker;
     BenchSetup setup;
-    std::vector<HiddenEffect> hidden;   ///< with the strength that was reached
-    Visited visited;                    ///< of the driver without effects, at the voltage that laws were drawn for
+    std::vector<HiddenEffect> hidden;  ///< with the strength that was reached
+    Visited visited;                   ///< of the driver without effects, at the voltage that laws were drawn for
 };
 
 const std::vector<std::string>& driverClasses();
@@ -48,8 +49,8 @@ const std::vector<std::string>& driverClasses();
 /// The effects that a draw chooses from when it is not told.
 const std::vector<std::string>& drawnEffects();
 
-/// A linear driver of the class: mass, resonance, Bl, Re, Le, Qms (2 .. 8), area and xmax are drawn log-uniformly within
-/// what such drivers have. "seed" is Brunet's driver.
+/// A linear driver of the class: mass, resonance, Bl, Re, Le, Qms (2 .. 8), area and xmax are drawn log-uniformly
+/// within what such drivers have. "seed" is Brunet's driver.
 Loudspeaker drawLinear(const std::string& driverClass, Random&);
 
 /// Excitation, channels and noise that suit a driver: low edge 0.2 to 0.5 f0, high edge 2 to 10 kHz, f0/10 or finer
@@ -69,4 +70,4 @@ Draw draw(std::uint64_t seed, const DrawOptions& = {});
 /// As draw(), only the loudspeaker.
 Loudspeaker drawLoudspeaker(std::uint64_t seed, const std::vector<HiddenEffect>& hidden);
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -17,13 +17,13 @@ struct Range {
 
 struct Class {
     const char* name;
-    Range mass;        // kg
-    Range resonance;   // Hz
-    Range forceFactor; // N/A
-    Range resistance;  // ohm
-    Range inductance;  // H
-    Range area;        // m^2
-    Range xmax;        // m
+    Range mass;         // kg
+    Range resonance;    // Hz
+    Range forceFactor;  // N/A
+    Range resistance;   // ohm
+    Range inductance;   // H
+    Range area;         // m^2
+    Range xmax;         // m
 };
 
 constexpr Class classes[] {
@@ -36,7 +36,7 @@ constexpr Class classes[] {
 
 double drawn(Random& random, const Range& range) { return random.logUniform(range.low, range.high); }
 
-} // namespace
+}  // namespace
 
 const std::vector<std::string>& driverClasses()
 {
@@ -50,14 +50,15 @@ Loudspeaker drawLinear(const std::string& driverClass, Random& random)
     speaker.name = driverClass;
     if (driverClass == "seed")
         return speaker;
-    const auto* found = std::find_if(std::begin(classes), std::end(classes), [&](const Class& c) { return driverClass == c.name; });
+    const auto* found = std::find_if(std::begin(classes), std::end(classes),
+                                     [&](const Class& c) { return driverClass == c.name; });
     if (found == std::end(classes))
         throw Error(Error::Kind::usage, "There is no driver class \"" + driverClass
                                             + "\"; choose micro, midrange, midbass, woofer, subwoofer or seed.");
     speaker.m = drawn(random, found->mass);
     const double w0 = 2.0 * std::numbers::pi * drawn(random, found->resonance);
     speaker.K = speaker.m * w0 * w0;
-    speaker.Rms = speaker.m * w0 / random.logUniform(2.0, 8.0);   // Qms
+    speaker.Rms = speaker.m * w0 / random.logUniform(2.0, 8.0);  // Qms
     speaker.Bl = drawn(random, found->forceFactor);
     speaker.Re = drawn(random, found->resistance);
     speaker.Le = drawn(random, found->inductance);
@@ -87,7 +88,8 @@ BenchSetup drawSetup(const Loudspeaker& speaker, const DrawOptions& options, Ran
     // Three kept periods where they fit, two where the periods are long; at least three realizations.
     const double seconds = plan.period / setup.sampleRate;
     plan.periods = seconds * 3.0 * 4.0 * 3.0 <= options.seconds ? 3 : 2;
-    plan.realizations = std::clamp(static_cast<int>(std::lround(options.seconds / (seconds * 3.0 * (1 + plan.periods)))), 3, 8);
+    plan.realizations = std::clamp(
+        static_cast<int>(std::lround(options.seconds / (seconds * 3.0 * (1 + plan.periods)))), 3, 8);
 
     setup.microphoneDistance = speaker.m < 1e-3 ? random.logUniform(0.02, 0.1) : random.logUniform(0.1, 1.0);
     using enum Quantity;
@@ -102,4 +104,4 @@ BenchSetup drawSetup(const Loudspeaker& speaker, const DrawOptions& options, Ran
     return setup;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -52,8 +52,9 @@ Curve drawInductancePosition(double strength, double range, Random& random)
 
 Curve drawInductanceCurrent(double strength, double range, Random& random)
 {
-    if (random.chance(0.5))   // off centre by so little that the flux grows with the current everywhere
-        return Curve {Shape::saturation, random.uniform(-0.08, 0.08) * range, range, 0.0, 0.0}.scaledTo(strength, range);
+    if (random.chance(0.5))  // off centre by so little that the flux grows with the current everywhere
+        return Curve {Shape::saturation, random.uniform(-0.08, 0.08) * range, range, 0.0, 0.0}.scaledTo(strength,
+                                                                                                        range);
     const double width = random.uniform(0.5, 1.5) * range, sign = either(random);
     return bounded(Curve {Shape::tanhStep, 0.0, width, sign * 0.5, 0.0}.scaledTo(strength, range), -0.6, 0.6);
 }
@@ -91,8 +92,8 @@ Creep drawCreep(double strength, double f0, double lowEdge, Random& random)
     return creep;
 }
 
-/// A chain as irons have it: one to three cells a decade at random places from well below the band to above it, each up to several times
-/// off the power law that they follow on the whole.
+/// A chain as irons have it: one to three cells a decade at random places from well below the band to above it, each up
+/// to several times off the power law that they follow on the whole.
 EddyCurrents drawEddyChain(double exponent, double lowEdge, double highEdge, Random& random)
 {
     EddyCurrents eddy;
@@ -143,7 +144,7 @@ CoilHeating drawHeating(double strength, double power, Random& random)
 {
     CoilHeating heating;
     heating.coilResistance = strength / (heating.alpha * power);
-    heating.coilCapacity = random.logUniform(0.5, 4.0) / heating.coilResistance;   // seconds
+    heating.coilCapacity = random.logUniform(0.5, 4.0) / heating.coilResistance;  // seconds
     heating.magnetResistance = 0.3 * heating.coilResistance;
     heating.magnetCapacity = 100.0 * heating.coilCapacity;
     return heating;
@@ -156,7 +157,7 @@ VentedBox drawBox(double strength, const Loudspeaker& speaker, double f0, Random
     const double tuning = turn * f0 * random.uniform(0.7, 1.3);
     box.mass = box.stiffness / (tuning * tuning);
     box.resistance = box.mass * tuning / random.uniform(5.0, 15.0);
-    const double impedance = box.mass * tuning;   // of air and port at the tuning
+    const double impedance = box.mass * tuning;  // of air and port at the tuning
     if (random.chance(0.7))
         box.leak = impedance * random.logUniform(5.0, 30.0);
     if (random.chance(0.5))
@@ -177,14 +178,14 @@ std::vector<ConeMode> drawBreakup(double strength, double highEdge, Random& rand
     for (auto& mode : modes) {
         mode.frequency = highEdge * random.logUniform(0.3, 0.95);
         mode.quality = random.logUniform(4.0, 15.0);
-        mode.gain = either(random) * strength / mode.quality;   // |r''/x''| is Q at the resonance
+        mode.gain = either(random) * strength / mode.quality;  // |r''/x''| is Q at the resonance
     }
     return modes;
 }
 
 std::vector<HungPart> drawParts(double strength, const Loudspeaker& speaker, double f0, double highEdge, Random& random)
 {
-    constexpr double heaviest = 0.3;   // of the cone's mass
+    constexpr double heaviest = 0.3;  // of the cone's mass
     std::vector<HungPart> parts(static_cast<std::size_t>(1 + random.index(2)));
     for (auto& part : parts) {
         part.frequency = random.logUniform(2.0 * f0, std::min(10.0 * f0, 0.7 * highEdge));
@@ -194,9 +195,10 @@ std::vector<HungPart> drawParts(double strength, const Loudspeaker& speaker, dou
     return parts;
 }
 
-} // namespace
+}  // namespace
 
-double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited& visited, const BenchSetup& setup, Random& random)
+double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited& visited, const BenchSetup& setup,
+                 Random& random)
 {
     const double drawn = random.logUniform(0.05, 0.6), strength = effect.strength > 0.0 ? effect.strength : drawn;
     const double f0 = std::sqrt(speaker.K / speaker.m) / turn;
@@ -223,7 +225,7 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
         speaker.dampingVelocity = drawDamping(strength, visited.velocity, random);
         return reached(speaker.dampingVelocity, visited.velocity);
     }
-    if (effect.id == "eddy-currents") {   // strength: its impedance against the coil's at the high edge
+    if (effect.id == "eddy-currents") {  // strength: its impedance against the coil's at the high edge
         const double w = turn * plan.bandHigh, exponent = random.uniform(0.45, 0.9);
         const double size = strength * std::hypot(speaker.Re, w * speaker.Le);
         speaker.eddyCurrents = EddyCurrents {size / std::pow(w, exponent), exponent};
@@ -233,21 +235,20 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
             for (auto& cell : speaker.eddyCurrents->cells)
                 cell.resistance *= size / now;
         }
-    } else if (effect.id == "creep") {    // strength: change of compliance over the band
+    } else if (effect.id == "creep") {  // strength: change of compliance over the band
         speaker.creep = drawCreep(strength, f0, plan.bandLow, random);
         if (isChain(effect, random))
             speaker.creep = drawCreepChain(strength, f0, plan.bandLow, random);
-    }
-    else if (effect.id == "friction")
+    } else if (effect.id == "friction")
         speaker.friction = drawFriction(strength, speaker.K * visited.displacement, visited.displacement, random);
-    else if (effect.id == "coil-heating")   // strength: rise of Re in the end at the loudest level
+    else if (effect.id == "coil-heating")  // strength: rise of Re in the end at the loudest level
         speaker.coilHeating = drawHeating(strength, visited.power, random);
     else if (effect.id == "vented-box")
         speaker.ventedBox = drawBox(strength, speaker, f0, random);
     else if (effect.id == "doppler") {
         speaker.doppler = true;
         return visited.velocity / 343.0;
-    } else if (effect.id == "cone-breakup")   // strength: change of the pressure at the resonance
+    } else if (effect.id == "cone-breakup")  // strength: change of the pressure at the resonance
         speaker.coneBreakup = drawBreakup(strength, plan.bandHigh, random);
     else if (effect.id == "side-resonance")
         speaker.sideResonance = drawParts(strength, speaker, f0, plan.bandHigh, random);
@@ -260,4 +261,4 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
     return strength;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -24,7 +24,7 @@ public:
 
     bool present() const { return present_; }
 
-    Curve::Point operator()(double q) const   ///< value and slope against q
+    Curve::Point operator()(double q) const  ///< value and slope against q
     {
         if (!present_)
             return {base_, 0.0};
@@ -38,4 +38,4 @@ private:
     bool present_ = false;
 };
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

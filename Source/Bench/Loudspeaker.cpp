@@ -9,7 +9,7 @@ namespace {
 
 double valueOf(const std::optional<Curve>& curve, double q) { return curve ? curve->value(q) : 1.0; }
 
-} // namespace
+}  // namespace
 
 double Loudspeaker::forceFactorAt(double x) const { return Bl * valueOf(forceFactor, x); }
 
@@ -44,12 +44,9 @@ std::complex<double> Loudspeaker::suspensionStiffness(std::complex<double> s) co
     if (!creep)
         return K;
     switch (creep->family) {
-    case Creep::Family::logarithmic:
-        return K / (1.0 + creep->amount * std::log((s + creep->high) / (s + creep->low)));
-    case Creep::Family::standard:
-        return K / (1.0 + creep->amount / (1.0 + s / creep->low));
-    case Creep::Family::fractional:
-        return K * (1.0 + creep->amount * std::pow(s / creep->low, creep->exponent));
+    case Creep::Family::logarithmic: return K / (1.0 + creep->amount * std::log((s + creep->high) / (s + creep->low)));
+    case Creep::Family::standard: return K / (1.0 + creep->amount / (1.0 + s / creep->low));
+    case Creep::Family::fractional: return K * (1.0 + creep->amount * std::pow(s / creep->low, creep->exponent));
     case Creep::Family::chain: {
         std::complex<double> give = 1.0;
         for (const auto& cell : creep->cells)
@@ -63,8 +60,8 @@ std::complex<double> Loudspeaker::suspensionStiffness(std::complex<double> s) co
 Loudspeaker::Response Loudspeaker::small(double frequency) const
 {
     const std::complex<double> s {0.0, 2.0 * std::numbers::pi * frequency};
-    std::complex<double> mechanical = s * m + Rms + suspensionStiffness(s) / s;   // N per m/s
-    std::complex<double> port = 0.0;                                              // y/x
+    std::complex<double> mechanical = s * m + Rms + suspensionStiffness(s) / s;  // N per m/s
+    std::complex<double> port = 0.0;                                             // y/x
     if (friction)
         for (const auto& element : friction->elements)
             mechanical += element.stiffness / s;
@@ -77,7 +74,7 @@ Loudspeaker::Response Loudspeaker::small(double frequency) const
     }
     for (const auto& part : sideResonance) {
         const double w = 2.0 * std::numbers::pi * part.frequency;
-        const auto follow = s * w / part.quality + w * w;   // y/x = follow/(s^2 + follow)
+        const auto follow = s * w / part.quality + w * w;  // y/x = follow/(s^2 + follow)
         mechanical += s * part.mass * follow / (s * s + follow);
     }
     const auto impedance = Re + s * Le + eddyImpedance(s) + Bl * Bl / mechanical;
@@ -90,10 +87,18 @@ Loudspeaker::Response Loudspeaker::small(double frequency) const
 
 std::vector<std::string> Loudspeaker::effects() const
 {
-    const bool present[] {forceFactor.has_value(),       stiffness.has_value(),   inductancePosition.has_value(),
-                          inductanceCurrent.has_value(), eddyCurrents.has_value(), dampingVelocity.has_value(),
-                          creep.has_value(),             friction.has_value(),    coilHeating.has_value(),
-                          ventedBox.has_value(),         doppler,                 !coneBreakup.empty(),
+    const bool present[] {forceFactor.has_value(),
+                          stiffness.has_value(),
+                          inductancePosition.has_value(),
+                          inductanceCurrent.has_value(),
+                          eddyCurrents.has_value(),
+                          dampingVelocity.has_value(),
+                          creep.has_value(),
+                          friction.has_value(),
+                          coilHeating.has_value(),
+                          ventedBox.has_value(),
+                          doppler,
+                          !coneBreakup.empty(),
                           !sideResonance.empty()};
     std::vector<std::string> ids;
     for (std::size_t n = 0; n < effectIds().size(); ++n)
@@ -119,11 +124,11 @@ Loudspeaker Loudspeaker::linear() const
 
 const std::vector<std::string>& effectIds()
 {
-    static const std::vector<std::string> ids {"force-factor",      "stiffness",        "inductance-position", "inductance-current",
-                                               "eddy-currents",     "damping-velocity", "creep",               "friction",
-                                               "coil-heating",      "vented-box",       "doppler",             "cone-breakup",
-                                               "side-resonance"};
+    static const std::vector<std::string> ids {
+        "force-factor",  "stiffness", "inductance-position", "inductance-current", "eddy-currents", "damping-velocity",
+        "creep",         "friction",  "coil-heating",        "vented-box",         "doppler",       "cone-breakup",
+        "side-resonance"};
     return ids;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

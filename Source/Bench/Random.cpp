@@ -15,7 +15,7 @@ std::uint64_t splitMix(std::uint64_t z)
     return z ^ (z >> 31);
 }
 
-} // namespace
+}  // namespace
 
 Random::Random(std::uint64_t seed, std::uint64_t stream) : words_(splitMix(splitMix(seed) + stream)) {}
 
@@ -40,4 +40,4 @@ double Random::normal()
 
 int Random::index(int count) { return static_cast<int>(uniform() * count); }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

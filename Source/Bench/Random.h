@@ -13,11 +13,11 @@ class Random {
 public:
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
 
-    double uniform();                           ///< in (0, 1), 53 bits
+    double uniform();  ///< in (0, 1), 53 bits
     double uniform(double low, double high);
-    double logUniform(double low, double high); ///< 0 < low <= high
-    double normal();                            ///< mean 0, variance 1 (Box-Muller)
-    int index(int count);                       ///< 0 .. count - 1
+    double logUniform(double low, double high);  ///< 0 < low <= high
+    double normal();                             ///< mean 0, variance 1 (Box-Muller)
+    int index(int count);                        ///< 0 .. count - 1
     bool chance(double probability) { return uniform() < probability; }
 
 private:
@@ -26,4 +26,4 @@ private:
     bool hasSpare_ = false;
 };
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

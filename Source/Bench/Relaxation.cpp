@@ -34,12 +34,12 @@ Rule gaussRule(int count, double power)
     for (int n = 0; n < count; ++n) {
         const double first = solver.eigenvectors()(0, n);
         rule.node.push_back(0.5 * (1.0 + solver.eigenvalues()(n)));
-        rule.weight.push_back(first * first / (1.0 + power));   // the weight integrates to 1/(1 + power)
+        rule.weight.push_back(first * first / (1.0 + power));  // the weight integrates to 1/(1 + power)
     }
     return rule;
 }
 
-} // namespace
+}  // namespace
 
 std::complex<double> Relaxations::response(std::complex<double> s) const
 {
@@ -92,4 +92,4 @@ Relaxations logarithm(double low, double high)
     return cells;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -9,7 +9,7 @@ namespace excursion::bench {
 /// A memory made of many first-order cells, driven by one signal g:
 ///     dz_k/dt = -rate_k z_k + g,   output = sum_k weight_k z_k,   H(s) = sum_k weight_k / (s + rate_k)
 struct Relaxations {
-    std::vector<double> rate;     ///< 1/s, positive
+    std::vector<double> rate;  ///< 1/s, positive
     std::vector<double> weight;
 
     std::complex<double> response(std::complex<double> s) const;
@@ -29,4 +29,4 @@ Relaxations fractionalIntegral(double alpha, double low, double high);
 /// 1 - lambda log10(s/s0), is its middle part). Gauss-Legendre in ln r.
 Relaxations logarithm(double low, double high);
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -31,8 +31,8 @@ std::vector<double> interpolate(std::span<const double> x, int factor, double of
     spectrum.back() = 0.0;
     spectrum.resize(N / 2 + 1);
     for (std::size_t k = 0; k < M / 2; ++k)
-        spectrum[k] *= std::polar(static_cast<double>(factor), 2.0 * std::numbers::pi * static_cast<double>(k) * offset
-                                                                   / static_cast<double>(N));
+        spectrum[k] *= std::polar(static_cast<double>(factor),
+                                  2.0 * std::numbers::pi * static_cast<double>(k) * offset / static_cast<double>(N));
     auto y = inverseFft(spectrum, N);
     y.resize(x.size() * static_cast<std::size_t>(factor));
     return y;
@@ -71,7 +71,7 @@ double readBetween(std::span<const double> x, double p)
         return below;
     }();
 
-    const double whole = std::floor(p), t = p - whole + count / 2 - 1;   // t from the first of the 12
+    const double whole = std::floor(p), t = p - whole + count / 2 - 1;  // t from the first of the 12
     const long first = static_cast<long>(whole) - (count / 2 - 1);
     // Products of (t - m) over m < n and m > n
     std::array<double, count> left {}, right {};
@@ -89,4 +89,4 @@ double readBetween(std::span<const double> x, double p)
     return sum;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -26,4 +26,4 @@ std::vector<double> decimate(std::span<const double> x, int factor, std::size_t 
 /// Relative error below 1e-9 for frequencies up to a twentieth of the rate, 1e-6 up to a tenth.
 double readBetween(std::span<const double> x, double p);
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double airDensity = 1.2, soundSpeed = 343.0;
 
-std::vector<double> pressureOf(const std::vector<double>& radiated, const std::vector<double>& position, double coneArea,
-                               double distance, double rate)
+std::vector<double> pressureOf(const std::vector<double>& radiated, const std::vector<double>& position,
+                               double coneArea, double distance, double rate)
 {
     const double gain = airDensity * coneArea / (2.0 * std::numbers::pi * distance);
     std::vector<double> pressure(radiated.size());
@@ -30,7 +30,7 @@ std::vector<double> pressureOf(const std::vector<double>& radiated, const std::v
     return pressure;
 }
 
-} // namespace
+}  // namespace
 
 int defaultOversampling(const Loudspeaker& speaker, double sampleRate)
 {
@@ -40,8 +40,9 @@ int defaultOversampling(const Loudspeaker& speaker, double sampleRate)
     return factor;
 }
 
-Record run(const Loudspeaker& speaker, std::span<const double> voltage, double sampleRate, const std::vector<Quantity>& channels,
-           double microphoneDistance, double lowest, int oversampling, const Progress& progress)
+Record run(const Loudspeaker& speaker, std::span<const double> voltage, double sampleRate,
+           const std::vector<Quantity>& channels, double microphoneDistance, double lowest, int oversampling,
+           const Progress& progress)
 {
     Record record;
     record.sampleRate = sampleRate;
@@ -51,9 +52,12 @@ Record run(const Loudspeaker& speaker, std::span<const double> voltage, double s
 
     std::array<std::vector<double>, 3> drive;
     for (int j = 0; j < 3; ++j)
-        drive[j] = interpolate(voltage, record.oversampling, Radau::points()[j] - 1.0);   // ends of steps on the grid
+        // ends of steps on the grid
+        drive[j] = interpolate(voltage, record.oversampling, Radau::points()[j] - 1.0);
 
-    const auto wants = [&](Quantity quantity) { return std::find(channels.begin(), channels.end(), quantity) != channels.end(); };
+    const auto wants = [&](Quantity quantity) {
+        return std::find(channels.begin(), channels.end(), quantity) != channels.end();
+    };
     std::vector<std::pair<std::vector<double>*, double Simulator::Sample::*>> taps;
     std::vector<double> radiated, position;
     const auto tap = [&](std::vector<double>& store, double Simulator::Sample::*member) {
@@ -90,4 +94,4 @@ Record run(const Loudspeaker& speaker, std::span<const double> voltage, double s
     return record;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -13,10 +13,10 @@ namespace excursion::bench {
 
 /// What the laboratory would see with perfect sensors, still at the finer rate of the simulation.
 struct Record {
-    double sampleRate = 0.0;   ///< Hz, of the played voltage
+    double sampleRate = 0.0;  ///< Hz, of the played voltage
     int oversampling = 1;
-    std::map<Quantity, std::vector<double>> signals;   ///< oversampling * played samples each
-    double coilTemperature = 0.0;   ///< K above the room, at the end
+    std::map<Quantity, std::vector<double>> signals;  ///< oversampling * played samples each
+    double coilTemperature = 0.0;                     ///< K above the room, at the end
 };
 
 /// Steps per sample: the smallest power of two that gives at least 176 kHz, and twice as many for
@@ -29,7 +29,8 @@ int defaultOversampling(const Loudspeaker&, double sampleRate);
 /// Pressure (in Pa, 2 pi radiation as far field): p(t) = rho Sd/(2 pi d) a(t'), t' = t - d/c, or with the Doppler
 /// effect t' = t - (d - x(t'))/c; rho = 1.2 kg/m^3, c = 343 m/s.
 /// @param lowest  Hz, down to which the fractional elements are accurate
-Record run(const Loudspeaker&, std::span<const double> voltage, double sampleRate, const std::vector<Quantity>& channels,
-           double microphoneDistance, double lowest, int oversampling = 0, const Progress& = {});
+Record run(const Loudspeaker&, std::span<const double> voltage, double sampleRate,
+           const std::vector<Quantity>& channels, double microphoneDistance, double lowest, int oversampling = 0,
+           const Progress& = {});
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

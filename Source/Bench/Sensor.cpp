@@ -22,11 +22,12 @@ double largest(const std::vector<double>& samples)
     return peak;
 }
 
-} // namespace
+}  // namespace
 
 std::string_view name(Fault::Kind kind)
 {
-    static constexpr std::array<std::string_view, 7> names {"delay", "polarity", "clipping", "drift", "dead", "offset", "hum"};
+    static constexpr std::array<std::string_view, 7> names {"delay", "polarity", "clipping", "drift",
+                                                            "dead",  "offset",   "hum"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -82,31 +83,24 @@ void sense(Channel& channel, double sampleRate, double loudestRms, double noiseD
             for (auto& value : samples)
                 value = -value;
             break;
-        case Fault::Kind::dead:
-            std::fill(samples.begin(), samples.end(), 0.0);
-            break;
-        case Fault::Kind::offset:
-            offset += fault.amount * loudestRms;
-            break;
-        case Fault::Kind::hum:
-            humRms.push_back(loudestRms * std::pow(10.0, fault.amount / 20.0));
-            break;
-        case Fault::Kind::clipping:
-            clip = fault.amount;
-            break;
+        case Fault::Kind::dead: std::fill(samples.begin(), samples.end(), 0.0); break;
+        case Fault::Kind::offset: offset += fault.amount * loudestRms; break;
+        case Fault::Kind::hum: humRms.push_back(loudestRms * std::pow(10.0, fault.amount / 20.0)); break;
+        case Fault::Kind::clipping: clip = fault.amount; break;
         case Fault::Kind::delay:
-        case Fault::Kind::drift:
-            break;
+        case Fault::Kind::drift: break;
         }
     }
     for (const double rms : humRms) {
         const double phase = 2.0 * std::numbers::pi * random.uniform();
-        constexpr double part[] {1.0, 0.5, 0.25};   // 50, 150 and 250 Hz
+        constexpr double part[] {1.0, 0.5, 0.25};  // 50, 150 and 250 Hz
         const double amplitude = rms * std::sqrt(2.0 / (1.0 + 0.25 + 0.0625));
         for (std::size_t n = 0; n < samples.size(); ++n)
             for (int h = 0; h < 3; ++h)
                 samples[n] += amplitude * part[h]
-                              * std::sin((2 * h + 1) * (2.0 * std::numbers::pi * 50.0 * static_cast<double>(n) / sampleRate + phase));
+                              * std::sin(
+                                  (2 * h + 1)
+                                  * (2.0 * std::numbers::pi * 50.0 * static_cast<double>(n) / sampleRate + phase));
     }
     if (std::isfinite(noiseDb)) {
         const auto hiss = noise(samples.size(), loudestRms * std::pow(10.0, noiseDb / 20.0), colour, random);
@@ -125,4 +119,4 @@ void sense(Channel& channel, double sampleRate, double loudestRms, double noiseD
     }
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -15,16 +15,16 @@ enum class NoiseColour { white, pink };
 /// Something wrong with the take. `amount` is in the unit said here.
 struct Fault {
     enum class Kind {
-        delay,      ///< amount samples later (may be a fraction or negative)
-        polarity,   ///< the sign is swapped
-        clipping,   ///< full scale is amount (0 .. 1) of the largest value
-        drift,      ///< the recorder's clock is amount ppm fast: it takes more samples a period than were played
-        dead,       ///< the channel is silent but for its noise
-        offset,     ///< DC of amount times the channel's rms at the loudest level
-        hum         ///< 50 Hz and odd harmonics, amount dB (rms) against the channel at the loudest level
+        delay,     ///< amount samples later (may be a fraction or negative)
+        polarity,  ///< the sign is swapped
+        clipping,  ///< full scale is amount (0 .. 1) of the largest value
+        drift,     ///< the recorder's clock is amount ppm fast: it takes more samples a period than were played
+        dead,      ///< the channel is silent but for its noise
+        offset,    ///< DC of amount times the channel's rms at the loudest level
+        hum        ///< 50 Hz and odd harmonics, amount dB (rms) against the channel at the loudest level
     };
     Kind kind = Kind::delay;
-    std::optional<Quantity> channel;   ///< absent: every channel
+    std::optional<Quantity> channel;  ///< absent: every channel
     double amount = 0.0;
 };
 
@@ -40,6 +40,7 @@ std::vector<double> noise(std::size_t length, double rms, NoiseColour, Random&);
 /// Applies noise and the faults that are not of time, and sets the full scale (the next power of two that is
 /// 1.25 times the largest value, unless it clips).
 /// @param loudestRms  of the channel at the loudest level
-void sense(Channel&, double sampleRate, double loudestRms, double noiseDb, NoiseColour, const std::vector<Fault>&, Random&);
+void sense(Channel&, double sampleRate, double loudestRms, double noiseDb, NoiseColour, const std::vector<Fault>&,
+           Random&);
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

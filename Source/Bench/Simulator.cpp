@@ -34,21 +34,26 @@ double coEnergyIntegral(const Law& saturation, double i)
     return 0.5 * i * sum;
 }
 
-} // namespace
+}  // namespace
 
 Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, double lowest)
-    : speaker_(speaker), forceFactor_(speaker.forceFactor, speaker.Bl), stiffness_(speaker.stiffness, speaker.K),
-      inductance_(speaker.inductancePosition, speaker.Le), saturation_(speaker.inductanceCurrent, 1.0),
-      damping_(speaker.dampingVelocity, speaker.Rms), h_(step), resistance_(speaker.Re)
+    : speaker_(speaker),
+      forceFactor_(speaker.forceFactor, speaker.Bl),
+      stiffness_(speaker.stiffness, speaker.K),
+      inductance_(speaker.inductancePosition, speaker.Le),
+      saturation_(speaker.inductanceCurrent, 1.0),
+      damping_(speaker.dampingVelocity, speaker.Rms),
+      h_(step),
+      resistance_(speaker.Re)
 {
-    if (const auto& eddy = speaker.eddyCurrents; eddy && !eddy->cells.empty()) {   // R s/(s + p) = s * R/(s + p)
+    if (const auto& eddy = speaker.eddyCurrents; eddy && !eddy->cells.empty()) {  // R s/(s + p) = s * R/(s + p)
         Relaxations cells;
         for (const auto& cell : eddy->cells) {
             cells.rate.push_back(cell.rate);
             cells.weight.push_back(cell.resistance);
         }
         eddy_ = RelaxationBank(cells, step);
-    } else if (eddy) {   // K s^a = s * K s^(a - 1): K s^(a - 1) i is a flux
+    } else if (eddy) {  // K s^a = s * K s^(a - 1): K s^(a - 1) i is a flux
         auto cells = fractionalIntegral(1.0 - eddy->exponent, lowest, highest);
         for (auto& weight : cells.weight)
             weight *= eddy->coefficient;
@@ -65,7 +70,7 @@ Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, do
             creep_ = RelaxationBank({{creep->low}, {creep->low}}, step);
             creepScale_ = creep->amount / speaker.K;
             break;
-        case Creep::Family::fractional:   // (s/low)^b x = low^(-b) s^(b - 1) v
+        case Creep::Family::fractional:  // (s/low)^b x = low^(-b) s^(b - 1) v
             creep_ = RelaxationBank(fractionalIntegral(1.0 - creep->exponent, lowest, highest), step);
             creepScale_ = speaker.K * creep->amount * std::pow(creep->low, -creep->exponent);
             break;
@@ -88,7 +93,8 @@ Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, do
     for (const auto& mode : speaker.coneBreakup) {
         // r''/x'' = -s^2/((s - p)(s - p*)) = -1 + 2 Re part of residues: out/(s - p) + conjugate
         const double w = 2.0 * std::numbers::pi * mode.frequency;
-        const std::complex<double> p {-0.5 * w / mode.quality, w * std::sqrt(1.0 - 0.25 / (mode.quality * mode.quality))};
+        const std::complex<double> p {-0.5 * w / mode.quality,
+                                      w * std::sqrt(1.0 - 0.25 / (mode.quality * mode.quality))};
         Mode cell;
         cell.out = -mode.gain * p * p / (p - std::conj(p));
         cell.direct = -mode.gain;
@@ -128,17 +134,14 @@ void Simulator::predict()
 
 void Simulator::coupleLoops()
 {
-    for (int j = 0; loopsMove_ && j < 3; ++j) {   // k = (Le(x)/Le(0))^1/2
+    for (int j = 0; loopsMove_ && j < 3; ++j) {  // k = (Le(x)/Le(0))^1/2
         const auto [L, slope] = inductance_(x_[j]);
         coupling_[j] = std::sqrt(L / speaker_.Le);
         couplingSlope_[j] = 0.5 * slope / (speaker_.Le * coupling_[j]);
     }
 }
 
-Triple Simulator::coupledCurrent() const
-{
-    return {coupling_[0] * i_[0], coupling_[1] * i_[1], coupling_[2] * i_[2]};
-}
+Triple Simulator::coupledCurrent() const { return {coupling_[0] * i_[0], coupling_[1] * i_[1], coupling_[2] * i_[2]}; }
 
 void Simulator::solveCurrents(const Triple& voltage)
 {
@@ -159,7 +162,8 @@ void Simulator::solveCurrents(const Triple& voltage)
     for (int j = 0; j < 3; ++j) {
         residual[j] = flux_ + h_ * drive[j] - flux[j] - coupling_[j] * (eddyHistory_[j] + eddy[j]);
         for (int l = 0; l < 3; ++l)
-            jacobian[j][l] = h_ * resistance_ * A[j][l] + coupling_[j] * eddy_.gain()[j][l] * coupling_[l] + (j == l ? slope[j] : 0.0);
+            jacobian[j][l] = h_ * resistance_ * A[j][l] + coupling_[j] * eddy_.gain()[j][l] * coupling_[l]
+                             + (j == l ? slope[j] : 0.0);
     }
     const auto change = solve(jacobian, residual);
     for (int j = 0; j < 3; ++j)
@@ -196,7 +200,7 @@ void Simulator::suspensionForces()
         const auto drag = times(creep_.gain(), v_);
         for (int j = 0; j < 3; ++j)
             suspension_[j] = stiffness_(x_[j]).value * x_[j] + creepScale_ * (creepHistory_[j] + drag[j]);
-    } else {   // the creep cells lie in series with the spring and carry its force
+    } else {  // the creep cells lie in series with the spring and carry its force
         const auto give = times(creep_.gain(), suspension_);
         for (int j = 0; j < 3; ++j) {
             const double stretched = x_[j] - creepScale_ * (creepHistory_[j] + give[j]);
@@ -241,7 +245,8 @@ const Simulator::Sample& Simulator::step(const Triple& voltage)
             for (int j = 0; j < 3; ++j) {
                 const double speed = portVelocity_ + h_ * portSpeed[j];
                 const double way = portPosition_ + h_ * (Radau::points()[j] * portVelocity_ + h_ * portWay[j]);
-                box_[j] = -box->stiffness * (x_[j] + way + leaked_ + h_ * leaked[j]) - box->absorption * (v_[j] + speed + leak_[j]);
+                box_[j] = -box->stiffness * (x_[j] + way + leaked_ + h_ * leaked[j])
+                          - box->absorption * (v_[j] + speed + leak_[j]);
                 port_[j] = (box_[j] - box->resistance * speed - box->spring * way) / box->mass;
                 leak_[j] = box_[j] / box->leak;
             }
@@ -310,10 +315,11 @@ void Simulator::finish(const Triple& voltage)
         mode.state = mode.decay * mode.state + mode.take[0] * a_[0] + mode.take[1] * a_[1] + mode.take[2] * a_[2];
         sample_.radiated += mode.direct * a_[2] + 2.0 * (mode.out * mode.state).real();
     }
-    if (const auto& heating = speaker_.coilHeating) {   // slow against the step: Euler
+    if (const auto& heating = speaker_.coilHeating) {  // slow against the step: Euler
         const double toMagnet = (coilTemperature_ - magnetTemperature_) / heating->coilResistance;
         coilTemperature_ += h_ * (heat - toMagnet) / heating->coilCapacity;
-        magnetTemperature_ += h_ * (toMagnet - magnetTemperature_ / heating->magnetResistance) / heating->magnetCapacity;
+        magnetTemperature_ += h_ * (toMagnet - magnetTemperature_ / heating->magnetResistance)
+                              / heating->magnetCapacity;
         resistance_ = speaker_.Re * (1.0 + heating->alpha * coilTemperature_);
     }
     sample_.current = i_[2];
@@ -322,4 +328,4 @@ void Simulator::finish(const Triple& voltage)
     sample_.acceleration = a_[2];
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

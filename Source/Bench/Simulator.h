@@ -23,7 +23,7 @@ public:
 
     struct Sample {
         double current = 0, displacement = 0, velocity = 0, acceleration = 0;
-        double radiated = 0;   ///< m/s^2: cone, port and cone modes
+        double radiated = 0;  ///< m/s^2: cone, port and cone modes
     };
 
     /// @param voltage  at the three points of the step, see Radau::points()
@@ -31,7 +31,7 @@ public:
     const Sample& step(const Triple& voltage);
 
     const Sample& sample() const { return sample_; }
-    double coilTemperature() const { return coilTemperature_; }   ///< K above the room
+    double coilTemperature() const { return coilTemperature_; }  ///< K above the room
 
 private:
     struct Mode {
@@ -49,7 +49,7 @@ private:
     void predict();
     void solveCurrents(const Triple& voltage);
     void coupleLoops();
-    Triple coupledCurrent() const;   ///< as the loops see it
+    Triple coupledCurrent() const;  ///< as the loops see it
     void frictionForces();
     void suspensionForces();
     Triple accelerations();
@@ -66,14 +66,15 @@ private:
     std::vector<Part> parts_;
     RelaxationBank eddy_, creep_;
     bool loopsMove_ = false;
-    double creepScale_ = 0;       // what multiplies the creep cells' output
+    double creepScale_ = 0;  // what multiplies the creep cells' output
 
-    Triple i_ {}, a_ {}, port_ {}, leak_ {};                 // this step: current, acceleration, the port's, what leaks a second
-    Triple iBefore_ {}, aBefore_ {}, portBefore_ {}, leakBefore_ {};   // the step before it
+    // this step: current, acceleration, the port's, what leaks a second
+    Triple i_ {}, a_ {}, port_ {}, leak_ {};
+    Triple iBefore_ {}, aBefore_ {}, portBefore_ {}, leakBefore_ {};  // the step before it
     Triple x_ {}, v_ {}, box_ {}, bl_ {}, suspension_ {}, frictionSum_ {}, eddyHistory_ {}, creepHistory_ {};
-    Triple coupling_ {1.0, 1.0, 1.0}, couplingSlope_ {};     // of coil and loops
+    Triple coupling_ {1.0, 1.0, 1.0}, couplingSlope_ {};  // of coil and loops
     std::vector<Triple> friction_;
     double iLargest_ = 0, aLargest_ = 0;
 };
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

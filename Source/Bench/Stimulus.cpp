@@ -16,7 +16,7 @@ constexpr long hold = 256, fade = 1024;
 // From 0 to 1 as n goes from 0 to `fade`; the ends are met within 1e-16.
 double fadeIn(long n) { return 0.5 * std::erfc(-6.0 * (2.0 * static_cast<double>(n) / fade - 1.0)); }
 
-} // namespace
+}  // namespace
 
 std::vector<int> excitedLines(const Excitation& plan, double sampleRate, Random& random)
 {
@@ -34,7 +34,8 @@ std::vector<int> excitedLines(const Excitation& plan, double sampleRate, Random&
     if (plan.grid == "odd")
         return lines;
     if (plan.grid != "odd-random")
-        throw Error(Error::Kind::usage, "The virtual bench plays the grids full, odd and odd-random, not \"" + plan.grid + "\".");
+        throw Error(Error::Kind::usage,
+                    "The virtual bench plays the grids full, odd and odd-random, not \"" + plan.grid + "\".");
     std::vector<int> kept;
     for (std::size_t group = 0; group < lines.size(); group += detectionGroup) {
         const auto end = std::min(lines.size(), group + detectionGroup);
@@ -67,7 +68,8 @@ std::vector<double> drive(const Excitation& plan, double sampleRate, std::uint64
     Random gridChoice(seed, 1);
     const auto lines = plan.lines.empty() ? excitedLines(plan, sampleRate, gridChoice) : plan.lines;
     if (lines.empty())
-        throw Error(Error::Kind::usage, "No line of the multisine falls into the band; widen it or lengthen the period.");
+        throw Error(Error::Kind::usage,
+                    "No line of the multisine falls into the band; widen it or lengthen the period.");
     std::vector<std::vector<double>> waves;
     for (int r = 0; r < plan.realizations; ++r) {
         Random phases(seed, 100 + static_cast<std::uint64_t>(r));
@@ -100,4 +102,4 @@ std::vector<double> drive(const Excitation& plan, double sampleRate, std::uint64
     return out;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

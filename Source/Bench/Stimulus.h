@@ -24,4 +24,4 @@ std::vector<double> multisine(const Excitation&, const std::vector<int>& lines, 
 /// first fades in. So every kept period is exactly periodic up to its last sample.
 std::vector<double> drive(const Excitation&, double sampleRate, std::uint64_t seed, int tail);
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

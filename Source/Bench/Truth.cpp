@@ -12,7 +12,11 @@ using Json = nlohmann::ordered_json;
 
 Json curveJson(const std::optional<Curve>& curve)
 {
-    return {{"shape", name(curve->shape)}, {"centre", curve->centre}, {"width", curve->width}, {"amount", curve->amount}, {"extra", curve->extra}};
+    return {{"shape", name(curve->shape)},
+            {"centre", curve->centre},
+            {"width", curve->width},
+            {"amount", curve->amount},
+            {"extra", curve->extra}};
 }
 
 Json lawJson(const char* against, double range, const std::function<double(double)>& law)
@@ -38,7 +42,8 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
     if (id == "damping-velocity")
         return curveJson(speaker.dampingVelocity);
     if (id == "eddy-currents") {
-        Json json {{"coefficient", speaker.eddyCurrents->coefficient}, {"exponent", speaker.eddyCurrents->exponent},
+        Json json {{"coefficient", speaker.eddyCurrents->coefficient},
+                   {"exponent", speaker.eddyCurrents->exponent},
                    {"moves", speaker.eddyCurrents->moves}};
         for (const auto& cell : speaker.eddyCurrents->cells)
             json["cells"].push_back({{"resistance", cell.resistance}, {"rate", cell.rate}});
@@ -47,8 +52,11 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
     if (id == "creep") {
         static constexpr const char* families[] {"logarithmic", "standard", "fractional", "chain"};
         const auto& creep = *speaker.creep;
-        Json json {{"family", families[static_cast<int>(creep.family)]}, {"amount", creep.amount}, {"low", creep.low},
-                   {"high", creep.high}, {"exponent", creep.exponent}};
+        Json json {{"family", families[static_cast<int>(creep.family)]},
+                   {"amount", creep.amount},
+                   {"low", creep.low},
+                   {"high", creep.high},
+                   {"exponent", creep.exponent}};
         for (const auto& cell : creep.cells)
             json["cells"].push_back({{"yield", cell.yield}, {"rate", cell.rate}});
         return json;
@@ -61,12 +69,16 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
     }
     if (id == "coil-heating") {
         const auto& heating = *speaker.coilHeating;
-        return {{"alpha", heating.alpha}, {"coilCapacity", heating.coilCapacity}, {"coilResistance", heating.coilResistance},
-                {"magnetCapacity", heating.magnetCapacity}, {"magnetResistance", heating.magnetResistance}};
+        return {{"alpha", heating.alpha},
+                {"coilCapacity", heating.coilCapacity},
+                {"coilResistance", heating.coilResistance},
+                {"magnetCapacity", heating.magnetCapacity},
+                {"magnetResistance", heating.magnetResistance}};
     }
     if (id == "vented-box")
-        return {{"stiffness", speaker.ventedBox->stiffness}, {"mass", speaker.ventedBox->mass}, {"resistance", speaker.ventedBox->resistance},
-                {"leak", speaker.ventedBox->leak}, {"absorption", speaker.ventedBox->absorption}, {"spring", speaker.ventedBox->spring}};
+        return {{"stiffness", speaker.ventedBox->stiffness},   {"mass", speaker.ventedBox->mass},
+                {"resistance", speaker.ventedBox->resistance}, {"leak", speaker.ventedBox->leak},
+                {"absorption", speaker.ventedBox->absorption}, {"spring", speaker.ventedBox->spring}};
     if (id == "cone-breakup") {
         Json modes = Json::array();
         for (const auto& mode : speaker.coneBreakup)
@@ -82,16 +94,18 @@ Json parametersOf(const Loudspeaker& speaker, const std::string& id)
     return Json::object();
 }
 
-} // namespace
+}  // namespace
 
 nlohmann::ordered_json truthOf(const Draw& draw)
 {
     const auto& speaker = draw.speaker;
     const auto& visited = draw.visited;
     Json truth {{"format", "excursion-truth"}, {"version", 1}};
-    truth["driver"] = {{"class", draw.driver}, {"Re", speaker.Re}, {"Le", speaker.Le}, {"Bl", speaker.Bl}, {"m", speaker.m},
-                       {"Rms", speaker.Rms}, {"K", speaker.K}, {"coneArea", speaker.coneArea}, {"xmax", speaker.xmax}};
-    truth["visited"] = {{"displacement", visited.displacement}, {"velocity", visited.velocity}, {"current", visited.current}};
+    truth["driver"] = {{"class", draw.driver}, {"Re", speaker.Re},   {"Le", speaker.Le}, {"Bl", speaker.Bl},
+                       {"m", speaker.m},       {"Rms", speaker.Rms}, {"K", speaker.K},   {"coneArea", speaker.coneArea},
+                       {"xmax", speaker.xmax}};
+    truth["visited"] = {
+        {"displacement", visited.displacement}, {"velocity", visited.velocity}, {"current", visited.current}};
     truth["noiseDb"] = draw.setup.noiseDb;
     truth["effects"] = Json::array();
     for (const auto& effect : draw.hidden) {
@@ -102,16 +116,21 @@ nlohmann::ordered_json truthOf(const Draw& draw)
     }
     auto& laws = truth["laws"] = Json::object();
     if (speaker.forceFactor)
-        laws["force-factor"] = lawJson("displacement", visited.displacement, [&](double x) { return speaker.forceFactorAt(x); });
+        laws["force-factor"] = lawJson("displacement", visited.displacement,
+                                       [&](double x) { return speaker.forceFactorAt(x); });
     if (speaker.stiffness)
-        laws["stiffness"] = lawJson("displacement", visited.displacement, [&](double x) { return speaker.stiffnessAt(x); });
+        laws["stiffness"] = lawJson("displacement", visited.displacement,
+                                    [&](double x) { return speaker.stiffnessAt(x); });
     if (speaker.inductancePosition)
-        laws["inductance-position"] = lawJson("displacement", visited.displacement, [&](double x) { return speaker.inductanceAt(x); });
+        laws["inductance-position"] = lawJson("displacement", visited.displacement,
+                                              [&](double x) { return speaker.inductanceAt(x); });
     if (speaker.inductanceCurrent)
-        laws["inductance-current"] = lawJson("current", visited.current, [&](double i) { return speaker.inductanceAt(0.0, i); });
+        laws["inductance-current"] = lawJson("current", visited.current,
+                                             [&](double i) { return speaker.inductanceAt(0.0, i); });
     if (speaker.dampingVelocity)
-        laws["damping-velocity"] = lawJson("velocity", visited.velocity, [&](double v) { return speaker.dampingAt(v); });
+        laws["damping-velocity"] = lawJson("velocity", visited.velocity,
+                                           [&](double v) { return speaker.dampingAt(v); });
     return truth;
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

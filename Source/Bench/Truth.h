@@ -14,4 +14,4 @@ namespace excursion::bench {
 /// Laws are sampled at 81 points over the visited range.
 nlohmann::ordered_json truthOf(const Draw&);
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

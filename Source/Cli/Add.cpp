@@ -113,7 +113,7 @@ void run(const AddArguments& options, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addAdd(CLI::App& app, Terminal& terminal)
 {
@@ -127,4 +127,4 @@ void addAdd(CLI::App& app, Terminal& terminal)
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

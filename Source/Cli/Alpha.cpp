@@ -16,14 +16,16 @@ std::optional<double> alphaFrom(const std::string& text)
         return std::nullopt;
     double alpha = 0.0;
     const auto end = text.data() + text.size();
-    if (const auto read = std::from_chars(text.data(), end, alpha); read.ec != std::errc {} || read.ptr != end || !(alpha > 0.0 && alpha < 2.0))
+    if (const auto read = std::from_chars(text.data(), end, alpha);
+        read.ec != std::errc {} || read.ptr != end || !(alpha > 0.0 && alpha < 2.0))
         throw Error(Error::Kind::usage, "--alpha is \"" + text + "\", expected a number between 0 and 2, or free.");
     return alpha;
 }
 
 std::string withError(double value, double deviation)
 {
-    return significant(value, 5) + (std::isfinite(deviation) && deviation > 0.0 ? " +- " + significant(deviation, 2) : "");
+    return significant(value, 5)
+           + (std::isfinite(deviation) && deviation > 0.0 ? " +- " + significant(deviation, 2) : "");
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -12,4 +12,4 @@ std::optional<double> alphaFrom(const std::string&);
 /// "0.5006 +- 0.001"; without the error where it is not known.
 std::string withError(double value, double deviation);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -35,11 +35,11 @@ struct Found {
     Frf frf;
     Json document;
     std::vector<std::string> header;
-    std::vector<std::vector<double>> columns;   ///< after the frequency, in dB
+    std::vector<std::vector<double>> columns;  ///< after the frequency, in dB
     std::vector<std::string> remarks;
 };
 
-constexpr double nothing = -400.0;   ///< dB of a power of zero
+constexpr double nothing = -400.0;  ///< dB of a power of zero
 
 double decibels(double powerRatio) { return powerRatio > 1e-40 ? 10.0 * std::log10(powerRatio) : nothing; }
 
@@ -89,7 +89,7 @@ std::string remark(const char* parity, const std::optional<DistortionTotal>& tot
     if (!total)
         return std::string(parity) + " distortion: this grid leaves no such lines out";
     return std::string(parity) + " distortion: " + (total->significant ? "" : "below ") + fixed(total->db, 1)
-         + " dB of the output" + (total->significant ? "" : " (not above the noise)");
+           + " dB of the output" + (total->significant ? "" : " (not above the noise)");
 }
 
 Found fromPeriods(const Measurement& take, Quantity output, int level)
@@ -97,8 +97,11 @@ Found fromPeriods(const Measurement& take, Quantity output, int level)
     const auto result = bla(take, output, level);
     Found found;
     found.frf = result.frf;
-    found.document = {{"method", "periods"}, {"level", level}, {"levelRms", take.excitation->levels[static_cast<std::size_t>(level)]},
-                      {"realizations", result.realizations}, {"periods", result.periods}};
+    found.document = {{"method", "periods"},
+                      {"level", level},
+                      {"levelRms", take.excitation->levels[static_cast<std::size_t>(level)]},
+                      {"realizations", result.realizations},
+                      {"periods", result.periods}};
     found.document["nonlinearVariance"] = numbersOrNulls(result.nonlinearVariance);
     found.document["stochasticNonlinear"] = numbersOrNulls(result.stochasticNonlinear);
     found.document["coherence"] = numbersOrNulls(result.coherence);
@@ -127,7 +130,8 @@ Found fromRecord(const Measurement& take, Quantity output, int segment)
     const auto result = welch(take, output, {.segment = segment});
     Found found;
     found.frf = result.frf;
-    found.document = {{"method", "welch"}, {"segments", result.segments}, {"effectiveAverages", result.effectiveAverages}};
+    found.document = {
+        {"method", "welch"}, {"segments", result.segments}, {"effectiveAverages", result.effectiveAverages}};
     found.document["coherence"] = numbersOrNulls(result.coherence);
     found.document["inputPower"] = numbersOrNulls(result.inputPower);
     found.document["outputPower"] = numbersOrNulls(result.outputPower);
@@ -141,8 +145,8 @@ Found fromRecord(const Measurement& take, Quantity output, int segment)
     }
     add(found, "not coherent dB", added);
     found.document["nonCoherentDb"] = decibels(power / all);
-    found.remarks.push_back("not coherent with the input (noise and added distortion): " + fixed(decibels(power / all), 1)
-                            + " dB of the output");
+    found.remarks.push_back("not coherent with the input (noise and added distortion): "
+                            + fixed(decibels(power / all), 1) + " dB of the output");
     return found;
 }
 
@@ -189,7 +193,8 @@ void write(const Found& found, const Measurement& take, int level, const BlaArgu
 void checkExtension(const BlaArguments& options)
 {
     const auto extension = endingOf(options.out);
-    if (options.out.empty() || extension == ".csv" || extension == ".frd" || extension == ".zma" || extension == ".json")
+    if (options.out.empty() || extension == ".csv" || extension == ".frd" || extension == ".zma"
+        || extension == ".json")
         return;
     throw Error(Error::Kind::usage, "The file \"" + options.out + "\" should end in .csv, .frd, .zma or .json.");
 }
@@ -214,7 +219,8 @@ Json documentOf(const Frf& frf, const std::string& take, std::string_view input,
 void showResponse(const BlaArguments& options, Terminal& terminal)
 {
     if (options.level >= 0 || options.segment > 0)
-        throw Error(Error::Kind::usage, "'" + options.take + "' is a frequency response already; leave --level and --segment out.");
+        throw Error(Error::Kind::usage,
+                    "'" + options.take + "' is a frequency response already; leave --level and --segment out.");
     const auto open = openResponse({options.take, options.output, "", -1});
     Found found;
     found.frf = open.frf;
@@ -223,8 +229,12 @@ void showResponse(const BlaArguments& options, Terminal& terminal)
     found.document["method"] = "file";
     const bool impedance = open.output == "voltage" && open.input == "current";
     if (endingOf(options.out) == ".zma" && !impedance && (open.output != "current" || open.input != "voltage"))
-        throw Error(Error::Kind::usage, "A .zma holds an impedance, but this is " + open.output + " / " + open.input + ".");
-    print(found, impedance ? std::string("impedance, voltage / current, as the file has it") : open.output + " / " + open.input + ", as the file has it", terminal);
+        throw Error(Error::Kind::usage,
+                    "A .zma holds an impedance, but this is " + open.output + " / " + open.input + ".");
+    print(found,
+          impedance ? std::string("impedance, voltage / current, as the file has it")
+                    : open.output + " / " + open.input + ", as the file has it",
+          terminal);
     if (!options.out.empty()) {
         if (endingOf(options.out) == ".zma") {
             auto z = open.frf;
@@ -252,9 +262,9 @@ void run(const BlaArguments& options, Terminal& terminal)
     if (endingOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
         throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");
     const bool periodic = take.excitation && !take.excitation->lines.empty();
-    const int level = !periodic           ? -1
-                    : options.level >= 0 ? options.level
-                                         : static_cast<int>(take.excitation->levels.size()) - 1;
+    const int level = !periodic            ? -1
+                      : options.level >= 0 ? options.level
+                                           : static_cast<int>(take.excitation->levels.size()) - 1;
     auto found = periodic ? fromPeriods(take, output, level) : fromRecord(take, output, options.segment);
 
     const auto input = take.input().quantity;
@@ -275,19 +285,25 @@ void run(const BlaArguments& options, Terminal& terminal)
     terminal.document(found.document);
 }
 
-} // namespace
+}  // namespace
 
 void addBla(CLI::App& app, Terminal& terminal)
 {
-    auto* verb = app.add_subcommand("bla", "Frequency response, with its noise and its odd and even distortion")->group(step::look);
+    auto* verb = app.add_subcommand("bla", "Frequency response, with its noise and its odd and even distortion")
+                     ->group(step::look);
     auto options = std::make_shared<BlaArguments>();
-    verb->add_option("TAKE", options->take, "the take: a folder, a .csv of time signals, or a file that is a response already")->required();
+    verb->add_option("TAKE", options->take,
+                     "the take: a folder, a .csv of time signals, or a file that is a response already")
+        ->required();
     verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
     verb->add_option("--output", options->output, "the channel to explain; by default the first beside the input");
-    verb->add_option("--segment", options->segment, "samples of a segment, for a take without periods; by default 8192, less where the record is short");
-    verb->add_option("--out", options->out, "also write a .csv, .frd, .zma (of --output current) or .json")->type_name("FILE");
+    verb->add_option(
+        "--segment", options->segment,
+        "samples of a segment, for a take without periods; by default 8192, less where the record is short");
+    verb->add_option("--out", options->out, "also write a .csv, .frd, .zma (of --output current) or .json")
+        ->type_name("FILE");
     verb->callback([options, &terminal] { run(*options, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -37,11 +37,14 @@ ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calib
         entry.quantity = quantityNamed(a.quantity);
     if (a.hasSpl) {
         if (entry.quantity && *entry.quantity != Quantity::pressure)
-            throw Error(Error::Kind::usage, "--spl calibrates a pressure, but channel " + std::to_string(a.channel) + " is the "
-                                                + std::string(name(*entry.quantity)) + "; give --quantity pressure, or another --channel.");
+            throw Error(Error::Kind::usage, "--spl calibrates a pressure, but channel " + std::to_string(a.channel)
+                                                + " is the " + std::string(name(*entry.quantity))
+                                                + "; give --quantity pressure, or another --channel.");
         if (!a.sensitivity.empty() || a.hasPreamp || a.divider > 0 || a.resistor > 0)
-            throw Error(Error::Kind::usage, "--spl calibrates all from the microphone to the sample; leave --sensitivity, --preamp, --divider and "
-                                            "--sense-resistor out.");
+            throw Error(
+                Error::Kind::usage,
+                "--spl calibrates all from the microphone to the sample; leave --sensitivity, --preamp, --divider and "
+                "--sense-resistor out.");
         entry.quantity = Quantity::pressure;
         entry.unit = "Pa";
         entry.fullScale = 20e-6 * std::pow(10.0, a.spl / 20.0) / tone.rms;
@@ -65,7 +68,7 @@ ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calib
     if (a.inverted)
         entry.inverted = true;
     if (!a.curve.empty()) {
-        readMicrophoneCurve(a.curve, entry.referenceFrequency);   // refused now rather than by import
+        readMicrophoneCurve(a.curve, entry.referenceFrequency);  // refused now rather than by import
         std::error_code error;
         const auto beside = fs::relative(a.curve, fs::absolute(a.out).parent_path(), error);
         entry.curve = error || beside.empty() ? fs::absolute(a.curve).string() : beside.string();
@@ -77,57 +80,86 @@ void run(const CalibrateArguments& a, Terminal& terminal)
 {
     requireFilePlace(a.out);
     if (a.hasSpl == (a.voltage > 0))
-        throw Error(Error::Kind::usage, "Give what the tone is: --voltage, in V rms at the input, or --spl, in dB at the microphone.");
+        throw Error(Error::Kind::usage,
+                    "Give what the tone is: --voltage, in V rms at the input, or --spl, in dB at the microphone.");
     const auto sound = readSound(a.file);
     const auto label = "channel " + std::to_string(a.channel) + " of '" + a.file + "'";
     if (static_cast<std::size_t>(a.channel) > sound.channels.size())
-        throw Error(Error::Kind::usage, "'" + a.file + "' has " + std::to_string(sound.channels.size()) + " channels, so there is no channel "
-                                            + std::to_string(a.channel) + "; they are counted from 1.");
+        throw Error(Error::Kind::usage, "'" + a.file + "' has " + std::to_string(sound.channels.size())
+                                            + " channels, so there is no channel " + std::to_string(a.channel)
+                                            + "; they are counted from 1.");
     const auto& samples = sound.channels[static_cast<std::size_t>(a.channel) - 1];
     for (std::size_t n = 0; n < samples.size(); ++n)
         if (!std::isfinite(samples[n]))
-            throw Error(Error::Kind::input, "'" + a.file + "': sample " + std::to_string(n) + " of channel " + std::to_string(a.channel)
-                                                + " is not a finite number; record again.");
+            throw Error(Error::Kind::input, "'" + a.file + "': sample " + std::to_string(n) + " of channel "
+                                                + std::to_string(a.channel) + " is not a finite number; record again.");
     const auto tone = findTone(samples, sound.sampleRate, label.c_str());
     const bool merged = fs::exists(a.out);
     Calibration calibration = merged ? readCalibration(a.out) : Calibration {};
     const auto entry = entryOf(a, calibration, tone);
     std::string stands;
     if (entry.quantity) {
-        const double full = entry.quantityAtFullScale(*entry.quantity, a.out);   // refuses what contradicts itself
-        stands = " = " + significant(full) + " " + std::string(siUnit(*entry.quantity)) + " (" + std::string(name(*entry.quantity)) + ")";
+        const double full = entry.quantityAtFullScale(*entry.quantity, a.out);  // refuses what contradicts itself
+        stands = " = " + significant(full) + " " + std::string(siUnit(*entry.quantity)) + " ("
+                 + std::string(name(*entry.quantity)) + ")";
     }
     calibration.put(entry);
     const auto document = calibrationJson(calibration);
     writeJson(document, a.out);
-    terminal.say("Tone on " + label + ": " + fixed(tone.frequency, 2) + " Hz, " + significant(tone.rms) + " rms of full scale, from "
-                 + fixed(tone.begin, 2) + " to " + fixed(tone.end, 2) + " s; all else is " + fixed(-tone.noiseDb, 0) + " dB below it.");
-    terminal.say("A sample of 1.0 is " + significant(entry.fullScale) + " " + entry.unit + " (+-" + significant(100 * tone.relativeError, 2) + " %)" + stands + ".");
-    terminal.say((merged ? "Wrote channel " : "Wrote " + a.out + " with channel ") + std::to_string(a.channel) + (merged ? " into " + a.out : "") + ".");
-    terminal.document({{"format", "excursion-calibrate"}, {"version", 1}, {"file", a.file}, {"channel", a.channel}, {"frequency", tone.frequency},
-                       {"rms", tone.rms}, {"relativeError", tone.relativeError}, {"noiseDb", tone.noiseDb}, {"begin", tone.begin}, {"end", tone.end},
+    terminal.say("Tone on " + label + ": " + fixed(tone.frequency, 2) + " Hz, " + significant(tone.rms)
+                 + " rms of full scale, from " + fixed(tone.begin, 2) + " to " + fixed(tone.end, 2) + " s; all else is "
+                 + fixed(-tone.noiseDb, 0) + " dB below it.");
+    terminal.say("A sample of 1.0 is " + significant(entry.fullScale) + " " + entry.unit + " (+-"
+                 + significant(100 * tone.relativeError, 2) + " %)" + stands + ".");
+    terminal.say((merged ? "Wrote channel " : "Wrote " + a.out + " with channel ") + std::to_string(a.channel)
+                 + (merged ? " into " + a.out : "") + ".");
+    terminal.document({{"format", "excursion-calibrate"},
+                       {"version", 1},
+                       {"file", a.file},
+                       {"channel", a.channel},
+                       {"frequency", tone.frequency},
+                       {"rms", tone.rms},
+                       {"relativeError", tone.relativeError},
+                       {"noiseDb", tone.noiseDb},
+                       {"begin", tone.begin},
+                       {"end", tone.end},
                        {"calibration", document}});
 }
 
-} // namespace
+}  // namespace
 
 void addCalibrate(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<CalibrateArguments>();
-    auto* verb = app.add_subcommand("calibrate", "Learn the full scale of an input from a recorded tone, for import")->group(step::measure);
+    auto* verb = app.add_subcommand("calibrate", "Learn the full scale of an input from a recorded tone, for import")
+                     ->group(step::measure);
     verb->add_option("FILE", o->file, "a recording of a steady tone (.wav, .aif, .caf, .flac)")->required();
-    verb->add_option("--out", o->out, "the calibration; what it knows of other channels is kept")->required()->type_name("FILE.json");
-    verb->add_option("--channel", o->channel, "the input, counted from 1")->check(CLI::Range(1, 4096))->capture_default_str();
-    verb->add_option("--voltage", o->voltage, "V rms of the tone at the converter's input, behind divider, sensor and preamplifier")->check(CLI::PositiveNumber);
-    auto* spl = verb->add_option("--spl", o->spl, "dB (20 uPa) of a calibrator's tone at the microphone: calibrates all of the way")->check(CLI::Range(40.0, 160.0));
+    verb->add_option("--out", o->out, "the calibration; what it knows of other channels is kept")
+        ->required()
+        ->type_name("FILE.json");
+    verb->add_option("--channel", o->channel, "the input, counted from 1")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    verb->add_option("--voltage", o->voltage,
+                     "V rms of the tone at the converter's input, behind divider, sensor and preamplifier")
+        ->check(CLI::PositiveNumber);
+    auto* spl = verb->add_option("--spl", o->spl,
+                                 "dB (20 uPa) of a calibrator's tone at the microphone: calibrates all of the way")
+                    ->check(CLI::Range(40.0, 160.0));
     verb->add_option("--quantity", o->quantity, "what is connected to it")
         ->check(CLI::IsMember({"voltage", "current", "displacement", "velocity", "acceleration", "pressure", "force"}));
-    verb->add_option("--divider", o->divider, "voltage at the loudspeaker over that at the input")->check(CLI::Range(1.0, 1e6));
-    verb->add_option("--sense-resistor", o->resistor, "ohm; the current is the voltage over it")->check(CLI::PositiveNumber);
-    verb->add_option("--sensitivity", o->sensitivity, "of a sensor, such as 50mV/Pa, 10.2mV/g, 1V/mm, 0.1V/A")->type_name("TEXT");
-    auto* preamp = verb->add_option("--preamp", o->preamp, "gain of a preamplifier between sensor and input, dB")->check(CLI::Range(-120.0, 120.0));
+    verb->add_option("--divider", o->divider, "voltage at the loudspeaker over that at the input")
+        ->check(CLI::Range(1.0, 1e6));
+    verb->add_option("--sense-resistor", o->resistor, "ohm; the current is the voltage over it")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--sensitivity", o->sensitivity, "of a sensor, such as 50mV/Pa, 10.2mV/g, 1V/mm, 0.1V/A")
+        ->type_name("TEXT");
+    auto* preamp = verb->add_option("--preamp", o->preamp, "gain of a preamplifier between sensor and input, dB")
+                       ->check(CLI::Range(-120.0, 120.0));
     verb->add_flag("--invert", o->inverted, "the channel is upside down");
-    verb->add_option("--curve", o->curve, "a microphone's response: frequency in Hz, dB[, phase in degrees]; without phases the minimum phase is taken")
+    verb->add_option("--curve", o->curve,
+                     "a microphone's response: frequency in Hz, dB[, phase in degrees]; without phases the minimum "
+                     "phase is taken")
         ->type_name("FILE");
     verb->callback([o, spl, preamp, &terminal] {
         o->hasSpl = spl->count() > 0;
@@ -136,4 +168,4 @@ void addCalibrate(CLI::App& app, Terminal& terminal)
     });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -39,12 +39,16 @@ void put(Json& json, const char* key, const std::optional<double>& value)
 
 nlohmann::ordered_json documentOf(const CheckReport& report, const std::string& file, double sampleRate)
 {
-    nlohmann::ordered_json document {{"format", "excursion-check"}, {"version", 1}, {"take", file},
-                             {"fitForUse", report.fitForUse()}, {"verdict", report.verdict()}};
+    nlohmann::ordered_json document {{"format", "excursion-check"},
+                                     {"version", 1},
+                                     {"take", file},
+                                     {"fitForUse", report.fitForUse()},
+                                     {"verdict", report.verdict()}};
     auto& channels = document["channels"] = nlohmann::ordered_json::array();
     for (const auto& c : report.channels) {
-        nlohmann::ordered_json channel {{"quantity", name(c.quantity)}, {"unit", c.unit}, {"rms", c.rms}, {"peak", c.peak},
-                                {"offset", c.offset}, {"clippedSamples", c.clipped}};
+        nlohmann::ordered_json channel {
+            {"quantity", name(c.quantity)}, {"unit", c.unit}, {"rms", c.rms}, {"peak", c.peak}, {"offset", c.offset},
+            {"clippedSamples", c.clipped}};
         put(channel, "snrDb", c.snrDb);
         put(channel, "repeatabilityDb", c.repeatabilityDb);
         put(channel, "driftPpm", c.driftPpm);
@@ -62,7 +66,8 @@ nlohmann::ordered_json documentOf(const CheckReport& report, const std::string& 
     }
     auto& problems = document["problems"] = nlohmann::ordered_json::array();
     for (const auto& p : report.problems) {
-        nlohmann::ordered_json problem {{"kind", p.kind}, {"value", p.value}, {"unit", p.unit}, {"fatal", p.fatal}, {"sentence", p.sentence}};
+        nlohmann::ordered_json problem {
+            {"kind", p.kind}, {"value", p.value}, {"unit", p.unit}, {"fatal", p.fatal}, {"sentence", p.sentence}};
         problem["channel"] = p.channel ? nlohmann::ordered_json(name(*p.channel)) : nlohmann::ordered_json();
         problems.push_back(problem);
     }
@@ -81,13 +86,15 @@ void print(const CheckReport& report, Terminal& terminal)
         }
         const bool settled = !c.settlingDb || *c.settlingDb < -60.0;
         rows.push_back({std::string(name(c.quantity)), c.unit, significant(c.rms), significant(c.peak),
-                        c.rms > 0.0 ? fixed(100.0 * std::abs(c.offset) / c.rms, 1) : "-", std::to_string(c.clipped), figure(c.snrDb, 0),
-                        worst, figure(c.repeatabilityDb, 0),
-                        !c.settlingDb ? "-" : settled ? "yes" : fixed(*c.settlingDb, 0), figure(c.driftPpm, 2),
-                        delayText(report, c)});
+                        c.rms > 0.0 ? fixed(100.0 * std::abs(c.offset) / c.rms, 1) : "-", std::to_string(c.clipped),
+                        figure(c.snrDb, 0), worst, figure(c.repeatabilityDb, 0),
+                        !c.settlingDb ? "-"
+                        : settled     ? "yes"
+                                      : fixed(*c.settlingDb, 0),
+                        figure(c.driftPpm, 2), delayText(report, c)});
     }
-    terminal.table({"channel", "unit", "rms", "peak", "DC %", "clipped", "SNR dB", "worst octave", "repeats dB", "settled",
-                    "drift ppm", "delay"},
+    terminal.table({"channel", "unit", "rms", "peak", "DC %", "clipped", "SNR dB", "worst octave", "repeats dB",
+                    "settled", "drift ppm", "delay"},
                    rows);
     if (!report.problems.empty())
         terminal.say("");
@@ -96,7 +103,7 @@ void print(const CheckReport& report, Terminal& terminal)
     terminal.say(report.fitForUse() ? report.verdict() : std::string("The take is not fit for use."));
 }
 
-} // namespace
+}  // namespace
 
 void addCheck(CLI::App& app, Terminal& terminal)
 {
@@ -118,4 +125,4 @@ void addCheck(CLI::App& app, Terminal& terminal)
     });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -119,7 +119,7 @@ void run(const CollectArguments& options, Terminal& terminal)
         terminal.answer = 1;
 }
 
-} // namespace
+}  // namespace
 
 void addCollect(CLI::App& app, Terminal& terminal)
 {
@@ -156,4 +156,4 @@ void addCollect(CLI::App& app, Terminal& terminal)
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -54,11 +54,15 @@ void printLevels(const Comparison& comparison, const std::string& unit, Terminal
             const auto kinds = k < channel.kindsByLevel.size() ? channel.kindsByLevel[k] : ErrorKinds {};
             rows.push_back({k == 0 ? std::string(name(channel.quantity)) : std::string(),
                             comparison.levels[k] > 0.0 ? significant(comparison.levels[k], 3) : "-", fixed(level.db, 1),
-                            decibelText(level.noiseFloorDb), misfitText(level.chi, comparison.noiseKnown), decibelText(kinds.linear),
-                            decibelText(kinds.odd), decibelText(kinds.even), kindOf(level, kinds)});
+                            decibelText(level.noiseFloorDb), misfitText(level.chi, comparison.noiseKnown),
+                            decibelText(kinds.linear), decibelText(kinds.odd), decibelText(kinds.even),
+                            kindOf(level, kinds)});
         }
-    terminal.table({"channel", unit + " rms", "error dB", "noise dB", "misfit", "excited dB", "odd dB", "even dB", "mostly"}, rows);
-    terminal.say("Excited, odd, even: the error on the lines that were played, and on the odd and even lines between them.");
+    terminal.table(
+        {"channel", unit + " rms", "error dB", "noise dB", "misfit", "excited dB", "odd dB", "even dB", "mostly"},
+        rows);
+    terminal.say(
+        "Excited, odd, even: the error on the lines that were played, and on the odd and even lines between them.");
 }
 
 /// Error over measurement in an octave, dB; empty where the channel holds little but noise.
@@ -84,13 +88,15 @@ void printSpectrum(const Comparison& comparison, Terminal& terminal)
     for (const auto& channel : comparison.channels)
         header.push_back(titleOf(channel) + " dB");
     Rows rows;
-    for (const double centre : {2.0, 4.0, 8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16000.0, 32000.0}) {
+    for (const double centre :
+         {2.0, 4.0, 8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16000.0, 32000.0}) {
         std::vector<std::string> row {significant(centre)};
         bool any = false;
         for (const auto& channel : comparison.channels) {
             const auto error = channel.spectrumByLevel.empty()
-                                 ? std::nullopt
-                                 : errorWithin(channel.spectrumByLevel.back(), centre / std::sqrt(2.0), centre * std::sqrt(2.0));
+                                   ? std::nullopt
+                                   : errorWithin(channel.spectrumByLevel.back(), centre / std::sqrt(2.0),
+                                                 centre * std::sqrt(2.0));
             any = any || error;
             row.push_back(decibelText(error));
         }
@@ -158,15 +164,18 @@ void run(const CompareArguments& options, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addCompare(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<CompareArguments>();
-    auto* verb = app.add_subcommand("compare", "Where a model and a take part, by how much, and in which way")->group(step::fit);
-    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")->required();
+    auto* verb =
+        app.add_subcommand("compare", "Where a model and a take part, by how much, and in which way")->group(step::fit);
+    verb->add_option("TAKE", o->take,
+                     "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")
+        ->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

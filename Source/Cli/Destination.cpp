@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why)
 {
-    throw Error(Error::Kind::input, "'" + path + "' cannot be written (" + why + "); choose a folder that you may write to.");
+    throw Error(Error::Kind::input,
+                "'" + path + "' cannot be written (" + why + "); choose a folder that you may write to.");
 }
 
 bool mayWriteTo(const fs::path& folder)
@@ -46,7 +47,7 @@ void requireWritable(const std::string& path, fs::path folder)
         refuse(path, "there is no permission to write to '" + folder.string() + "'");
 }
 
-} // namespace
+}  // namespace
 
 void requireFilePlace(const std::string& file)
 {
@@ -68,8 +69,9 @@ void requireFolderPlace(const std::string& folder)
 std::string endingOf(const std::string& path)
 {
     auto text = fs::path(path).extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -7,10 +7,11 @@ namespace excursion::cli {
 
 /// Asked before long work, so that nobody waits for minutes to learn that the result has no place.
 /// Both throw Error (input) and create nothing.
-void requireFilePlace(const std::string& file);       ///< a file can be written there
-void requireFolderPlace(const std::string& folder);   ///< it is a folder that files can be written to, or can become one
+void requireFilePlace(const std::string& file);  ///< a file can be written there
+/// it is a folder that files can be written to, or can become one
+void requireFolderPlace(const std::string& folder);
 
 /// What a file's name ends in, with the dot and in lower case: ".csv"; empty without one.
 std::string endingOf(const std::string& path);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

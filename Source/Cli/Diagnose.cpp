@@ -33,7 +33,8 @@ Diagnosis diagnosisOf(const Model& model, const OpenTake& open, Terminal& termin
                           : diagnose(model, recordFor(model, open), {}, terminal.progress());
 }
 
-/// The error of the model as it is in the first row, then that with each candidate: as a refit confirmed it, else as predicted.
+/// The error of the model as it is in the first row, then that with each candidate: as a refit confirmed it, else as
+/// predicted.
 void printRanking(const Diagnosis& diagnosis, Terminal& terminal)
 {
     std::vector<std::string> header {"effect", "confidence"};
@@ -93,17 +94,19 @@ void run(const DiagnoseArguments& options, Terminal& terminal)
         terminal.answer = 1;
 }
 
-} // namespace
+}  // namespace
 
 void addDiagnose(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<DiagnoseArguments>();
-    auto* verb = app.add_subcommand("diagnose", "Name the physical effect that a model is missing")->group(step::diagnose);
+    auto* verb =
+        app.add_subcommand("diagnose", "Name the physical effect that a model is missing")->group(step::diagnose);
     verb->add_option("TAKE", o->take, "the take or impedance that the model was fitted to")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
-    verb->footer("Verdicts: missing-effect, complete, unknown-effect (something is left that no effect of the catalogue\n"
-                 "explains), bad-measurement. Exit code 1: bad-measurement.");
+    verb->footer(
+        "Verdicts: missing-effect, complete, unknown-effect (something is left that no effect of the catalogue\n"
+        "explains), bad-measurement. Exit code 1: bad-measurement.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

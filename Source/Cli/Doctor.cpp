@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 /// One thing that Excursion is made of, or can use.
 struct Finding {
     std::string id, what;
-    std::optional<std::string> found;   ///< which, or where; empty: missing
-    std::string advice;                 ///< what to do where it is missing, and what for
+    std::optional<std::string> found;  ///< which, or where; empty: missing
+    std::string advice;                ///< what to do where it is missing, and what for
 };
 
 std::vector<fs::path> foldersOf(const char* variable, char separator)
@@ -83,7 +83,7 @@ std::optional<std::string> sharedLibrary(const std::string& name)
 std::optional<std::string> soundCards()
 {
     std::string cards, line;
-    std::ifstream file("/proc/asound/cards");   // " 0 [PCH            ]: HDA-Intel - HDA Intel PCH"
+    std::ifstream file("/proc/asound/cards");  // " 0 [PCH            ]: HDA-Intel - HDA Intel PCH"
     while (std::getline(file, line)) {
         const auto open = line.find('['), close = line.find(']');
         if (open == std::string::npos || close == std::string::npos || line.find_first_not_of(' ') > open)
@@ -101,8 +101,10 @@ std::optional<std::string> soundCards()
 std::string processor()
 {
 #if defined(__x86_64__) && defined(__GNUC__)
-    const bool today = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
-    const std::string kind = today ? "x86-64 with AVX2 and FMA, which are used" : "x86-64 without AVX2: what runs all the time is slower";
+    const bool today = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+                       && __builtin_cpu_supports("bmi2");
+    const std::string kind = today ? "x86-64 with AVX2 and FMA, which are used"
+                                   : "x86-64 without AVX2: what runs all the time is slower";
 #else
     const std::string kind = "no kernels of its own";
 #endif
@@ -152,10 +154,12 @@ std::vector<Finding> examine()
         {"built-with", "built with", builtWith(), ""},
         {"processor", "processor", processor(), ""},
         {"presets", "factory presets", presets(), "they come with cmake --install; in the sources they are in Presets"},
-        {"gnuplot", "gnuplot", program({"gnuplot", "gnuplot.exe"}), "for the plots of reports: apt install gnuplot-nox"},
+        {"gnuplot", "gnuplot", program({"gnuplot", "gnuplot.exe"}),
+         "for the plots of reports: apt install gnuplot-nox"},
         {"alsa", "ALSA", sharedLibrary("libasound.so.2"), "for measuring in the app: apt install libasound2"},
         {"sound-cards", "sound cards", soundCards(), "for measuring in the app: connect an interface with two inputs"},
-        {"jack", "JACK", sharedLibrary("libjack.so.0"), "optional, for measuring in the app: apt install libjack-jackd2-0"},
+        {"jack", "JACK", sharedLibrary("libjack.so.0"),
+         "optional, for measuring in the app: apt install libjack-jackd2-0"},
         {"app", "app", program({"excursion-app"}), plugin},
         {"vst3", "VST3 plugin", firstOf(pluginFolders("vst3", nullptr), {"Excursion.vst3"}), plugin},
         {"lv2", "LV2 plugin", firstOf(pluginFolders("lv2", "LV2_PATH"), {"Excursion.lv2"}), plugin},
@@ -172,7 +176,9 @@ void run(Terminal& terminal)
     std::vector<std::vector<std::string>> rows;
     for (const auto& finding : examine()) {
         rows.push_back({finding.what, finding.found.value_or("missing: " + finding.advice)});
-        document["findings"].push_back({{"id", finding.id}, {"what", finding.what}, {"present", finding.found.has_value()},
+        document["findings"].push_back({{"id", finding.id},
+                                        {"what", finding.what},
+                                        {"present", finding.found.has_value()},
                                         {"found", finding.found ? nlohmann::ordered_json(*finding.found) : nullptr},
                                         {"advice", finding.found ? nullptr : nlohmann::ordered_json(finding.advice)}});
     }
@@ -180,14 +186,15 @@ void run(Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addDoctor(CLI::App& app, Terminal& terminal)
 {
-    auto* verb = app.add_subcommand("doctor", "What of Excursion and of what it can use is there, and what to install for the rest")
+    auto* verb = app.add_subcommand(
+                        "doctor", "What of Excursion and of what it can use is there, and what to install for the rest")
                      ->group(step::around);
     verb->footer("What is missing is no failure: the exit code is 0.");
     verb->callback([&terminal] { run(terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -15,7 +15,8 @@ namespace {
 std::string parametersText(const Effect& effect, const std::vector<Parameter>& parameters)
 {
     if (effect.law())
-        return std::to_string(parameters.size()) + " coefficients in " + parameters.front().unit + ", more where the data asks for them";
+        return std::to_string(parameters.size()) + " coefficients in " + parameters.front().unit
+               + ", more where the data asks for them";
     std::string text;
     for (const auto& p : parameters)
         text += (text.empty() ? "" : ", ") + p.name + (p.unit == "1" ? "" : " in " + p.unit);
@@ -24,7 +25,8 @@ std::string parametersText(const Effect& effect, const std::vector<Parameter>& p
 
 std::string lawText(const LawInfo& law)
 {
-    return law.name + " in " + law.unit + " over " + law.argument + " in " + law.argumentUnit + ", " + law.base + " at rest";
+    return law.name + " in " + law.unit + " over " + law.argument + " in " + law.argumentUnit + ", " + law.base
+           + " at rest";
 }
 
 void print(const Effect& effect, Terminal& terminal)
@@ -33,7 +35,8 @@ void print(const Effect& effect, Terminal& terminal)
     const auto line = [&](const std::string& label, const std::string& text) {
         terminal.say(wrapped("    " + label + std::string(indent - 4 - label.size(), ' ') + text, indent));
     };
-    terminal.say(effect.id() + std::string(effect.id().size() < 22 ? 22 - effect.id().size() : 1, ' ') + effect.title());
+    terminal.say(effect.id() + std::string(effect.id().size() < 22 ? 22 - effect.id().size() : 1, ' ')
+                 + effect.title());
     line("what it is", effect.physics());
     line("acts", std::string(effect.electrical() ? "on the coil, so it needs a voltage and a current"
                              : effect.felt()     ? "on the cone, with or without a coil"
@@ -52,10 +55,15 @@ nlohmann::ordered_json json(const Effect& effect)
     nlohmann::ordered_json object {{"id", effect.id()},
                                    {"title", effect.title()},
                                    {"physics", effect.physics()},
-                                   {"domain", effect.electrical() ? "electrical" : effect.felt() ? "mechanical" : "acoustical"},
+                                   {"domain", effect.electrical() ? "electrical"
+                                              : effect.felt()     ? "mechanical"
+                                                                  : "acoustical"},
                                    {"linear", effect.linear()}};
     if (const auto law = effect.law())
-        object["law"] = {{"name", law->name}, {"unit", law->unit}, {"argument", law->argument}, {"argumentUnit", law->argumentUnit},
+        object["law"] = {{"name", law->name},
+                         {"unit", law->unit},
+                         {"argument", law->argument},
+                         {"argumentUnit", law->argumentUnit},
                          {"base", law->base}};
     else
         object["law"] = nullptr;
@@ -83,15 +91,16 @@ void run(const std::vector<std::string>& wanted, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addEffects(CLI::App& app, Terminal& terminal)
 {
     auto ids = std::make_shared<std::vector<std::string>>();
-    auto* verb = app.add_subcommand("effects", "The physical effects that Excursion knows: what they are, and what betrays them")
+    auto* verb = app.add_subcommand("effects",
+                                    "The physical effects that Excursion knows: what they are, and what betrays them")
                      ->group(step::diagnose);
     verb->add_option("EFFECT", *ids, "only these");
     verb->callback([ids, &terminal] { run(*ids, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -19,14 +19,14 @@ namespace {
 struct ExciteArguments {
     ExcitationPlanOptions plan;
     std::vector<double> band {20.0, 20000.0};
-    double fullScale = 0.0;   ///< V; 0: chosen
+    double fullScale = 0.0;  ///< V; 0: chosen
     std::string grid = "odd-random", shape = "pink", out;
 };
 
 void run(ExciteArguments options, Terminal& terminal)
 {
     auto& plan = options.plan;
-    plan.multisine.grid = gridNamed(options.grid).value();     // CLI11 let only known names pass
+    plan.multisine.grid = gridNamed(options.grid).value();  // CLI11 let only known names pass
     plan.multisine.shape = shapeNamed(options.shape).value();
     plan.multisine.bandLow = options.band[0];
     plan.multisine.bandHigh = options.band[1];
@@ -35,7 +35,8 @@ void run(ExciteArguments options, Terminal& terminal)
     const double peak = peakOf(voltage.samples);
     if (options.fullScale > 0 && options.fullScale < peak)
         throw Error(Error::Kind::usage, "The excitation peaks at " + fixed(peak, 2) + " V, above the full scale of "
-                                            + fixed(options.fullScale, 2) + " V; raise --full-scale or lower --levels.");
+                                            + fixed(options.fullScale, 2)
+                                            + " V; raise --full-scale or lower --levels.");
     if (options.fullScale > 0)
         voltage.fullScale = options.fullScale;
     writePlan(take, options.out);
@@ -51,8 +52,9 @@ void run(ExciteArguments options, Terminal& terminal)
                             fixed(static_cast<double>(i) * seconds / static_cast<double>(e.levels.size()), 2)});
         return rows;
     }());
-    terminal.say(std::to_string(e.lines.size()) + " lines, " + fixed(take.sampleRate / e.period, 3) + " Hz apart at the least. A sample of 1.0 stands for "
-                 + significant(voltage.fullScale) + " V at the loudspeaker: set the amplifier's gain so.");
+    terminal.say(std::to_string(e.lines.size()) + " lines, " + fixed(take.sampleRate / e.period, 3)
+                 + " Hz apart at the least. A sample of 1.0 stands for " + significant(voltage.fullScale)
+                 + " V at the loudspeaker: set the amplifier's gain so.");
     terminal.document({{"format", "excursion-excite"},
                        {"version", 1},
                        {"folder", options.out},
@@ -67,7 +69,7 @@ void run(ExciteArguments options, Terminal& terminal)
                        {"detectionLines", oddDetectionLines(e.lines).size()}});
 }
 
-} // namespace
+}  // namespace
 
 void addExcite(CLI::App& app, Terminal& terminal)
 {
@@ -76,20 +78,30 @@ void addExcite(CLI::App& app, Terminal& terminal)
     verb->add_option("--out", o->out, "folder for excitation.wav and plan.json")->required()->type_name("DIR");
     auto& m = o->plan.multisine;
     verb->add_option("--levels", o->plan.levels, "V rms, quiet to loud")->delimiter(',')->capture_default_str();
-    verb->add_option("--realizations", o->plan.realizations, "draws of the phases at each level")->capture_default_str();
+    verb->add_option("--realizations", o->plan.realizations, "draws of the phases at each level")
+        ->capture_default_str();
     verb->add_option("--periods", o->plan.periods, "periods to be used in each realization")->capture_default_str();
-    verb->add_option("--settle", o->plan.settlePeriods, "periods before them, for the loudspeaker to settle")->capture_default_str();
+    verb->add_option("--settle", o->plan.settlePeriods, "periods before them, for the loudspeaker to settle")
+        ->capture_default_str();
     verb->add_option("--period", m.period, "samples of one period")->capture_default_str();
     verb->add_option("--rate", m.sampleRate, "sample rate in Hz")->capture_default_str();
-    verb->add_option("--band", o->band, "lowest and highest frequency in Hz")->expected(2)->delimiter(',')->capture_default_str();
-    verb->add_option("--grid", o->grid, "which lines are excited; odd-random shows even and odd distortion between them")
+    verb->add_option("--band", o->band, "lowest and highest frequency in Hz")
+        ->expected(2)
+        ->delimiter(',')
+        ->capture_default_str();
+    verb->add_option("--grid", o->grid,
+                     "which lines are excited; odd-random shows even and odd distortion between them")
         ->check(CLI::IsMember({"full", "odd", "odd-odd", "odd-random", "R10", "R20", "R40", "R80"}))
         ->capture_default_str();
-    verb->add_option("--shape", o->shape, "amplitude over frequency")->check(CLI::IsMember({"white", "pink", "red"}))->capture_default_str();
+    verb->add_option("--shape", o->shape, "amplitude over frequency")
+        ->check(CLI::IsMember({"white", "pink", "red"}))
+        ->capture_default_str();
     verb->add_option("--group", m.groupSize, "odd-random: odd lines in a group that misses one")->capture_default_str();
-    verb->add_option("--seed", m.seed, "of the lines and phases; the same seed gives the same bytes")->capture_default_str();
-    verb->add_option("--full-scale", o->fullScale, "V at the loudspeaker for a sample of 1.0 (chosen when not given)")->check(CLI::PositiveNumber);
+    verb->add_option("--seed", m.seed, "of the lines and phases; the same seed gives the same bytes")
+        ->capture_default_str();
+    verb->add_option("--full-scale", o->fullScale, "V at the loudspeaker for a sample of 1.0 (chosen when not given)")
+        ->check(CLI::PositiveNumber);
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

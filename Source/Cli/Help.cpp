@@ -35,7 +35,7 @@ std::string joined(const std::vector<std::string>& words)
     return text;
 }
 
-} // namespace
+}  // namespace
 
 ValueType valueTypeOf(const CLI::Option& option)
 {
@@ -76,7 +76,9 @@ std::string Help::make_subcommand(const CLI::App* verb) const
 {
     constexpr std::size_t column = 14;
     const auto name = "  " + verb->get_name();
-    return wrapped(name + std::string(column - std::min(column, name.size()), ' ') + verb->get_description(), column, lineWidth) + "\n";
+    return wrapped(name + std::string(column - std::min(column, name.size()), ' ') + verb->get_description(), column,
+                   lineWidth)
+           + "\n";
 }
 
 std::string Help::make_option_opts(const CLI::Option* option) const
@@ -94,4 +96,4 @@ std::string Help::make_option_desc(const CLI::Option* option) const
     return wrapped(text, 0, lineWidth - get_column_width());
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

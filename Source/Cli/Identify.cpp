@@ -75,15 +75,18 @@ void print(const OrderSweep& sweep, Terminal& terminal)
     std::vector<std::vector<std::string>> rows;
     for (const auto& e : sweep.entries)
         rows.push_back({std::to_string(e.order), fixed(e.found.errorDb, 1), fixed(decibelsOf(e.found.cost), 1),
-                        significant(e.mdl, 6), e.validationDb ? fixed(*e.validationDb, 1) : "-", e.found.stable ? "yes" : "no", e.found.start});
+                        significant(e.mdl, 6), e.validationDb ? fixed(*e.validationDb, 1) : "-",
+                        e.found.stable ? "yes" : "no", e.found.start});
     terminal.table({"order", "error dB", "weighted dB", "MDL", "validation dB", "stable", "from"}, rows);
 }
 
 /// A state-space model of commensurate fractional order.
-void runFractional(const IdentifyArguments& options, const OpenResponse& open, const FrequencyData& data, Terminal& terminal)
+void runFractional(const IdentifyArguments& options, const OpenResponse& open, const FrequencyData& data,
+                   Terminal& terminal)
 {
     if (options.discrete || options.unrefined || options.unstable || !options.validation.empty())
-        throw Error(Error::Kind::usage, "Fractional models are refined, stable and of continuous time: leave --discrete, --subspace, --allow-unstable and "
+        throw Error(Error::Kind::usage, "Fractional models are refined, stable and of continuous time: leave "
+                                        "--discrete, --subspace, --allow-unstable and "
                                         "--validation out with --alpha.");
     FractionalOptions fractional;
     fractional.alpha = alphaFrom(options.alpha);
@@ -91,7 +94,8 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     const auto sweep = sweepFractional(data, ordersFrom(options.orders), fractional, terminal.progress());
     const auto& chosen = sweep.entries[sweep.chosen];
     const auto& found = chosen.found;
-    const NamedFractionalStateSpace named {std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, found.model};
+    const NamedFractionalStateSpace named {
+        std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, found.model};
     if (!options.out.empty())
         writeFractionalStateSpace(named, options.out);
 
@@ -99,8 +103,9 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     std::vector<std::vector<std::string>> rows;
     Json orders = Json::array();
     for (const auto& e : sweep.entries) {
-        rows.push_back({std::to_string(e.order), withError(e.found.model.alpha, e.found.alphaDeviation), fixed(e.found.errorDb, 1),
-                        fixed(decibelsOf(e.found.cost), 1), significant(e.mdl, 6), fixed(e.found.sectorMargin, 3), e.found.start});
+        rows.push_back({std::to_string(e.order), withError(e.found.model.alpha, e.found.alphaDeviation),
+                        fixed(e.found.errorDb, 1), fixed(decibelsOf(e.found.cost), 1), significant(e.mdl, 6),
+                        fixed(e.found.sectorMargin, 3), e.found.start});
         Json curve = Json::array();
         for (const auto& point : e.found.curve)
             curve.push_back(Json::array({point.alpha, point.likelihood}));
@@ -127,7 +132,8 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     if (!options.out.empty())
         terminal.say("Wrote " + options.out + ".");
 
-    Json document {{"format", "excursion-fractional-identification"}, {"version", 1}, {"source", options.response.path}};
+    Json document {
+        {"format", "excursion-fractional-identification"}, {"version", 1}, {"source", options.response.path}};
     document["lines"] = data.lines();
     document["orders"] = std::move(orders);
     document["chosen"] = chosen.order;
@@ -144,15 +150,22 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
 void runMixed(const IdentifyArguments& options, const OpenResponse& open, const FrequencyData& data, Terminal& terminal)
 {
     if (open.output != "voltage" || open.input != "current")
-        throw Error(Error::Kind::usage, "--mixed fits an impedance: leave --output and --input out, or make them voltage and current.");
+        throw Error(Error::Kind::usage,
+                    "--mixed fits an impedance: leave --output and --input out, or make them voltage and current.");
     if (!options.out.empty())
-        throw Error(Error::Kind::usage, "A mixed-order impedance has no file of its own; take its parameters from --json and leave --out out.");
+        throw Error(
+            Error::Kind::usage,
+            "A mixed-order impedance has no file of its own; take its parameters from --json and leave --out out.");
     MixedImpedanceOptions mixed;
     mixed.alpha = alphaFrom(options.alpha);
     const auto fit = fitMixedImpedance(data, mixed);
     static constexpr std::array<std::array<const char*, 3>, MixedImpedance::parameters> names {
-        {{"resistance", "R", "ohm"}, {"semiInductance", "L", "ohm s^alpha"}, {"alpha", "alpha", "1"}, {"motional", "K = Bl^2/m", "ohm/s"},
-         {"resonance", "f0", "Hz"}, {"quality", "Q", "1"}}};
+        {{"resistance", "R", "ohm"},
+         {"semiInductance", "L", "ohm s^alpha"},
+         {"alpha", "alpha", "1"},
+         {"motional", "K = Bl^2/m", "ohm/s"},
+         {"resonance", "f0", "Hz"},
+         {"quality", "Q", "1"}}};
     Json document {{"format", "excursion-mixed-impedance"}, {"version", 1}, {"source", options.response.path}};
     document["lines"] = data.lines();
     std::vector<std::vector<std::string>> rows;
@@ -165,7 +178,8 @@ void runMixed(const IdentifyArguments& options, const OpenResponse& open, const 
     document["likelihood"] = numberOrNull(fit.likelihood);
     document["converged"] = fit.converged;
     document["stopped"] = fit.reason;
-    terminal.say("impedance, " + std::to_string(data.lines()) + " lines: R + L s^alpha + K s/(s^2 + w0/Q s + w0^2), error " + fixed(fit.errorDb, 1) + " dB");
+    terminal.say("impedance, " + std::to_string(data.lines())
+                 + " lines: R + L s^alpha + K s/(s^2 + w0/Q s + w0^2), error " + fixed(fit.errorDb, 1) + " dB");
     terminal.table({"parameter", "value", "standard error", "unit"}, rows);
     terminal.document(document);
     if (!fit.converged)
@@ -176,10 +190,15 @@ void runMotorCone(const IdentifyArguments& options, Terminal& terminal)
 {
     if (options.orders.size() != 1)
         throw Error(Error::Kind::usage, "Give one --order with --cone, that of the motor.");
-    if (!options.alpha.empty() || !options.validation.empty() || !options.response.output.empty() || options.discrete || options.unrefined || options.unstable)
-        throw Error(Error::Kind::usage, "Motor and cone are refined, stable and of continuous time, and explain displacement and pressure: leave --alpha, "
-                                        "--validation, --output, --discrete, --subspace and --allow-unstable out with --cone.");
-    identifyMotorAndCone({options.response, options.orders.front(), *options.cone, options.delay, options.band, options.quick, options.out}, terminal);
+    if (!options.alpha.empty() || !options.validation.empty() || !options.response.output.empty() || options.discrete
+        || options.unrefined || options.unstable)
+        throw Error(Error::Kind::usage,
+                    "Motor and cone are refined, stable and of continuous time, and explain displacement and pressure: "
+                    "leave --alpha, "
+                    "--validation, --output, --discrete, --subspace and --allow-unstable out with --cone.");
+    identifyMotorAndCone({options.response, options.orders.front(), *options.cone, options.delay, options.band,
+                          options.quick, options.out},
+                         terminal);
 }
 
 void run(const IdentifyArguments& options, Terminal& terminal)
@@ -197,7 +216,7 @@ void run(const IdentifyArguments& options, Terminal& terminal)
     if (options.delay)
         throw Error(Error::Kind::usage, "--delay is that of the sound; give --cone with it.");
     auto response = options.response;
-    if (options.mixed && response.output.empty() && response.input.empty()) {   // it is one of impedances
+    if (options.mixed && response.output.empty() && response.input.empty()) {  // it is one of impedances
         response.output = "voltage";
         response.input = "current";
     }
@@ -224,12 +243,14 @@ void run(const IdentifyArguments& options, Terminal& terminal)
     sweeping.identify.refinement.stable = !options.unstable;
     const auto sweep = sweepOrders(data, sweeping, validation ? &*validation : nullptr, terminal.progress());
     const auto& chosen = sweep.entries[sweep.chosen];
-    NamedStateSpace named {std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, chosen.found.model};
+    NamedStateSpace named {
+        std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, chosen.found.model};
     if (!options.out.empty())
         writeStateSpace(named, options.out);
 
     terminal.say(open.output + " / " + open.input + ", " + std::to_string(data.lines()) + " lines, "
-                 + (options.discrete ? "discrete time at " + significant(open.sampleRate, 6) + " Hz" : std::string("continuous time")));
+                 + (options.discrete ? "discrete time at " + significant(open.sampleRate, 6) + " Hz"
+                                     : std::string("continuous time")));
     print(sweep, terminal);
     if (sweep.entries.size() > 1)
         terminal.say(wrapped(sweep.sentence));
@@ -253,27 +274,43 @@ void run(const IdentifyArguments& options, Terminal& terminal)
         terminal.answer = 1;
 }
 
-} // namespace
+}  // namespace
 
 void addIdentify(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<IdentifyArguments>();
-    auto* verb = app.add_subcommand("identify", "Identify a linear state-space model of a frequency response, of a given or of the best order")
+    auto* verb = app.add_subcommand(
+                        "identify",
+                        "Identify a linear state-space model of a frequency response, of a given or of the best order")
                      ->group(step::fit);
-    verb->add_option("TAKE", o->response.path, "a take, an impedance or another response (.zma, .frd, .csv, .txt), or the .json of excursion bla")->required();
-    verb->add_option("--order", o->orders, "the order, or several separated by commas to choose from; by default the best of 1 to 8")->delimiter(',')->check(CLI::Range(0, 400));
-    verb->add_option("--alpha", o->alpha, "a model of fractional order, in s^alpha: alpha, or free to find it with its standard error");
-    verb->add_flag("--mixed", o->mixed, "with --alpha: an impedance R + L s^alpha with one resonance, in place of a state-space model");
-    verb->add_option("--cone", o->cone, "tell motor and cone apart, by displacement and pressure: the cone's order; --order is the motor's")
+    verb->add_option("TAKE", o->response.path,
+                     "a take, an impedance or another response (.zma, .frd, .csv, .txt), or the .json of excursion bla")
+        ->required();
+    verb->add_option("--order", o->orders,
+                     "the order, or several separated by commas to choose from; by default the best of 1 to 8")
+        ->delimiter(',')
         ->check(CLI::Range(0, 400));
-    verb->add_option("--delay", o->delay, "with --cone: how long the sound is on its way, s; by default that of the microphone's distance")
+    verb->add_option("--alpha", o->alpha,
+                     "a model of fractional order, in s^alpha: alpha, or free to find it with its standard error");
+    verb->add_flag("--mixed", o->mixed,
+                   "with --alpha: an impedance R + L s^alpha with one resonance, in place of a state-space model");
+    verb->add_option(
+            "--cone", o->cone,
+            "tell motor and cone apart, by displacement and pressure: the cone's order; --order is the motor's")
+        ->check(CLI::Range(0, 400));
+    verb->add_option("--delay", o->delay,
+                     "with --cone: how long the sound is on its way, s; by default that of the microphone's distance")
         ->check(CLI::Range(0.0, 1.0));
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
-    verb->add_option("--input", o->response.input, "the channel it is explained by; by default the voltage or force, of an impedance the current");
-    verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
+    verb->add_option("--input", o->response.input,
+                     "the channel it is explained by; by default the voltage or force, of an impedance the current");
+    verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")
+        ->check(CLI::NonNegativeNumber);
     verb->add_option("--band", o->band, "lowest and highest frequency to use, Hz")->delimiter(',')->expected(2);
-    verb->add_option("--validation", o->validation, "another take or response, which then chooses the order")->type_name("TAKE");
-    verb->add_flag("--discrete", o->discrete, "a model of discrete time at the take's sample rate, not of continuous time");
+    verb->add_option("--validation", o->validation, "another take or response, which then chooses the order")
+        ->type_name("TAKE");
+    verb->add_flag("--discrete", o->discrete,
+                   "a model of discrete time at the take's sample rate, not of continuous time");
     verb->add_flag("--subspace", o->unrefined, "by the subspace method alone, without refinement");
     verb->add_flag("--quick", o->quick, "fewer starts");
     verb->add_flag("--allow-unstable", o->unstable, "do not keep the poles stable");
@@ -282,4 +319,4 @@ void addIdentify(CLI::App& app, Terminal& terminal)
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

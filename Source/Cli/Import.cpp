@@ -21,7 +21,7 @@ namespace {
 
 struct ImportArguments {
     std::vector<std::string> files;
-    std::string file, out, name, as;   ///< the first of the files
+    std::string file, out, name, as;  ///< the first of the files
     RecordingArguments recording;
     std::vector<std::string> map;
     double rate = 0.0;
@@ -32,7 +32,8 @@ struct ImportArguments {
 bool endsIn(const std::filesystem::path& path, const std::string& extension)
 {
     auto text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text == extension;
 }
 
@@ -44,8 +45,10 @@ ImportOptions importOptions(const ImportArguments& options)
     if (!options.as.empty()) {
         result.as = responseNamed(options.as);
         if (!result.as || !result.as->input)
-            throw Error(Error::Kind::usage, "There is no response \"" + options.as + "\" for --as; give impedance, admittance, response (sound pressure over "
-                                                "voltage) or a ratio such as displacement/voltage.");
+            throw Error(Error::Kind::usage,
+                        "There is no response \"" + options.as
+                            + "\" for --as; give impedance, admittance, response (sound pressure over "
+                              "voltage) or a ratio such as displacement/voltage.");
     }
     result.minimumPhase = options.minimumPhase;
     result.sampleRate = options.rate;
@@ -64,15 +67,26 @@ void describe(const Measurement& take, Terminal& terminal, const std::string& ou
         double peak = 0.0;
         for (const double x : channel.samples)
             peak = std::max(peak, std::abs(x));
-        rows.push_back({std::string(name(channel.quantity)), channel.unit, significant(peak), significant(channel.fullScale)});
-        channels.push_back({{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"peak", peak}, {"fullScale", channel.fullScale}});
+        rows.push_back(
+            {std::string(name(channel.quantity)), channel.unit, significant(peak), significant(channel.fullScale)});
+        channels.push_back({{"quantity", name(channel.quantity)},
+                            {"unit", channel.unit},
+                            {"peak", peak},
+                            {"fullScale", channel.fullScale}});
     }
     for (const auto& remark : take.remarks)
         terminal.say(wrapped("remark  " + remark, 8));
-    terminal.say("Wrote the take " + out + ": " + std::to_string(take.length()) + " samples at " + significant(take.sampleRate, 8) + " Hz.");
+    terminal.say("Wrote the take " + out + ": " + std::to_string(take.length()) + " samples at "
+                 + significant(take.sampleRate, 8) + " Hz.");
     terminal.table({"channel", "unit", "peak", "full scale"}, rows);
-    terminal.document({{"format", "excursion-import"}, {"version", 1}, {"take", out}, {"kind", "samples"},
-                       {"sampleRate", take.sampleRate}, {"samples", take.length()}, {"channels", channels}, {"remarks", take.remarks}});
+    terminal.document({{"format", "excursion-import"},
+                       {"version", 1},
+                       {"take", out},
+                       {"kind", "samples"},
+                       {"sampleRate", take.sampleRate},
+                       {"samples", take.length()},
+                       {"channels", channels},
+                       {"remarks", take.remarks}});
 }
 
 /// A frequency response is a take as one CSV of spectra.
@@ -87,15 +101,21 @@ void importSpectra(const Spectra& spectra, const std::string& out, Terminal& ter
     } else if (endsIn(out, ".csv")) {
         writeCsv(spectra, out);
     } else {
-        throw Error(Error::Kind::usage, "The file is a frequency response, which is written as one file; give --out a name that ends in .csv"
-                                            + std::string(voltage && current ? " or .zma." : "."));
+        throw Error(
+            Error::Kind::usage,
+            "The file is a frequency response, which is written as one file; give --out a name that ends in .csv"
+                + std::string(voltage && current ? " or .zma." : "."));
     }
     for (const auto& remark : spectra.remarks)
         terminal.say(wrapped("remark  " + remark, 8));
     terminal.say("Wrote the spectra " + out + ": " + std::to_string(spectra.frequency.size()) + " frequencies from "
                  + significant(spectra.frequency.front()) + " to " + significant(spectra.frequency.back()) + " Hz.");
-    terminal.document({{"format", "excursion-import"}, {"version", 1}, {"take", out}, {"kind", "spectra"},
-                       {"frequencies", spectra.frequency.size()}, {"remarks", spectra.remarks}});
+    terminal.document({{"format", "excursion-import"},
+                       {"version", 1},
+                       {"take", out},
+                       {"kind", "spectra"},
+                       {"frequencies", spectra.frequency.size()},
+                       {"remarks", spectra.remarks}});
 }
 
 Take read(const ImportArguments& options)
@@ -103,10 +123,13 @@ Take read(const ImportArguments& options)
     if (endsIn(options.file, ".mat"))
         return importMat(options.file, importOptions(options));
     std::error_code ignored;
-    if (!endsIn(options.file, ".json") && !endsIn(options.file, ".wav") && std::filesystem::is_regular_file(options.file, ignored))
+    if (!endsIn(options.file, ".json") && !endsIn(options.file, ".wav")
+        && std::filesystem::is_regular_file(options.file, ignored))
         return importText(options.file, importOptions(options));
-    if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean || !options.as.empty() || options.minimumPhase)
-        throw Error(Error::Kind::usage, "--map, --as, --rate, --from, --to, --remove-mean and --minimum-phase are for text and MAT files.");
+    if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean
+        || !options.as.empty() || options.minimumPhase)
+        throw Error(Error::Kind::usage,
+                    "--map, --as, --rate, --from, --to, --remove-mean and --minimum-phase are for text and MAT files.");
     return readTake(options.file);
 }
 
@@ -121,13 +144,16 @@ void run(ImportArguments options, Terminal& terminal)
         options.recording.from = options.from;
         options.recording.to = options.to;
         if (options.rate > 0 || options.removeMean || !options.as.empty() || options.minimumPhase)
-            throw Error(Error::Kind::usage, "--rate, --remove-mean, --as and --minimum-phase are for text and MAT files; a recording knows its rate.");
+            throw Error(Error::Kind::usage, "--rate, --remove-mean, --as and --minimum-phase are for text and MAT "
+                                            "files; a recording knows its rate.");
         return importRecordings(options.recording, terminal);
     }
     if (options.files.size() > 1)
         throw Error(Error::Kind::usage, "Only recordings can be several files; '" + options.file + "' is none.");
     if (options.recording.given())
-        throw Error(Error::Kind::usage, "--plan, --gain and --calibration are for recordings (WAV, AIFF, CAF or FLAC); '" + options.file + "' is none.");
+        throw Error(Error::Kind::usage,
+                    "--plan, --gain and --calibration are for recordings (WAV, AIFF, CAF or FLAC); '" + options.file
+                        + "' is none.");
     auto take = read(options);
     if (auto* spectra = std::get_if<Spectra>(&take))
         return importSpectra(*spectra, options.out, terminal);
@@ -141,23 +167,36 @@ void run(ImportArguments options, Terminal& terminal)
     describe(measurement, terminal, options.out);
 }
 
-} // namespace
+}  // namespace
 
 void addImport(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ImportArguments>();
-    auto* verb = app.add_subcommand("import", "Turn recordings or a file of another program (CSV, text, MAT, ZMA, FRD) into a take, or a take into a CSV")
+    auto* verb = app.add_subcommand("import", "Turn recordings or a file of another program (CSV, text, MAT, ZMA, FRD) "
+                                              "into a take, or a take into a CSV")
                      ->group(step::measure);
-    verb->add_option("FILE", o->files, "recordings of one --plan (.wav, .aif, .caf, .flac), or text (.csv, .txt, .zma, .frd, ...), .mat, or a take")->required();
-    verb->add_option("--out", o->out, "folder of the new take, or a .csv; of an impedance a .zma, too")->required()->type_name("PLACE");
+    verb->add_option("FILE", o->files,
+                     "recordings of one --plan (.wav, .aif, .caf, .flac), or text (.csv, .txt, .zma, .frd, ...), .mat, "
+                     "or a take")
+        ->required();
+    verb->add_option("--out", o->out, "folder of the new take, or a .csv; of an impedance a .zma, too")
+        ->required()
+        ->type_name("PLACE");
     addRecordingOptions(*verb, o->recording);
     verb->add_option("--map", o->map,
-                     "of a recording CHANNEL=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example 1=voltage:16, 2=current:-500mA (negative: "
-                     "inverted), 3=loopback (the interface's output, straight into its input); channels are counted from 1 through all files, or FILE:CHANNEL. "
-                     "Of other files what a column is, told by its title or its number from 1: V1=force:V, 2=current:mA, 1=time:ms, 1=frequency, "
+                     "of a recording CHANNEL=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example "
+                     "1=voltage:16, 2=current:-500mA (negative: "
+                     "inverted), 3=loopback (the interface's output, straight into its input); channels are counted "
+                     "from 1 through all files, or FILE:CHANNEL. "
+                     "Of other files what a column is, told by its title or its number from 1: V1=force:V, "
+                     "2=current:mA, 1=time:ms, 1=frequency, "
                      "G_re=impedance.re, 3=displacement/voltage.magnitude:mm/V, 4=impedance.phase:rad. May be repeated")
-        ->expected(1)->take_all();
-    verb->add_option("--as", o->as, "what the response is where the file does not say it: impedance, response, displacement/voltage, ...")->type_name("RESPONSE");
+        ->expected(1)
+        ->take_all();
+    verb->add_option(
+            "--as", o->as,
+            "what the response is where the file does not say it: impedance, response, displacement/voltage, ...")
+        ->type_name("RESPONSE");
     verb->add_flag("--minimum-phase", o->minimumPhase, "compute the phase of a magnitude that has none");
     verb->add_option("--rate", o->rate, "sample rate in Hz, when the file has none")->check(CLI::PositiveNumber);
     verb->add_option("--from", o->from, "first sample to take, counted from 0");
@@ -167,4 +206,4 @@ void addImport(CLI::App& app, Terminal& terminal)
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

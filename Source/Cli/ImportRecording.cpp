@@ -45,13 +45,15 @@ std::string timeOf(const ImportedFile& file)
 {
     const auto& a = file.alignment;
     const double start = a.clock.start / file.sampleRate;
-    std::string text = file.name + ": the plan begins at " + fixed(start, 4) + " s (sample " + fixed(a.clock.start, 3) + ", known to "
-                     + significant(std::max(a.startError, 0.0005), 1) + "), told by " + file.witness + ". ";
+    std::string text = file.name + ": the plan begins at " + fixed(start, 4) + " s (sample " + fixed(a.clock.start, 3)
+                       + ", known to " + significant(std::max(a.startError, 0.0005), 1) + "), told by " + file.witness
+                       + ". ";
     if (a.synchronous)
         text += "Its clock is the player's (within " + significant(std::max(3 * a.driftError, 0.01), 1) + " ppm).";
     else
-        text += "Its clock is " + fixed(std::abs(a.driftPpm), 2) + " ppm (+-" + significant(std::max(a.driftError, 0.001), 1) + ") "
-              + (a.driftPpm > 0 ? "fast" : "slow") + " against the player's, which was taken out.";
+        text += "Its clock is " + fixed(std::abs(a.driftPpm), 2) + " ppm (+-"
+                + significant(std::max(a.driftError, 0.001), 1) + ") " + (a.driftPpm > 0 ? "fast" : "slow")
+                + " against the player's, which was taken out.";
     return text;
 }
 
@@ -59,8 +61,9 @@ std::string loopbackText(const InterfaceResponse& loopback)
 {
     const auto size = fixed(loopback.mostDb, 3) + " dB and " + fixed(loopback.mostDegrees, 2) + " degrees";
     return "Loopback: the delay of the interface was taken off; its response "
-         + (loopback.flat ? "is flat within " + size + ", no more than its uncertainty, and was left."
-                          : "departs from flat by up to " + size + " (+-" + significant(loopback.errorDb, 1) + " dB) and was taken off, too.");
+           + (loopback.flat ? "is flat within " + size + ", no more than its uncertainty, and was left."
+                            : "departs from flat by up to " + size + " (+-" + significant(loopback.errorDb, 1)
+                                  + " dB) and was taken off, too.");
 }
 
 nlohmann::ordered_json documentOf(const ImportedFile& file, bool aligned)
@@ -79,7 +82,10 @@ nlohmann::ordered_json documentOf(const ImportedFile& file, bool aligned)
     document["toldBy"] = file.witness;
     document["likeness"] = a.likeness;
     if (const auto& l = file.loopback)
-        document["loopback"] = {{"flat", l->flat}, {"mostDb", l->mostDb}, {"mostDegrees", l->mostDegrees}, {"errorDb", numberOrNull(l->errorDb)}};
+        document["loopback"] = {{"flat", l->flat},
+                                {"mostDb", l->mostDb},
+                                {"mostDegrees", l->mostDegrees},
+                                {"errorDb", numberOrNull(l->errorDb)}};
     return document;
 }
 
@@ -89,10 +95,14 @@ void describe(const ImportedRecording& imported, bool aligned, const std::string
     std::vector<std::vector<std::string>> rows;
     nlohmann::ordered_json channels = nlohmann::ordered_json::array(), files = nlohmann::ordered_json::array();
     for (const auto& channel : take.channels) {
-        rows.push_back({std::string(name(channel.quantity)) + (channel.assumed ? " (assumed)" : ""), channel.unit, significant(rmsOf(channel.samples)),
-                        significant(peakOf(channel.samples)), significant(channel.fullScale)});
-        channels.push_back({{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"peak", peakOf(channel.samples)},
-                            {"fullScale", channel.fullScale}, {"assumed", channel.assumed}});
+        rows.push_back({std::string(name(channel.quantity)) + (channel.assumed ? " (assumed)" : ""), channel.unit,
+                        significant(rmsOf(channel.samples)), significant(peakOf(channel.samples)),
+                        significant(channel.fullScale)});
+        channels.push_back({{"quantity", name(channel.quantity)},
+                            {"unit", channel.unit},
+                            {"peak", peakOf(channel.samples)},
+                            {"fullScale", channel.fullScale},
+                            {"assumed", channel.assumed}});
     }
     for (const auto& file : imported.files) {
         if (aligned)
@@ -104,30 +114,46 @@ void describe(const ImportedRecording& imported, bool aligned, const std::string
     for (const auto& remark : imported.remarks)
         terminal.say(wrapped("remark  " + remark, 8));
     terminal.table({"channel", "unit", "rms", "peak", "full scale"}, rows);
-    terminal.say("Wrote the take " + out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 2) + " s at "
-                 + significant(take.sampleRate, 8) + " Hz.");
-    terminal.document({{"format", "excursion-import"}, {"version", 1}, {"take", out}, {"kind", "recording"}, {"sampleRate", take.sampleRate},
-                       {"samples", take.length()}, {"channels", channels}, {"files", files}, {"remarks", imported.remarks}});
+    terminal.say("Wrote the take " + out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 2)
+                 + " s at " + significant(take.sampleRate, 8) + " Hz.");
+    terminal.document({{"format", "excursion-import"},
+                       {"version", 1},
+                       {"take", out},
+                       {"kind", "recording"},
+                       {"sampleRate", take.sampleRate},
+                       {"samples", take.length()},
+                       {"channels", channels},
+                       {"files", files},
+                       {"remarks", imported.remarks}});
 }
 
-} // namespace
+}  // namespace
 
 bool isRecording(const std::string& file)
 {
     auto extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    static constexpr std::array<std::string_view, 8> known {".wav", ".wave", ".rf64", ".aif", ".aiff", ".aifc", ".caf", ".flac"};
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    static constexpr std::array<std::string_view, 8> known {".wav",  ".wave", ".rf64", ".aif",
+                                                            ".aiff", ".aifc", ".caf",  ".flac"};
     return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
 void addRecordingOptions(CLI::App& verb, RecordingArguments& arguments)
 {
-    verb.add_option("--plan", arguments.plan, "of recordings: the folder that 'excursion excite' wrote and whose excitation.wav was played; each "
-                                              "recording is laid beside it, its start, clock and rate are found")->type_name("DIR");
-    verb.add_option("--gain", arguments.gain, "of recordings without a voltage: V at the loudspeaker for a played sample of 1.0; the voltage is then assumed")
+    verb.add_option("--plan", arguments.plan,
+                    "of recordings: the folder that 'excursion excite' wrote and whose excitation.wav was played; each "
+                    "recording is laid beside it, its start, clock and rate are found")
+        ->type_name("DIR");
+    verb.add_option("--gain", arguments.gain,
+                    "of recordings without a voltage: V at the loudspeaker for a played sample of 1.0; the voltage is "
+                    "then assumed")
         ->check(CLI::PositiveNumber);
-    verb.add_option("--calibration", arguments.calibration, "of recordings: what 'excursion calibrate' wrote, for channels that --map gives no full scale, or for all "
-                                                            "where there is no --map")->type_name("FILE.json");
+    verb.add_option(
+            "--calibration", arguments.calibration,
+            "of recordings: what 'excursion calibrate' wrote, for channels that --map gives no full scale, or for all "
+            "where there is no --map")
+        ->type_name("FILE.json");
 }
 
 void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
@@ -142,4 +168,4 @@ void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
     describe(imported, options.plan.has_value(), arguments.out, terminal);
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -27,4 +27,4 @@ bool isRecording(const std::string& file);
 void addRecordingOptions(CLI::App& verb, RecordingArguments&);
 void importRecordings(const RecordingArguments&, Terminal&);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

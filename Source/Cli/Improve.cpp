@@ -26,13 +26,13 @@ struct ImproveArguments {
     std::vector<std::string> with;
 };
 
-/// The page is the last and the least: without it the ladder is still whole. It is drawn from the ladder as it was written, so that
-/// `excursion report` draws the same.
+/// The page is the last and the least: without it the ladder is still whole. It is drawn from the ladder as it was
+/// written, so that `excursion report` draws the same.
 void writeFolder(const LadderFile& file, const std::filesystem::path& folder)
 {
     writeLadder(file, folder / "ladder.json");
     if (file.ladder.rungs.empty())
-        std::filesystem::remove(folder / "model.json");   // one of an earlier run does not belong to this ladder
+        std::filesystem::remove(folder / "model.json");  // one of an earlier run does not belong to this ladder
     else
         writeModel(file.ladder.model(), folder / "model.json");
     try {
@@ -46,7 +46,7 @@ void writeFolder(const LadderFile& file, const std::filesystem::path& folder)
 void run(const ImproveArguments& options, Terminal& terminal)
 {
     for (const auto& id : options.with)
-        effectNamed(id);   // a misspelt name is told before any work
+        effectNamed(id);  // a misspelt name is told before any work
     requireFolderPlace(options.out);
     const auto take = readTake(options.take);
     requireEffects(options.with, take);
@@ -59,23 +59,32 @@ void run(const ImproveArguments& options, Terminal& terminal)
     writeFolder(file, options.out);
 
     live.end(file.ladder);
-    terminal.say("Wrote " + options.out + (file.ladder.rungs.empty() ? "/ladder.json and report.html." : "/ladder.json, model.json and report.html."));
+    terminal.say(
+        "Wrote " + options.out
+        + (file.ladder.rungs.empty() ? "/ladder.json and report.html." : "/ladder.json, model.json and report.html."));
     terminal.document(toJson(file));
     if (file.ladder.verdict == Verdict::badMeasurement)
         terminal.answer = 1;
 }
 
-} // namespace
+}  // namespace
 
 void addImprove(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ImproveArguments>();
-    auto* verb = app.add_subcommand("improve", "Diagnose, add and refit until nothing is missing; keep the ladder")->group(step::diagnose);
-    verb->add_option("TAKE", o->take, "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")->required();
-    verb->add_option("--with", o->with, "effects that the first model has already, separated by commas")->delimiter(',')->type_name("EFFECT");
-    verb->add_option("--out", o->out, "folder for ladder.json, model.json and report.html")->required()->type_name("DIR");
+    auto* verb = app.add_subcommand("improve", "Diagnose, add and refit until nothing is missing; keep the ladder")
+                     ->group(step::diagnose);
+    verb->add_option("TAKE", o->take,
+                     "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")
+        ->required();
+    verb->add_option("--with", o->with, "effects that the first model has already, separated by commas")
+        ->delimiter(',')
+        ->type_name("EFFECT");
+    verb->add_option("--out", o->out, "folder for ladder.json, model.json and report.html")
+        ->required()
+        ->type_name("DIR");
     verb->footer("Exit code 1: the take is not fit for use.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -17,10 +17,10 @@ std::size_t labelWidth()
     std::size_t width = 0;
     for (const auto* effect : catalogue())
         width = std::max(width, effect->id().size());
-    return width + 5;   // "1  + "
+    return width + 5;  // "1  + "
 }
 
-} // namespace
+}  // namespace
 
 void LiveLadder::begin(const Comparison& comparison)
 {
@@ -66,7 +66,8 @@ void LiveLadder::show(const Rung& rung)
     if (diagnosis.verdict != Verdict::missingEffect)
         return;
     const auto& best = diagnosis.ranking.front();
-    terminal_.say(wrapped("     missing: " + best.effect + " (" + confidenceText(best.confidence) + " sure). " + best.reason, 14));
+    terminal_.say(wrapped(
+        "     missing: " + best.effect + " (" + confidenceText(best.confidence) + " sure). " + best.reason, 14));
     if (!diagnosis.indistinguishable.empty()) {
         std::string others;
         for (const auto& id : diagnosis.indistinguishable)
@@ -87,4 +88,4 @@ void LiveLadder::end(const Ladder& ladder)
     terminal_.say(wrapped("verdict  " + std::string(name(ladder.verdict)) + ": " + ladder.sentence, 9));
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -10,8 +10,8 @@ namespace excursion::cli {
 
 class Terminal;
 
-/// Prints a ladder while it grows: the noise floor, then each rung as soon as its diagnosis is known, with what it names as
-/// missing and why.
+/// Prints a ladder while it grows: the noise floor, then each rung as soon as its diagnosis is known, with what it
+/// names as missing and why.
 class LiveLadder {
 public:
     explicit LiveLadder(Terminal& terminal) : terminal_(terminal) {}
@@ -30,4 +30,4 @@ private:
     int rungs_ = 0;
 };
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

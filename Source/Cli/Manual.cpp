@@ -11,7 +11,10 @@
 namespace excursion::cli {
 namespace {
 
-std::vector<const CLI::App*> verbsOf(const CLI::App& app) { return app.get_subcommands([](const CLI::App*) { return true; }); }
+std::vector<const CLI::App*> verbsOf(const CLI::App& app)
+{
+    return app.get_subcommands([](const CLI::App*) { return true; });
+}
 
 /// What a person is shown: options without a group are hidden.
 std::vector<const CLI::Option*> shownOptions(const CLI::App& app)
@@ -102,7 +105,7 @@ std::string valueBranches(const CLI::App& verb)
         if (option->get_positional() || option->get_type_size() == 0)
             continue;
         const auto type = valueTypeOf(*option);
-        std::string what = "''";   // a number, or a name that is not known here
+        std::string what = "''";  // a number, or a name that is not known here
         if (type.word == "EFFECT")
             what = shellWords(effectNames());
         else if (!type.choices.empty())
@@ -115,16 +118,18 @@ std::string valueBranches(const CLI::App& verb)
     return text;
 }
 
-} // namespace
+}  // namespace
 
 std::string manualOf(const CLI::App& app, const std::string& version)
 {
     const Help help;
-    std::string text = ".TH EXCURSION 1 \"\" \"Excursion " + roff(version) + "\" \"User Commands\"\n"
-                       ".SH NAME\nexcursion \\- finds out what a loudspeaker model is missing, and linearizes the loudspeaker\n"
-                       ".SH SYNOPSIS\n.B excursion\n.I VERB\n\\&...\n"
-                       ".SH DESCRIPTION\n"
-                       + asTyped(app.get_description()) + ".SH OPTIONS\nOf every verb:\n";
+    std::string text =
+        ".TH EXCURSION 1 \"\" \"Excursion " + roff(version)
+        + "\" \"User Commands\"\n"
+          ".SH NAME\nexcursion \\- finds out what a loudspeaker model is missing, and linearizes the loudspeaker\n"
+          ".SH SYNOPSIS\n.B excursion\n.I VERB\n\\&...\n"
+          ".SH DESCRIPTION\n"
+        + asTyped(app.get_description()) + ".SH OPTIONS\nOf every verb:\n";
     for (const auto* option : shownOptions(app))
         text += optionEntry(help, *option);
     std::string group;
@@ -184,4 +189,4 @@ complete -F _excursion excursion
 )";
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -13,4 +13,4 @@ std::string manualOf(const CLI::App&, const std::string& version);
 /// A script for bash that completes verbs, options, choices, effects and files.
 std::string bashCompletionOf(const CLI::App&);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -28,8 +28,8 @@ void addRows(Rows& rows, const std::vector<Parameter>& parameters)
         const auto unit = displayUnit(std::abs(p.value), p.unit);
         const double value = p.value * unit.factor, error = p.standardError * unit.factor;
         const int decimals = decimalsFor(value, p.free ? error : 0.0);
-        rows.push_back({p.name, fixed(value, decimals), p.free && std::isfinite(error) ? fixed(error, decimals) : "-", unit.unit,
-                        p.free ? "" : "held: this take cannot see it"});
+        rows.push_back({p.name, fixed(value, decimals), p.free && std::isfinite(error) ? fixed(error, decimals) : "-",
+                        unit.unit, p.free ? "" : "held: this take cannot see it"});
     }
 }
 
@@ -37,8 +37,9 @@ void addRows(Rows& rows, const std::vector<Figure>& figures)
 {
     for (const auto& figure : figures) {
         const int decimals = decimalsFor(figure.value, figure.standardError);
-        rows.push_back({figure.name, fixed(figure.value, decimals), std::isfinite(figure.standardError) ? fixed(figure.standardError, decimals) : "-",
-                        figure.unit, ""});
+        rows.push_back({figure.name, fixed(figure.value, decimals),
+                        std::isfinite(figure.standardError) ? fixed(figure.standardError, decimals) : "-", figure.unit,
+                        ""});
     }
 }
 
@@ -46,12 +47,14 @@ void printLaws(const Model& model, Terminal& terminal)
 {
     Rows rows;
     for (const auto& law : laws(model)) {
-        const auto largest = std::max_element(law.value.begin(), law.value.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+        const auto largest = std::max_element(law.value.begin(), law.value.end(),
+                                              [](double a, double b) { return std::abs(a) < std::abs(b); });
         const auto unit = displayUnit(std::abs(*largest), law.info.unit);
         const auto argument = displayUnit(law.argument.back(), law.info.argumentUnit);
         const auto at = [&](std::size_t k) { return significant(law.value[k] * unit.factor); };
-        rows.push_back({law.info.name, at(0), at(law.value.size() / 2), at(law.value.size() - 1), unit.unit,
-                        law.info.argument + " = " + significant(law.argument.back() * argument.factor, 3) + " " + argument.unit});
+        rows.push_back(
+            {law.info.name, at(0), at(law.value.size() / 2), at(law.value.size() - 1), unit.unit,
+             law.info.argument + " = " + significant(law.argument.back() * argument.factor, 3) + " " + argument.unit});
     }
     if (rows.empty())
         return;
@@ -59,7 +62,7 @@ void printLaws(const Model& model, Terminal& terminal)
     terminal.table({"law", "at -end", "at rest", "at +end", "unit", "end"}, rows);
 }
 
-} // namespace
+}  // namespace
 
 void printParameters(const Model& model, Terminal& terminal)
 {
@@ -68,7 +71,8 @@ void printParameters(const Model& model, Terminal& terminal)
         const auto& component = model.components[k];
         if (const auto figures = figuresOf(model, k); !figures.empty())
             addRows(rows, figures);
-        else if (!component.effect->law())   // a law is better read as the curve than as the coefficients of its expansion
+        // a law is better read as the curve than as the coefficients of its expansion
+        else if (!component.effect->law())
             addRows(rows, component.parameters);
     }
     addRows(rows, model.path.parameters);
@@ -84,17 +88,24 @@ void printErrors(const Comparison& comparison, Terminal& terminal)
         rows.push_back({titleOf(channel), fixed(channel.total.db, 1), decibelText(channel.total.noiseFloorDb),
                         misfitText(channel.total.chi, comparison.noiseKnown)});
     terminal.table({"channel", "error dB", "noise dB", "misfit"}, rows);
-    terminal.say(wrapped(std::string("Error and noise are rms relative to the channel, on ")
-                         + (comparison.validated ? "data that no fit saw" : "the data that was fitted, as nothing could be held out")
-                         + (comparison.noiseKnown ? ". Misfit: squared error over squared noise, 1 at best."
-                                                  : ". The take does not tell its noise.")));
+    terminal.say(wrapped(
+        std::string("Error and noise are rms relative to the channel, on ")
+        + (comparison.validated ? "data that no fit saw" : "the data that was fitted, as nothing could be held out")
+        + (comparison.noiseKnown ? ". Misfit: squared error over squared noise, 1 at best."
+                                 : ". The take does not tell its noise.")));
 }
 
-std::string decibelText(const std::optional<double>& db) { return db && std::isfinite(*db) ? fixed(*db, 1) : std::string("-"); }
+std::string decibelText(const std::optional<double>& db)
+{
+    return db && std::isfinite(*db) ? fixed(*db, 1) : std::string("-");
+}
 
 std::string misfitText(double chi, bool noiseKnown)
 {
-    return !noiseKnown ? std::string("-") : chi < 9.95 ? fixed(chi, 1) : chi < 1e6 ? fixed(chi, 0) : significant(chi, 2);
+    return !noiseKnown  ? std::string("-")
+           : chi < 9.95 ? fixed(chi, 1)
+           : chi < 1e6  ? fixed(chi, 0)
+                        : significant(chi, 2);
 }
 
 std::string confidenceText(double confidence) { return fixed(std::min(99.0, 100.0 * confidence), 0) + " %"; }
@@ -116,8 +127,12 @@ nlohmann::ordered_json modelJson(const Model& model, const Comparison& compariso
     document["parameters"] = nlohmann::ordered_json::array();
     const auto add = [&document](const std::string& of, const std::vector<Parameter>& parameters) {
         for (const auto& p : parameters)
-            document["parameters"].push_back({{"of", of}, {"name", p.name}, {"value", p.value}, {"unit", p.unit},
-                                              {"standardError", numberOrNull(p.standardError)}, {"free", p.free}});
+            document["parameters"].push_back({{"of", of},
+                                              {"name", p.name},
+                                              {"value", p.value},
+                                              {"unit", p.unit},
+                                              {"standardError", numberOrNull(p.standardError)},
+                                              {"free", p.free}});
     };
     for (const auto& component : model.components)
         add(component.effect->id(), component.parameters);
@@ -125,10 +140,16 @@ nlohmann::ordered_json modelJson(const Model& model, const Comparison& compariso
     document["summary"] = nlohmann::ordered_json::array();
     for (std::size_t k = 0; k < model.components.size(); ++k)
         for (const auto& figure : figuresOf(model, k))
-            document["summary"].push_back({{"of", model.components[k].effect->id()}, {"name", figure.name}, {"value", figure.value},
-                                           {"unit", figure.unit}, {"standardError", numberOrNull(figure.standardError)}});
-    document["fit"] = {{"converged", fit.converged}, {"iterations", fit.iterations}, {"reason", fit.reason}, {"substeps", fit.substeps}};
+            document["summary"].push_back({{"of", model.components[k].effect->id()},
+                                           {"name", figure.name},
+                                           {"value", figure.value},
+                                           {"unit", figure.unit},
+                                           {"standardError", numberOrNull(figure.standardError)}});
+    document["fit"] = {{"converged", fit.converged},
+                       {"iterations", fit.iterations},
+                       {"reason", fit.reason},
+                       {"substeps", fit.substeps}};
     return document;
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -34,4 +34,4 @@ std::string effectsText(const Model&);
 /// What fit and add say of a model in their documents: effects, parameters, the errors and how the fit ended.
 nlohmann::ordered_json modelJson(const Model&, const Comparison&, const FitSummary&);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -27,11 +27,13 @@ void identifyMotorAndCone(const MotorConeArguments& arguments, Terminal& termina
     options.coneOrder = arguments.coneOrder;
     options.delay = arguments.delay ? *arguments.delay : pressure.microphoneDistance.value_or(0.0) / speedOfSound;
     options.thorough = !arguments.quick;
-    const auto found = identifyMotorCone(frequencyDataOf(within(displacement.frf, arguments.band)), frequencyDataOf(within(pressure.frf, arguments.band)),
-                                         options, terminal.progress());
+    const auto found = identifyMotorCone(frequencyDataOf(within(displacement.frf, arguments.band)),
+                                         frequencyDataOf(within(pressure.frf, arguments.band)), options,
+                                         terminal.progress());
 
     const auto name = std::filesystem::path(arguments.response.path).stem().string();
-    nlohmann::ordered_json document {{"format", "excursion-motor-cone"}, {"version", 1}, {"source", arguments.response.path}, {"name", name}};
+    nlohmann::ordered_json document {
+        {"format", "excursion-motor-cone"}, {"version", 1}, {"source", arguments.response.path}, {"name", name}};
     document["delay"] = options.delay;
     document["motorErrorDb"] = found.motorErrorDb;
     document["coneErrorDb"] = found.coneErrorDb;
@@ -42,17 +44,20 @@ void identifyMotorAndCone(const MotorConeArguments& arguments, Terminal& termina
     document["toldUpTo"] = found.toldUpTo;
     document["sentence"] = found.sentence;
     document["stable"] = found.stable;
-    document["motor"] = toJson(NamedStateSpace {name, {displacement.input}, {"displacement", "velocity", "acceleration"}, found.motor});
+    document["motor"] = toJson(
+        NamedStateSpace {name, {displacement.input}, {"displacement", "velocity", "acceleration"}, found.motor});
     document["cone"] = toJson(NamedStateSpace {name, {"acceleration"}, {"pressure"}, found.cone});
-    document["cascade"] = toJson(NamedStateSpace {name, {displacement.input}, {"pressure"}, found.cascade, -options.delay});
+    document["cascade"] = toJson(
+        NamedStateSpace {name, {displacement.input}, {"pressure"}, found.cascade, -options.delay});
     if (!arguments.out.empty())
         writeJson(document, arguments.out);
 
     terminal.say("motor and cone, the sound " + significant(1e3 * options.delay, 4) + " ms on its way");
-    terminal.table({"from", "to", "order", "error dB"},
-                   {{displacement.input, "displacement", std::to_string(found.motor.order()), fixed(found.motorErrorDb, 1)},
-                    {"acceleration", "pressure", std::to_string(found.cone.order()), fixed(found.coneErrorDb, 1)},
-                    {displacement.input, "pressure", std::to_string(found.cascade.order()), fixed(found.errorDb, 1)}});
+    terminal.table(
+        {"from", "to", "order", "error dB"},
+        {{displacement.input, "displacement", std::to_string(found.motor.order()), fixed(found.motorErrorDb, 1)},
+         {"acceleration", "pressure", std::to_string(found.cone.order()), fixed(found.coneErrorDb, 1)},
+         {displacement.input, "pressure", std::to_string(found.cascade.order()), fixed(found.errorDb, 1)}});
     terminal.say(wrapped(found.sentence));
     if (!found.stable)
         terminal.say("These models are not both stable.");
@@ -63,4 +68,4 @@ void identifyMotorAndCone(const MotorConeArguments& arguments, Terminal& termina
         terminal.answer = 1;
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -12,8 +12,9 @@ namespace excursion::cli {
 Model openDriver(const std::string& path)
 {
     std::error_code ignored;
-    const auto file =
-        std::filesystem::is_directory(path, ignored) ? (std::filesystem::path(path) / "ladder.json").string() : path;
+    const auto file = std::filesystem::is_directory(path, ignored)
+                          ? (std::filesystem::path(path) / "ladder.json").string()
+                          : path;
     const auto document = readJson(file);
     const JsonField field(document, "", file);
     if (!field.has("format") || field.at("format").value() != "excursion-ladder")
@@ -24,4 +25,4 @@ Model openDriver(const std::string& path)
     return ladder.model();
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -11,4 +11,4 @@ namespace excursion::cli {
 /// Throws Error (input) for anything else, (data) for a ladder without a model, whose take was not fit for use.
 Model openDriver(const std::string& path);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

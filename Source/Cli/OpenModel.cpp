@@ -14,14 +14,17 @@ OpenModel openModel(const std::string& path)
     if (!field.has("format") || document.at("format") != "excursion-fractional-state-space")
         return {stateSpaceFromJson(field), 1.0, false};
     auto found = fractionalStateSpaceFromJson(field);
-    return {{found.name, std::move(found.inputs), std::move(found.outputs), std::move(found.model.form), 0.0}, found.model.alpha, true};
+    return {{found.name, std::move(found.inputs), std::move(found.outputs), std::move(found.model.form), 0.0},
+            found.model.alpha,
+            true};
 }
 
 nlohmann::ordered_json documentOf(const OpenModel& open)
 {
     const auto& named = open.named;
-    return open.fractional ? toJson(NamedFractionalStateSpace {named.name, named.inputs, named.outputs, {open.alpha, named.model}})
-        : toJson(named);
+    return open.fractional
+               ? toJson(NamedFractionalStateSpace {named.name, named.inputs, named.outputs, {open.alpha, named.model}})
+               : toJson(named);
 }
 
 bool isStable(const OpenModel& open)
@@ -29,4 +32,4 @@ bool isStable(const OpenModel& open)
     return open.fractional ? isStable(FractionalStateSpace {open.alpha, open.named.model}) : isStable(open.named.model);
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -7,9 +7,10 @@
 
 namespace excursion::cli {
 
-/// A linear model of either document, of integer order or in lambda = s^alpha: what reduces and stabilizes models does both alike.
+/// A linear model of either document, of integer order or in lambda = s^alpha: what reduces and stabilizes models does
+/// both alike.
 struct OpenModel {
-    NamedStateSpace named;   ///< of a fractional one its form in lambda
+    NamedStateSpace named;  ///< of a fractional one its form in lambda
     double alpha = 1.0;
     bool fractional = false;
 };
@@ -22,4 +23,4 @@ nlohmann::ordered_json documentOf(const OpenModel&);
 
 bool isStable(const OpenModel&);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

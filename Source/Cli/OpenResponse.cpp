@@ -40,7 +40,8 @@ struct Ports {
     Quantity output, input;
 };
 
-/// What was asked for; else what the spectra are responses to (of an impedance that is the current), and the first channel beside it.
+/// What was asked for; else what the spectra are responses to (of an impedance that is the current), and the first
+/// channel beside it.
 Ports portsOf(const Spectra& spectra, const ResponseChoice& choice)
 {
     if (!choice.input.empty()) {
@@ -53,7 +54,7 @@ Ports portsOf(const Spectra& spectra, const ResponseChoice& choice)
     const auto output = chosen(spectra.channels, choice.output, reference->quantity);
     if (output != reference->quantity)
         return {output, reference->quantity};
-    return {output, chosen(spectra.channels, "", output)};   // the admittance of an impedance
+    return {output, chosen(spectra.channels, "", output)};  // the admittance of an impedance
 }
 
 Frf ratio(const Spectra& spectra, Quantity output, Quantity input)
@@ -64,7 +65,8 @@ Frf ratio(const Spectra& spectra, Quantity output, Quantity input)
     const auto& u = spectra.find(input)->values;
     for (std::size_t k = 0; k < y.size(); ++k) {
         if (std::abs(u[k]) == 0.0)
-            throw Error(Error::Kind::data, "The " + std::string(name(input)) + " is zero at " + std::to_string(frf.frequency[k]) + " Hz.");
+            throw Error(Error::Kind::data,
+                        "The " + std::string(name(input)) + " is zero at " + std::to_string(frf.frequency[k]) + " Hz.");
         frf.value.push_back(y[k] / u[k]);
     }
     return frf;
@@ -84,7 +86,8 @@ OpenResponse fromDocument(const std::string& path)
         field.at("re").refuse("as many numbers as there are frequencies, as in im");
     for (std::size_t k = 0; k < re.size(); ++k)
         open.frf.value.emplace_back(re[k], im[k]);
-    for (const auto& [key, target] : {std::pair {"noiseVariance", &open.frf.noiseVariance}, std::pair {"totalVariance", &open.frf.totalVariance}})
+    for (const auto& [key, target] :
+         {std::pair {"noiseVariance", &open.frf.noiseVariance}, std::pair {"totalVariance", &open.frf.totalVariance}})
         if (field.has(key)) {
             *target = field.at(key).numbers();
             if (!target->empty() && target->size() != re.size())
@@ -93,7 +96,7 @@ OpenResponse fromDocument(const std::string& path)
     return open;
 }
 
-} // namespace
+}  // namespace
 
 OpenResponse openResponse(const ResponseChoice& choice)
 {
@@ -113,7 +116,8 @@ OpenResponse openResponse(const ResponseChoice& choice)
     auto& measurement = std::get<Measurement>(take);
     open.remarks = measurement.remarks;
     completeExcitation(measurement);
-    const auto input = choice.input.empty() ? measurement.input().quantity : chosen(measurement.channels, choice.input, std::nullopt);
+    const auto input = choice.input.empty() ? measurement.input().quantity
+                                            : chosen(measurement.channels, choice.input, std::nullopt);
     const auto output = chosen(measurement.channels, choice.output, input);
     open.output = name(output);
     open.input = name(input);
@@ -126,7 +130,8 @@ OpenResponse openResponse(const ResponseChoice& choice)
         open.frf = bla(measurement, output, choice.level >= 0 ? choice.level : levels - 1, input).frf;
     } else {
         if (!choice.input.empty() && input != measurement.input().quantity)
-            throw Error(Error::Kind::data, "A take without periods gives responses to its own input only; leave --input out.");
+            throw Error(Error::Kind::data,
+                        "A take without periods gives responses to its own input only; leave --input out.");
         open.frf = welch(measurement, output, {}).frf;
     }
     return open;
@@ -151,4 +156,4 @@ Frf within(const Frf& frf, const std::vector<double>& band)
     return cut;
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

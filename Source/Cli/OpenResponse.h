@@ -13,24 +13,25 @@ namespace excursion::cli {
 /// Which frequency response of a file or take is meant.
 struct ResponseChoice {
     std::string path;
-    std::string output, input;   ///< quantities; empty: the first beside the input; what the file is a response to, else the voltage or the force
-    int level = -1;              ///< of a take with levels; below 0: the loudest
+    /// quantities; empty: the first beside the input; what the file is a response to, else the voltage or the force
+    std::string output, input;
+    int level = -1;  ///< of a take with levels; below 0: the loudest
 };
 
 struct OpenResponse {
     Frf frf;
-    std::string output, input;   ///< quantities
-    double sampleRate = 0.0;     ///< of the take; 0 for a frequency response
-    std::optional<double> microphoneDistance;   ///< m, where the take tells it
-    std::vector<std::string> remarks;           ///< what the file's reader had to assume
+    std::string output, input;                 ///< quantities
+    double sampleRate = 0.0;                   ///< of the take; 0 for a frequency response
+    std::optional<double> microphoneDistance;  ///< m, where the take tells it
+    std::vector<std::string> remarks;          ///< what the file's reader had to assume
 };
 
-/// The frequency response output / input of a take (its best linear approximation, or Welch's estimate without periods), of spectra
-/// (a file of responses, as a .zma or what other programs export), or of the document of `bla` (.json).
-/// Throws Error (usage) for channels that are not there, (input, data) for files that cannot be read or used.
+/// The frequency response output / input of a take (its best linear approximation, or Welch's estimate without
+/// periods), of spectra (a file of responses, as a .zma or what other programs export), or of the document of `bla`
+/// (.json). Throws Error (usage) for channels that are not there, (input, data) for files that cannot be read or used.
 OpenResponse openResponse(const ResponseChoice&);
 
 /// The lines from band[0] to band[1], in Hz; all of them where it is empty.
 Frf within(const Frf&, const std::vector<double>& band);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -16,10 +16,11 @@ namespace {
 bool hasCoil(const Take& take)
 {
     const auto* spectra = std::get_if<Spectra>(&take);
-    return spectra ? spectra->find(Quantity::voltage) != nullptr : std::get<Measurement>(take).input().quantity == Quantity::voltage;
+    return spectra ? spectra->find(Quantity::voltage) != nullptr
+                   : std::get<Measurement>(take).input().quantity == Quantity::voltage;
 }
 
-} // namespace
+}  // namespace
 
 OpenTake openTake(const std::string& path)
 {
@@ -45,9 +46,10 @@ void requireSameKind(const Model& model, const OpenTake& open)
 {
     if (model.electrical() == hasCoil(open.take))
         return;
-    throw Error(Error::Kind::data, model.electrical()
-                                       ? "The model has a coil, but the take drives the cone by a force; fit a model to this take."
-                                       : "The model has no coil, but the take drives one by a voltage; fit a model to this take.");
+    throw Error(Error::Kind::data,
+                model.electrical()
+                    ? "The model has a coil, but the take drives the cone by a force; fit a model to this take."
+                    : "The model has no coil, but the take drives one by a voltage; fit a model to this take.");
 }
 
 Record recordFor(const Model& model, const OpenTake& open)
@@ -67,7 +69,8 @@ void refuseTake(const OpenTake& open, nlohmann::ordered_json document, Terminal&
 {
     sayProblems(open.report.problems, terminal);
     terminal.say("");
-    terminal.say("The take is not fit for use: a model of it would explain the fault, not the loudspeaker. Nothing was written.");
+    terminal.say("The take is not fit for use: a model of it would explain the fault, not the loudspeaker. Nothing was "
+                 "written.");
     document["take"] = open.path;
     document["verdict"] = name(Verdict::badMeasurement);
     document["sentence"] = open.report.verdict();
@@ -76,4 +79,4 @@ void refuseTake(const OpenTake& open, nlohmann::ordered_json document, Terminal&
     terminal.answer = 1;
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

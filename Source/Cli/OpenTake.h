@@ -19,7 +19,8 @@ class Terminal;
 struct OpenTake {
     std::string path;
     Take take;
-    CheckReport report;   ///< fit for use, of a frequency response: it has no waveforms to check; with what its reader had to assume
+    /// fit for use, of a frequency response: it has no waveforms to check; with what its reader had to assume
+    CheckReport report;
 
     const Spectra* spectra() const { return std::get_if<Spectra>(&take); }
     const Measurement& measurement() const { return std::get<Measurement>(take); }
@@ -27,8 +28,8 @@ struct OpenTake {
 
 OpenTake openTake(const std::string& path);
 
-/// Throws Error (usage) when an effect cannot be part of a model of this take: it needs a coil that is not there, or is nonlinear
-/// and the take is a frequency response.
+/// Throws Error (usage) when an effect cannot be part of a model of this take: it needs a coil that is not there, or is
+/// nonlinear and the take is a frequency response.
 void requireEffects(const std::vector<std::string>& ids, const Take&);
 
 /// Throws Error (data) when one of model and take has a coil and the other has none.
@@ -40,7 +41,8 @@ Record recordFor(const Model&, const OpenTake&);
 /// One line a problem: "fault   clipping: ..." or "remark  hum: ...".
 void sayProblems(const std::vector<Problem>&, Terminal&);
 
-/// Ends a verb that would have fitted a model to a take that is at fault: says why, writes the document, and makes the answer no.
+/// Ends a verb that would have fitted a model to a take that is at fault: says why, writes the document, and makes the
+/// answer no.
 void refuseTake(const OpenTake&, nlohmann::ordered_json document, Terminal&);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

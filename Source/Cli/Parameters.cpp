@@ -31,7 +31,7 @@ struct ParametersArguments {
     std::string from, out, lawsOut, spice, zma, frd;
     std::vector<double> inductanceBand, band;
     std::optional<double> mass, forceFactor, coneArea;
-    double level = 0.0;   ///< V rms; 0: not given
+    double level = 0.0;  ///< V rms; 0: not given
     int points = 41;
 
     bool sheetWanted() const { return !out.empty() || !lawsOut.empty() || !spice.empty(); }
@@ -140,7 +140,7 @@ void writeCurves(const ParametersArguments& options, const ScaledModel* given, c
         if (options.level > 0.0) {
             curveFrequencies(band.first, band.second);
             if (!options.frd.empty())
-                soundCurve(*given, {band.first});   // refuses a guess before the work
+                soundCurve(*given, {band.first});  // refuses a guess before the work
             played = playedAt(given->model, options.level, band.first, band.second, terminal.progress());
             measured = &played;
         }
@@ -216,7 +216,7 @@ void run(const ParametersArguments& options, Terminal& terminal)
     Json document {{"format", "excursion-parameters"}, {"version", 1}, {"model", options.from}};
     document.update(toJson(sheet));
     auto written = Json::array();
-    writeCurves(options, &given, nullptr, written, terminal);   // may refuse, and so comes first
+    writeCurves(options, &given, nullptr, written, terminal);  // may refuse, and so comes first
     const auto table = [&](const std::string& file, const std::string& csv) {
         if (file.empty())
             return;
@@ -239,15 +239,15 @@ void run(const ParametersArguments& options, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addParameters(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ParametersArguments>();
-    auto* verb =
-        app.add_subcommand("parameters",
-                           "Thiele/Small parameters, lossy inductance, laws, SPICE, ZMA and FRD, for other programs")
-            ->group(step::use);
+    auto* verb = app.add_subcommand(
+                        "parameters",
+                        "Thiele/Small parameters, lossy inductance, laws, SPICE, ZMA and FRD, for other programs")
+                     ->group(step::use);
     verb->add_option("MODEL", o->from, "the model, a .json; a ladder or its folder; or a take, for --zma and --frd")
         ->required();
     verb->add_option("--out", o->out, "the parameters, a .csv or .json")->type_name("FILE");
@@ -280,4 +280,4 @@ void addParameters(CLI::App& app, Terminal& terminal)
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -64,7 +64,8 @@ void choose(const PnlssArguments& options, const nlohmann::json& kept, PnlssTake
         const JsonField linear = JsonField(kept, "", options.model).at("linear");
         const auto inputs = linear.at("inputs").items(), outputs = linear.at("outputs").items();
         if (inputs.size() != 1 || outputs.size() != 1)
-            throw Error(Error::Kind::data, "The model has several inputs or outputs; a take is judged with one of each.");
+            throw Error(Error::Kind::data,
+                        "The model has several inputs or outputs; a take is judged with one of each.");
         data.input = &channelNamed(data.take, inputs[0].text());
         data.output = &channelNamed(data.take, outputs[0].text());
     } else {
@@ -86,11 +87,17 @@ bool isFractional(const PnlssArguments& options, const nlohmann::json& kept)
 void require(const PnlssArguments& options)
 {
     if (options.model.empty() == (options.order == 0 && !options.mixed))
-        throw Error(Error::Kind::usage, "Give either --order (or --alpha with --mixed), to fit a model, or --model, to judge one that was kept.");
+        throw Error(
+            Error::Kind::usage,
+            "Give either --order (or --alpha with --mixed), to fit a model, or --model, to judge one that was kept.");
     if (options.mixed && (options.alpha.empty() || options.order != 0))
-        throw Error(Error::Kind::usage, "--mixed is a driver's current under a voltage, of three states: give --alpha, and leave --order out.");
-    if (!options.terms.empty() && (!options.alpha.empty() || !options.model.empty() || options.offset || options.mask != "full"))
-        throw Error(Error::Kind::usage, "--terms lists the monomials of a model of whole order that is fitted: leave --alpha, --model, --mask and --offset "
+        throw Error(
+            Error::Kind::usage,
+            "--mixed is a driver's current under a voltage, of three states: give --alpha, and leave --order out.");
+    if (!options.terms.empty()
+        && (!options.alpha.empty() || !options.model.empty() || options.offset || options.mask != "full"))
+        throw Error(Error::Kind::usage, "--terms lists the monomials of a model of whole order that is fitted: leave "
+                                        "--alpha, --model, --mask and --offset "
                                         "out; the offset is the monomial 1.");
     if (!options.model.empty() && !options.out.empty())
         throw Error(Error::Kind::usage, "--out is for a model that is fitted; --model is kept already.");
@@ -114,20 +121,23 @@ void run(PnlssArguments options, Terminal& terminal)
     options.response.output = name(data.output->quantity);
     const auto outcome = (isFractional(options, kept) ? fractionalPnlss : integerPnlss)(options, data, terminal);
     if (!std::isfinite(outcome.estimationDb))
-        throw Error(Error::Kind::numerical, "The model runs away on the records that it was to explain; try another --order or --mask.");
+        throw Error(Error::Kind::numerical,
+                    "The model runs away on the records that it was to explain; try another --order or --mask.");
     if (!options.out.empty())
         writeJson(outcome.model, options.out);
     if (!options.played.empty())
         writePlayed(data, outcome.play(data.wholeInput()), options.played);
 
     if (options.model.empty())
-        terminal.say("linear part alone: " + errorText(outcome.startDb) + " dB; " + std::to_string(outcome.iterations) + " iterations: "
-                     + outcome.reason + ".");
+        terminal.say("linear part alone: " + errorText(outcome.startDb) + " dB; " + std::to_string(outcome.iterations)
+                     + " iterations: " + outcome.reason + ".");
     if (!outcome.alpha.empty())
         terminal.say("alpha " + outcome.alpha);
     const bool validated = !data.records.validation.empty();
-    terminal.table({"records", "error dB"}, {{"estimation", errorText(outcome.estimationDb)},
-                                             {"validation", errorText(validated ? outcome.validationDb : std::numeric_limits<double>::quiet_NaN())}});
+    terminal.table(
+        {"records", "error dB"},
+        {{"estimation", errorText(outcome.estimationDb)},
+         {"validation", errorText(validated ? outcome.validationDb : std::numeric_limits<double>::quiet_NaN())}});
     if (!outcome.stable)
         terminal.say("The linear part of this model is not stable.");
     for (const auto& written : {options.out, options.played})
@@ -137,8 +147,8 @@ void run(PnlssArguments options, Terminal& terminal)
     std::optional<Agreement> found;
     if (options.laws) {
         found = agreement(data.take, data.output->quantity, outcome.play, terminal.progress());
-        terminal.say(found->sentence + " The driver without effects leaves " + errorText(found->baseDb) + " dB of what the model plays, with them "
-                     + errorText(found->leftDb) + " dB.");
+        terminal.say(found->sentence + " The driver without effects leaves " + errorText(found->baseDb)
+                     + " dB of what the model plays, with them " + errorText(found->leftDb) + " dB.");
     }
 
     Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", options.response.path}};
@@ -148,14 +158,18 @@ void run(PnlssArguments options, Terminal& terminal)
     document["stopped"] = outcome.reason;
     document["stable"] = outcome.stable;
     document["history"] = numbersOrNulls(outcome.history);
-    document["laws"] = found ? Json {{"effects", found->effects}, {"baseDb", found->baseDb}, {"leftDb", found->leftDb}, {"sentence", found->sentence}} : Json();
+    document["laws"] = found ? Json {{"effects", found->effects},
+                                     {"baseDb", found->baseDb},
+                                     {"leftDb", found->leftDb},
+                                     {"sentence", found->sentence}}
+                             : Json();
     document["model"] = outcome.model;
     terminal.document(document);
     if (!outcome.stable)
         terminal.answer = 1;
 }
 
-} // namespace
+}  // namespace
 
 Eigen::MatrixXd PnlssTake::wholeInput() const
 {
@@ -178,8 +192,8 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
     if (!options.model.empty()) {
         named = readPnlss(options.model);
         if (named.model.linear.sampleRate != data.take.sampleRate)
-            throw Error(Error::Kind::data, "The model is one at " + significant(named.model.linear.sampleRate, 8) + " Hz, the take at "
-                                               + significant(data.take.sampleRate, 8) + " Hz.");
+            throw Error(Error::Kind::data, "The model is one at " + significant(named.model.linear.sampleRate, 8)
+                                               + " Hz, the take at " + significant(data.take.sampleRate, 8) + " Hz.");
         outcome.estimationDb = relativeErrorDb(named.model, estimation);
         outcome.validationDb = relativeErrorDb(named.model, validation);
         outcome.stable = isStable(named.model.linear) && std::isfinite(outcome.estimationDb);
@@ -189,10 +203,20 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
         fitting.maximumIterations = options.iterations;
         fitting.enoughDb = data.records.enoughDb();
         const auto fit = fitPnlss(start, estimation, validation, fitting, terminal.progress());
-        outcome = {relativeErrorDb(start, validation.empty() ? estimation : validation), fit.estimationDb, fit.validationDb, fit.iterations, fit.stable,
-                   fit.reason, fit.history, "", {}, {}};
-        named = {std::filesystem::path(options.response.path).stem().string(), {std::string(name(data.input->quantity))},
-                 {std::string(name(data.output->quantity))}, fit.model};
+        outcome = {relativeErrorDb(start, validation.empty() ? estimation : validation),
+                   fit.estimationDb,
+                   fit.validationDb,
+                   fit.iterations,
+                   fit.stable,
+                   fit.reason,
+                   fit.history,
+                   "",
+                   {},
+                   {}};
+        named = {std::filesystem::path(options.response.path).stem().string(),
+                 {std::string(name(data.input->quantity))},
+                 {std::string(name(data.output->quantity))},
+                 fit.model};
     }
     outcome.model = toJson(named);
     outcome.play = [model = named.model](const Eigen::MatrixXd& u) { return simulate(model, u); };
@@ -202,30 +226,43 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
 void addPnlss(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<PnlssArguments>();
-    auto* verb = app.add_subcommand("pnlss", "Fit a polynomial state-space model to a take: it knows no physics, and explains what it can")
+    auto* verb = app.add_subcommand(
+                        "pnlss",
+                        "Fit a polynomial state-space model to a take: it knows no physics, and explains what it can")
                      ->group(step::fit);
     std::vector<std::string> masks;
     for (const auto mask : termMasks())
         masks.emplace_back(name(mask));
     verb->add_option("TAKE", o->response.path, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--order", o->order, "number of states")->check(CLI::Range(1, 100));
-    verb->add_option("--alpha", o->alpha, "states of fractional order alpha, a number below 1, or free: one that starts there and moves");
-    verb->add_flag("--mixed", o->mixed, "with --alpha, for a current under a voltage: only the coil's state is of fractional order");
-    verb->add_option("--degree", o->degree, "highest degree of the monomials")->capture_default_str()->check(CLI::Range(2, 9));
+    verb->add_option("--alpha", o->alpha,
+                     "states of fractional order alpha, a number below 1, or free: one that starts there and moves");
+    verb->add_flag("--mixed", o->mixed,
+                   "with --alpha, for a current under a voltage: only the coil's state is of fractional order");
+    verb->add_option("--degree", o->degree, "highest degree of the monomials")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 9));
     verb->add_option("--mask", o->mask, "which monomials")->capture_default_str()->check(CLI::IsMember(masks));
-    verb->add_option("--terms", o->terms, "these monomials in place of --degree and --mask, such as x1^3,x1*x2,u^2; states are numbered from 1")
+    verb->add_option(
+            "--terms", o->terms,
+            "these monomials in place of --degree and --mask, such as x1^3,x1*x2,u^2; states are numbered from 1")
         ->type_name("LIST");
     verb->add_flag("--linear-output", o->noOutputTerms, "no monomials in the output equation");
     verb->add_flag("--offset", o->offset, "also constants in both equations, for sensors with an offset");
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
-    verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
-    verb->add_option("--iterations", o->iterations, "at most, of each of the ways that are tried")->capture_default_str()->check(CLI::Range(1, 10000));
-    verb->add_option("--model", o->model, "judge this model, which was kept, instead of fitting one")->type_name("FILE");
+    verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")
+        ->check(CLI::NonNegativeNumber);
+    verb->add_option("--iterations", o->iterations, "at most, of each of the ways that are tried")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 10000));
+    verb->add_option("--model", o->model, "judge this model, which was kept, instead of fitting one")
+        ->type_name("FILE");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->add_option("--played", o->played, "also write the take as the model plays it")->type_name("DIR");
-    verb->add_flag("--laws", o->laws, "also tell which physical laws the model agrees with: what it plays is diagnosed as a loudspeaker");
+    verb->add_flag("--laws", o->laws,
+                   "also tell which physical laws the model agrees with: what it plays is diagnosed as a loudspeaker");
     verb->footer("Exit code 1: the linear part of the model is not stable.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -22,15 +22,15 @@ struct PnlssArguments {
 
 /// What the two kinds of polynomial models tell alike.
 struct PnlssOutcome {
-    double startDb = 0.0;   ///< validation error of the linear part alone; not of a model that was kept
+    double startDb = 0.0;  ///< validation error of the linear part alone; not of a model that was kept
     double estimationDb = 0.0, validationDb = 0.0;
     int iterations = 0;
     bool stable = false;
     std::string reason = "a model that was kept";
     std::vector<double> history;
-    std::string alpha;                  ///< in words; empty for integer order
-    nlohmann::ordered_json model;       ///< its document
-    std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;   ///< the output from rest
+    std::string alpha;                                                  ///< in words; empty for integer order
+    nlohmann::ordered_json model;                                       ///< its document
+    std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;  ///< the output from rest
 };
 
 /// A take with what is to be explained by what.
@@ -49,4 +49,4 @@ TermMask maskNamed(const std::string&);
 PnlssOutcome integerPnlss(const PnlssArguments&, const PnlssTake&, Terminal&);
 PnlssOutcome fractionalPnlss(const PnlssArguments&, const PnlssTake&, Terminal&);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

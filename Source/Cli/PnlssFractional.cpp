@@ -16,15 +16,16 @@ namespace {
 FractionalPnlss mixedStart(const PnlssArguments& options, const PnlssTake& data, std::optional<double> alpha)
 {
     if (data.input->quantity != Quantity::voltage || data.output->quantity != Quantity::current)
-        throw Error(Error::Kind::usage, "--mixed explains a current by a voltage, and this take, or the choice of channels, is of others.");
+        throw Error(Error::Kind::usage,
+                    "--mixed explains a current by a voltage, and this take, or the choice of channels, is of others.");
     auto impedance = options.response;
     std::swap(impedance.input, impedance.output);
     impedance.input = name(Quantity::current);
     impedance.output = name(Quantity::voltage);
     MixedImpedanceOptions wanted;
     wanted.alpha = alpha;
-    return withTerms(fitMixedImpedance(frequencyDataOf(openResponse(impedance).frf), wanted).model, options.degree, maskNamed(options.mask),
-                     options.offset);
+    return withTerms(fitMixedImpedance(frequencyDataOf(openResponse(impedance).frf), wanted).model, options.degree,
+                     maskNamed(options.mask), options.offset);
 }
 
 FractionalPnlss commensurateStart(const PnlssArguments& options, std::optional<double> alpha)
@@ -37,7 +38,7 @@ FractionalPnlss commensurateStart(const PnlssArguments& options, std::optional<d
     return withTerms(linear, options.degree, maskNamed(options.mask), options.offset);
 }
 
-} // namespace
+}  // namespace
 
 PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& data, Terminal& terminal)
 {
@@ -47,8 +48,9 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
     if (!options.model.empty()) {
         named = readFractionalPnlss(options.model);
         if (named.grid.sampleRate != data.take.sampleRate)
-            throw Error(Error::Kind::data, "The model was made for " + significant(named.grid.sampleRate, 8) + " Hz, the take is at "
-                                               + significant(data.take.sampleRate, 8) + " Hz.");
+            throw Error(Error::Kind::data, "The model was made for " + significant(named.grid.sampleRate, 8)
+                                               + " Hz, the take is at " + significant(data.take.sampleRate, 8)
+                                               + " Hz.");
         outcome.estimationDb = relativeErrorDb(named.model, named.grid, estimation);
         outcome.validationDb = relativeErrorDb(named.model, named.grid, validation);
         outcome.stable = isStable(named.model, named.grid) && std::isfinite(outcome.estimationDb);
@@ -56,7 +58,9 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
     } else {
         const auto alpha = alphaFrom(options.alpha);
         if (alpha && *alpha >= 1.0)
-            throw Error(Error::Kind::usage, "A polynomial model has states of an order --alpha below 1; leave --alpha out for whole orders.");
+            throw Error(
+                Error::Kind::usage,
+                "A polynomial model has states of an order --alpha below 1; leave --alpha out for whole orders.");
         auto start = options.mixed ? mixedStart(options, data, alpha) : commensurateStart(options, alpha);
         if (options.noOutputTerms)
             keepOutputLinear(start.form);
@@ -66,14 +70,27 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
         fitting.maximumIterations = options.iterations;
         fitting.alphaFree = !alpha;
         const auto fit = fitFractionalPnlss(start, grid, estimation, validation, fitting, terminal.progress());
-        outcome = {relativeErrorDb(start, grid, validation.empty() ? estimation : validation), fit.estimationDb, fit.validationDb, fit.iterations,
-                   fit.stable, fit.reason, fit.history, withError(fit.model.alpha, fit.alphaDeviation), {}, {}};
-        named = {std::filesystem::path(options.response.path).stem().string(), {std::string(name(data.input->quantity))},
-                 {std::string(name(data.output->quantity))}, fit.model, grid};
+        outcome = {relativeErrorDb(start, grid, validation.empty() ? estimation : validation),
+                   fit.estimationDb,
+                   fit.validationDb,
+                   fit.iterations,
+                   fit.stable,
+                   fit.reason,
+                   fit.history,
+                   withError(fit.model.alpha, fit.alphaDeviation),
+                   {},
+                   {}};
+        named = {std::filesystem::path(options.response.path).stem().string(),
+                 {std::string(name(data.input->quantity))},
+                 {std::string(name(data.output->quantity))},
+                 fit.model,
+                 grid};
     }
     outcome.model = toJson(named);
-    outcome.play = [model = named.model, grid = named.grid](const Eigen::MatrixXd& u) { return simulate(model, u, grid); };
+    outcome.play = [model = named.model, grid = named.grid](const Eigen::MatrixXd& u) {
+        return simulate(model, u, grid);
+    };
     return outcome;
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -26,8 +26,8 @@ namespace {
 
 struct PredistortArguments {
     std::string model, input, out;
-    double fullScale = 0.0;   ///< V or N
-    std::optional<double> displacementLimit, voltageLimit, powerLimit;   ///< m, V or N, W
+    double fullScale = 0.0;                                             ///< V or N
+    std::optional<double> displacementLimit, voltageLimit, powerLimit;  ///< m, V or N, W
     double amount = 1.0, margin = 0.0;
     int oversampling = 2;
 };
@@ -38,7 +38,8 @@ Wav readPlayable(const std::string& file)
     for (const auto& channel : wav.channels)
         for (std::size_t n = 0; n < channel.size(); ++n)
             if (!std::isfinite(channel[n]))
-                throw Error(Error::Kind::input, "'" + file + "': sample " + std::to_string(n) + " is not a finite number; export the WAV again.");
+                throw Error(Error::Kind::input, "'" + file + "': sample " + std::to_string(n)
+                                                    + " is not a finite number; export the WAV again.");
     return wav;
 }
 
@@ -54,7 +55,8 @@ LinearizationControls controlsFrom(const PredistortArguments& options, const Mod
 }
 
 /// One channel through a predistorter of its own, by which its delay is taken out again.
-void bend(std::vector<double>& samples, Predistorter& predistorter, double fullScale, const Progress& progress, double from, double share)
+void bend(std::vector<double>& samples, Predistorter& predistorter, double fullScale, const Progress& progress,
+          double from, double share)
 {
     constexpr std::size_t block = 4096;
     const auto latency = static_cast<std::size_t>(predistorter.latency());
@@ -75,12 +77,17 @@ void bend(std::vector<double>& samples, Predistorter& predistorter, double fullS
 /// dB from which on a limit is told to have acted.
 constexpr double noticed = 1e-3;
 
-std::string turnedDown(double decibels, bool limited) { return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit"; }
+std::string turnedDown(double decibels, bool limited)
+{
+    return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit";
+}
 
 void run(const PredistortArguments& options, Terminal& terminal)
 {
-    for (const auto& [name, value] : {std::pair {"--full-scale", options.fullScale}, {"--limit-x", options.displacementLimit.value_or(1.0)},
-                                      {"--limit-u", options.voltageLimit.value_or(1.0)}, {"--limit-p", options.powerLimit.value_or(1.0)}})
+    for (const auto& [name, value] : {std::pair {"--full-scale", options.fullScale},
+                                      {"--limit-x", options.displacementLimit.value_or(1.0)},
+                                      {"--limit-u", options.voltageLimit.value_or(1.0)},
+                                      {"--limit-p", options.powerLimit.value_or(1.0)}})
         if (!(value > 0.0 && std::isfinite(value)))
             throw Error(Error::Kind::usage, std::string(name) + " must be a positive number.");
     requireFilePlace(options.out);
@@ -88,7 +95,8 @@ void run(const PredistortArguments& options, Terminal& terminal)
     const auto wav = readPlayable(options.input);
     std::error_code none;
     if (std::filesystem::equivalent(options.input, options.out, none))
-        throw Error(Error::Kind::usage, "The WAV that is played would be overwritten: give another name for what comes out.");
+        throw Error(Error::Kind::usage,
+                    "The WAV that is played would be overwritten: give another name for what comes out.");
     if (options.powerLimit && !model.electrical())
         throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model has none; leave it out.");
     const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling};
@@ -107,17 +115,27 @@ void run(const PredistortArguments& options, Terminal& terminal)
     int faults = 0;
     for (std::size_t c = 0; c < bent.channels.size(); ++c) {
         Predistorter predistorter(model, realTime, controls);
-        const double before = options.fullScale * peakOf(wav.channels[c]), share = 1.0 / static_cast<double>(bent.channels.size());
+        const double before = options.fullScale * peakOf(wav.channels[c]),
+                     share = 1.0 / static_cast<double>(bent.channels.size());
         bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
         const auto meters = predistorter.take();
         const double after = options.fullScale * peakOf(bent.channels[c]);
         loudest = std::max(loudest, after);
         faults += meters.faults;
-        limited = limited || meters.displacementReduction > noticed || meters.voltageReduction > noticed || meters.powerReduction > noticed;
-        channels.push_back({{"peakIn", before}, {"peakOut", after}, {"displacement", meters.displacement}, {"power", meters.power},
-                            {"displacementReduction", meters.displacementReduction}, {"voltageReduction", meters.voltageReduction}, {"powerReduction", meters.powerReduction}, {"faults", meters.faults}});
+        limited = limited || meters.displacementReduction > noticed || meters.voltageReduction > noticed
+                  || meters.powerReduction > noticed;
+        channels.push_back({{"peakIn", before},
+                            {"peakOut", after},
+                            {"displacement", meters.displacement},
+                            {"power", meters.power},
+                            {"displacementReduction", meters.displacementReduction},
+                            {"voltageReduction", meters.voltageReduction},
+                            {"powerReduction", meters.powerReduction},
+                            {"faults", meters.faults}});
         rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
-                        significant(1e3 * meters.displacement) + " mm", turnedDown(meters.displacementReduction, options.displacementLimit || std::isfinite(controls.displacementLimit)),
+                        significant(1e3 * meters.displacement) + " mm",
+                        turnedDown(meters.displacementReduction,
+                                   options.displacementLimit || std::isfinite(controls.displacementLimit)),
                         turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
         if (options.powerLimit) {
             rows.back().push_back(significant(meters.power) + " W");
@@ -128,18 +146,35 @@ void run(const PredistortArguments& options, Terminal& terminal)
     writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
     draft.publish();
 
-    terminal.document({{"format", "excursion-predistort"}, {"version", 1}, {"model", options.model}, {"input", options.input}, {"output", options.out},
-                       {"sampleRate", wav.sampleRate}, {"samples", wav.channels.front().size()}, {"fullScale", options.fullScale},
-                       {"amount", options.amount}, {"oversampling", options.oversampling}, {"displacementLimit", numberOrNull(controls.displacementLimit)},
-                       {"voltageLimit", numberOrNull(controls.voltageLimit)}, {"powerLimit", numberOrNull(controls.powerLimit)}, {"margin", controls.margin}, {"channels", channels}, {"limited", limited}});
-    std::vector<std::string> heads {"channel", "peak in", "out", "the cone moves", "motion turned down", "voltage turned down"};
+    terminal.document({{"format", "excursion-predistort"},
+                       {"version", 1},
+                       {"model", options.model},
+                       {"input", options.input},
+                       {"output", options.out},
+                       {"sampleRate", wav.sampleRate},
+                       {"samples", wav.channels.front().size()},
+                       {"fullScale", options.fullScale},
+                       {"amount", options.amount},
+                       {"oversampling", options.oversampling},
+                       {"displacementLimit", numberOrNull(controls.displacementLimit)},
+                       {"voltageLimit", numberOrNull(controls.voltageLimit)},
+                       {"powerLimit", numberOrNull(controls.powerLimit)},
+                       {"margin", controls.margin},
+                       {"channels", channels},
+                       {"limited", limited}});
+    std::vector<std::string> heads {
+        "channel", "peak in", "out", "the cone moves", "motion turned down", "voltage turned down"};
     if (options.powerLimit)
         heads.insert(heads.end(), {"heat at most", "current turned down"});
     terminal.table(heads, rows);
     if (limited)
         terminal.say("A limit was reached ("
-                     + (std::isfinite(controls.displacementLimit) ? significant(1e3 * controls.displacementLimit, 3) + " mm" : "no limit of the excursion")
-                     + ", " + (std::isfinite(controls.voltageLimit) ? significant(controls.voltageLimit, 3) + " " + unit : "no limit of the voltage")
+                     + (std::isfinite(controls.displacementLimit)
+                            ? significant(1e3 * controls.displacementLimit, 3) + " mm"
+                            : "no limit of the excursion")
+                     + ", "
+                     + (std::isfinite(controls.voltageLimit) ? significant(controls.voltageLimit, 3) + " " + unit
+                                                             : "no limit of the voltage")
                      + (options.powerLimit ? ", " + significant(*options.powerLimit, 3) + " W" : "")
                      + "): there the signal was turned down, the lowest notes first.");
     if (loudest > options.fullScale)
@@ -148,32 +183,44 @@ void run(const PredistortArguments& options, Terminal& terminal)
     if (faults > 0)
         terminal.say("The predistorter had to start anew " + std::to_string(faults) + (faults == 1 ? " time" : " times")
                      + " from silence: the model is driven far beyond what it knows.");
-    terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit + ", as in " + options.input + ".");
+    terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit
+                 + ", as in " + options.input + ".");
     if (limited || faults > 0)
         terminal.answer = 1;
 }
 
-} // namespace
+}  // namespace
 
 void addPredistort(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<PredistortArguments>();
-    auto* verb = app.add_subcommand("predistort", "Bends a WAV so that the loudspeaker plays it as if it were linear")->group(step::use);
+    auto* verb = app.add_subcommand("predistort", "Bends a WAV so that the loudspeaker plays it as if it were linear")
+                     ->group(step::use);
     verb->add_option("MODEL", o->model, "the model, a .json")->required();
-    verb->add_option("IN.wav", o->input, "what is to be played; each of its channels is predistorted by itself")->required();
-    verb->add_option("OUT.wav", o->out, "the predistorted signal, as long and as loud")->required();
-    verb->add_option("--full-scale", o->fullScale, "V at the loudspeaker for a WAV sample of 1.0 (N for a model without a coil)")
+    verb->add_option("IN.wav", o->input, "what is to be played; each of its channels is predistorted by itself")
         ->required();
-    verb->add_option("--limit-x", o->displacementLimit, "m that the cone may move at most (default: as far as the model was measured)");
+    verb->add_option("OUT.wav", o->out, "the predistorted signal, as long and as loud")->required();
+    verb->add_option("--full-scale", o->fullScale,
+                     "V at the loudspeaker for a WAV sample of 1.0 (N for a model without a coil)")
+        ->required();
+    verb->add_option("--limit-x", o->displacementLimit,
+                     "m that the cone may move at most (default: as far as the model was measured)");
     verb->add_option("--limit-u", o->voltageLimit, "V that may come out at most (default: no limit)");
-    verb->add_option("--limit-p", o->powerLimit, "W of heat in the voice coil, Re i^2 averaged over 1 s (default: no limit)");
-    verb->add_option("--margin", o->margin, "the limits hold for every loudspeaker whose parameters differ by at most this share from the model's, 0 to 0.3")
+    verb->add_option("--limit-p", o->powerLimit,
+                     "W of heat in the voice coil, Re i^2 averaged over 1 s (default: no limit)");
+    verb->add_option("--margin", o->margin,
+                     "the limits hold for every loudspeaker whose parameters differ by at most this share from the "
+                     "model's, 0 to 0.3")
         ->check(CLI::Range(0.0, 0.3))
         ->capture_default_str();
-    verb->add_option("--amount", o->amount, "0: the signal as it is, 1: fully linearized")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-    verb->add_option("--oversampling", o->oversampling, "1, 2 or 4")->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
+    verb->add_option("--amount", o->amount, "0: the signal as it is, 1: fully linearized")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    verb->add_option("--oversampling", o->oversampling, "1, 2 or 4")
+        ->check(CLI::IsMember({1, 2, 4}))
+        ->capture_default_str();
     verb->footer("Exit code 1: the WAV was written, but a limit was reached or the predistorter had to start anew.");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -47,20 +47,27 @@ void run(const RankArguments& arguments, Terminal& terminal)
             throw Error(Error::Kind::usage, "There is no quantity \"" + arguments.output + "\".");
     }
     const auto ranking = rank(readMeasurement(arguments.take), options, terminal.progress());
-    terminal.say(std::string(name(ranking.output)) + " explained by " + std::string(name(ranking.input)) + ", errors of simulations"
+    terminal.say(std::string(name(ranking.output)) + " explained by " + std::string(name(ranking.input))
+                 + ", errors of simulations"
                  + (ranking.noiseDb ? "; noise " + fixed(*ranking.noiseDb, 1) + " dB" : ""));
     std::vector<std::vector<std::string>> rows;
     for (const auto& m : ranking.models)
         if (m.trouble.empty())
-            rows.push_back({m.name, std::to_string(m.parameters), errorText(m.estimationDb), errorText(m.validationDb), fixed(100.0 * m.load, 2) + " %",
-                            fixed(m.fitSeconds, 1) + " s", m.stable ? "yes" : "no", m.description});
-    terminal.table({"class", "parameters", "estimation dB", "validation dB", "load", "fitted in", "stable", "what it is"}, rows);
+            rows.push_back({m.name, std::to_string(m.parameters), errorText(m.estimationDb), errorText(m.validationDb),
+                            fixed(100.0 * m.load, 2) + " %", fixed(m.fitSeconds, 1) + " s", m.stable ? "yes" : "no",
+                            m.description});
+    terminal.table(
+        {"class", "parameters", "estimation dB", "validation dB", "load", "fitted in", "stable", "what it is"}, rows);
     for (const auto& m : ranking.models)
         if (!m.trouble.empty())
             terminal.say(m.name + ": " + m.trouble);
     terminal.say(ranking.sentence);
 
-    Json document {{"format", "excursion-ranking"}, {"version", 1}, {"take", arguments.take}, {"input", name(ranking.input)}, {"output", name(ranking.output)}};
+    Json document {{"format", "excursion-ranking"},
+                   {"version", 1},
+                   {"take", arguments.take},
+                   {"input", name(ranking.input)},
+                   {"output", name(ranking.output)}};
     document["noiseDb"] = ranking.noiseDb ? Json(*ranking.noiseDb) : Json();
     document["sentence"] = ranking.sentence;
     document["models"] = Json::array();
@@ -69,28 +76,42 @@ void run(const RankArguments& arguments, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addRank(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<RankArguments>();
-    auto* verb = app.add_subcommand("rank", "Fit all classes of models to one take, and show them side by side: error, parameters, load, stability")
-                     ->group(step::fit);
+    auto* verb =
+        app.add_subcommand(
+               "rank",
+               "Fit all classes of models to one take, and show them side by side: error, parameters, load, stability")
+            ->group(step::fit);
     std::vector<std::string> names;
     std::string told = "Classes:\n";
     for (const auto& known : modelClasses()) {
         names.push_back(known.name);
-        told += "  " + known.name + std::string(known.name.size() < 20 ? 20 - known.name.size() : 1, ' ') + known.sentence + "\n";
+        told += "  " + known.name + std::string(known.name.size() < 20 ? 20 - known.name.size() : 1, ' ')
+                + known.sentence + "\n";
     }
     verb->add_option("TAKE", o->take, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--output", o->output, "the channel to explain; by default the first beside the input");
-    verb->add_option("--level", o->options.level, "number of the level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
-    verb->add_option("--order", o->options.order, "states of the polynomial models; by default those of the linear model, at most 4")->check(CLI::Range(1, 20));
-    verb->add_option("--degree", o->options.degree, "highest degree of their monomials")->capture_default_str()->check(CLI::Range(2, 7));
-    verb->add_option("--iterations", o->options.iterations, "of each search, at most")->capture_default_str()->check(CLI::Range(1, 1000));
-    verb->add_option("--classes", o->options.classes, "these alone, separated by commas")->delimiter(',')->check(CLI::IsMember(names))->type_name("CLASS");
+    verb->add_option("--level", o->options.level, "number of the level, 0 the quietest; by default the loudest")
+        ->check(CLI::NonNegativeNumber);
+    verb->add_option("--order", o->options.order,
+                     "states of the polynomial models; by default those of the linear model, at most 4")
+        ->check(CLI::Range(1, 20));
+    verb->add_option("--degree", o->options.degree, "highest degree of their monomials")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 7));
+    verb->add_option("--iterations", o->options.iterations, "of each search, at most")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    verb->add_option("--classes", o->options.classes, "these alone, separated by commas")
+        ->delimiter(',')
+        ->check(CLI::IsMember(names))
+        ->type_name("CLASS");
     verb->footer(told);
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -35,19 +35,21 @@ struct ReduceArguments {
 void balance(const ReduceArguments& options, OpenModel& open, Json& document, Terminal& terminal)
 {
     if (options.order < 0)
-        throw Error(Error::Kind::usage, "Give the --order to reduce the model to, a --ripple to allow, or a --response to prune it by.");
-    if (open.fractional)
         throw Error(Error::Kind::usage,
-                    "A model of fractional order has no Gramians to balance it by: give the --ripple to allow, or a --response to prune it by.");
+                    "Give the --order to reduce the model to, a --ripple to allow, or a --response to prune it by.");
+    if (open.fractional)
+        throw Error(Error::Kind::usage, "A model of fractional order has no Gramians to balance it by: give the "
+                                        "--ripple to allow, or a --response to prune it by.");
     auto& named = open.named;
     const auto all = balanced(named.model);
     const double bound = truncationBound(all, options.order);
-    named.model = truncated(all, options.order, options.settled ? Truncation::singularPerturbation : Truncation::direct);
+    named.model = truncated(all, options.order,
+                            options.settled ? Truncation::singularPerturbation : Truncation::direct);
     document["method"] = options.settled ? "singular-perturbation" : "balanced-truncation";
     document["singularValues"] = numbersOrNulls({all.singularValues.begin(), all.singularValues.end()});
     document["bound"] = bound;
-    terminal.say("Balanced and truncated to order " + std::to_string(named.model.order()) + ": the response changes by at most "
-                 + significant(bound, 3) + " at any frequency.");
+    terminal.say("Balanced and truncated to order " + std::to_string(named.model.order())
+                 + ": the response changes by at most " + significant(bound, 3) + " at any frequency.");
 }
 
 void pruneBy(const ReduceArguments& options, OpenModel& open, Json& document, Terminal& terminal)
@@ -102,7 +104,8 @@ void takeOut(const ReduceArguments& options, OpenModel& open, Json& document, Te
         reduction.high = options.band[1];
     }
     const auto result = reduceByPolesAndZeros(named.model, reduction);
-    const double origin = named.model.continuous() ? 0.0 : 1.0;   // roots are told as the model's own, z, s or s^alpha
+    // roots are told as the model's own, z, s or s^alpha
+    const double origin = named.model.continuous() ? 0.0 : 1.0;
     named.model = result.model;
     named.delay += result.delay;
     document["method"] = "poles-and-zeros";
@@ -111,15 +114,22 @@ void takeOut(const ReduceArguments& options, OpenModel& open, Json& document, Te
     document["steps"] = Json::array();
     std::vector<std::vector<std::string>> rows;
     for (const auto& step : result.steps) {
-        document["steps"].push_back({{"order", step.order}, {"cancelled", step.cancelled}, {"poles", rootsJson(step.poles, origin)},
-                                     {"zeros", rootsJson(step.zeros, origin)}, {"boundDb", step.boundDb}, {"rippleDb", step.rippleDb},
-                                     {"errorBound", numberOrNull(step.errorBound)}, {"error", step.error}});
-        rows.push_back({std::to_string(step.order), step.cancelled ? "pair" : "remote", fixed(step.boundDb, 3), fixed(step.rippleDb, 3)});
+        document["steps"].push_back({{"order", step.order},
+                                     {"cancelled", step.cancelled},
+                                     {"poles", rootsJson(step.poles, origin)},
+                                     {"zeros", rootsJson(step.zeros, origin)},
+                                     {"boundDb", step.boundDb},
+                                     {"rippleDb", step.rippleDb},
+                                     {"errorBound", numberOrNull(step.errorBound)},
+                                     {"error", step.error}});
+        rows.push_back({std::to_string(step.order), step.cancelled ? "pair" : "remote", fixed(step.boundDb, 3),
+                        fixed(step.rippleDb, 3)});
     }
     terminal.table({"order", "taken out", "bound dB", "ripple dB"}, rows);
     terminal.say("Ended: " + result.reason + ".");
     if (result.delay != 0.0)
-        terminal.say("The model answers " + significant(-1e6 * result.delay, 4) + " us earlier than the one it came from.");
+        terminal.say("The model answers " + significant(-1e6 * result.delay, 4)
+                     + " us earlier than the one it came from.");
 }
 
 void run(const ReduceArguments& options, Terminal& terminal)
@@ -127,7 +137,8 @@ void run(const ReduceArguments& options, Terminal& terminal)
     requireFilePlace(options.out);
     auto open = openModel(options.model);
     const auto& model = open.named.model;
-    Json document {{"format", "excursion-reduction"}, {"version", 1}, {"source", options.model}, {"from", model.order()}};
+    Json document {
+        {"format", "excursion-reduction"}, {"version", 1}, {"source", options.model}, {"from", model.order()}};
     if (options.rippleDb > 0.0)
         takeOut(options, open, document, terminal);
     else if (options.response.path.empty())
@@ -143,23 +154,33 @@ void run(const ReduceArguments& options, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addReduce(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<ReduceArguments>();
-    auto* verb = app.add_subcommand("reduce", "A smaller linear model in place of a large one, with a bound or with the error that it has")
+    auto* verb = app.add_subcommand(
+                        "reduce",
+                        "A smaller linear model in place of a large one, with a bound or with the error that it has")
                      ->group(step::fit);
     verb->add_option("MODEL", o->model, "the model, as identify wrote it")->required();
     verb->add_option("--order", o->order, "the order to reduce it to")->check(CLI::Range(0, 400));
-    verb->add_option("--response", o->response.path, "prune by this take or response, refitting after every step; else the model is balanced and truncated")
+    verb->add_option(
+            "--response", o->response.path,
+            "prune by this take or response, refitting after every step; else the model is balanced and truncated")
         ->type_name("TAKE");
-    verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
-    verb->add_option("--error", o->errorDb, "stop pruning before the weighted error would pass this, dB")->check(CLI::Range(-400.0, 0.0));
-    verb->add_option("--ripple", o->rippleDb, "take out remote poles and zeros, and pairs that cancel, as long as all of it ripples by no more than this, dB")
+    verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")
+        ->check(CLI::NonNegativeNumber);
+    verb->add_option("--error", o->errorDb, "stop pruning before the weighted error would pass this, dB")
+        ->check(CLI::Range(-400.0, 0.0));
+    verb->add_option("--ripple", o->rippleDb,
+                     "take out remote poles and zeros, and pairs that cancel, as long as all of it ripples by no more "
+                     "than this, dB")
         ->check(CLI::Range(0.0, 60.0))
         ->excludes("--response");
-    verb->add_option("--band", o->band, "lowest and highest frequency that the ripple counts at, Hz; a model of continuous time needs them")
+    verb->add_option(
+            "--band", o->band,
+            "lowest and highest frequency that the ripple counts at, Hz; a model of continuous time needs them")
         ->delimiter(',')
         ->expected(2)
         ->needs("--ripple");
@@ -168,4 +189,4 @@ void addReduce(CLI::App& app, Terminal& terminal)
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -35,8 +35,11 @@ void drawLadder(const std::string& folder, Terminal& terminal)
 void drawDocument(const std::string& path, Terminal& terminal)
 {
     if (std::filesystem::path(path).extension() != ".json")
-        throw Error(Error::Kind::usage, "'" + path + "' is no document of this program: a page is drawn of the folder of excursion improve, or of a .json; "
-                                                "if it is a take, excursion improve '" + path + "' --out DIR draws its page.");
+        throw Error(Error::Kind::usage, "'" + path
+                                            + "' is no document of this program: a page is drawn of the folder of "
+                                              "excursion improve, or of a .json; "
+                                              "if it is a take, excursion improve '"
+                                            + path + "' --out DIR draws its page.");
     const auto document = readJson(path);
     const auto page = std::filesystem::path(path).replace_extension(".html").string();
     requireFilePlace(page);
@@ -51,18 +54,22 @@ void run(const std::string& place, Terminal& terminal)
     (std::filesystem::is_regular_file(place, ignored) ? drawDocument : drawLadder)(place, terminal);
 }
 
-} // namespace
+}  // namespace
 
 void addReport(CLI::App& app, Terminal& terminal)
 {
     auto place = std::make_shared<std::string>();
-    auto* verb = app.add_subcommand("report", "Draw a ladder again, or a document of identify, pnlss or rank, as one page that needs nothing else")
-                     ->group(step::diagnose);
+    auto* verb =
+        app.add_subcommand(
+               "report",
+               "Draw a ladder again, or a document of identify, pnlss or rank, as one page that needs nothing else")
+            ->group(step::diagnose);
     verb->add_option("PLACE", *place,
-                     "folder of an earlier improve: ladder.json is read, report.html written; or a .json: a model of identify (--cone too), reduce or stabilize, or what --json "
+                     "folder of an earlier improve: ladder.json is read, report.html written; or a .json: a model of "
+                     "identify (--cone too), reduce or stabilize, or what --json "
                      "FILE of identify, pnlss or rank wrote, beside which the page is put")
         ->required();
     verb->callback([place, &terminal] { run(*place, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -40,14 +40,16 @@ FrequencyData dataFor(const StabilizeArguments& options, const OpenModel& open)
     if (options.response.path.empty())
         return sampled(named.model, 1000, open.alpha);
     if (named.model.inputs() != 1 || named.model.outputs() != 1)
-        throw Error(Error::Kind::data, "Only models with one input and one output are stabilized by a response; leave --frf out.");
+        throw Error(Error::Kind::data,
+                    "Only models with one input and one output are stabilized by a response; leave --frf out.");
     auto choice = options.response;
     choice.input = named.inputs[0];
     choice.output = named.outputs[0];
     return delayed(frequencyDataOf(openResponse(choice).frf), named.delay);
 }
 
-Stabilization stabilizeBy(const StabilizeArguments& options, const OpenModel& open, const FrequencyData& data, Terminal& terminal)
+Stabilization stabilizeBy(const StabilizeArguments& options, const OpenModel& open, const FrequencyData& data,
+                          Terminal& terminal)
 {
     StabilizeOptions stabilizing;
     stabilizing.alpha = open.alpha;
@@ -64,15 +66,19 @@ void print(const Stabilization& result, Terminal& terminal)
 {
     std::vector<std::vector<std::string>> rows;
     for (const auto& step : result.steps)
-        rows.push_back({step.what, std::to_string(step.order), step.stable ? "yes" : "no", fixed(step.errorDb, 1), fixed(step.weightedErrorDb, 1)});
+        rows.push_back({step.what, std::to_string(step.order), step.stable ? "yes" : "no", fixed(step.errorDb, 1),
+                        fixed(step.weightedErrorDb, 1)});
     terminal.table({"model", "order", "stable", "error dB", "weighted dB"}, rows);
     if (result.delay != 0.0)
         terminal.say("The model answers " + significant(1e6 * result.delay, 5) + " us later than the response"
-                     + (result.delayDeviation && std::isfinite(*result.delayDeviation) ? " (+- " + significant(1e6 * *result.delayDeviation, 2) + " us)." : "."));
+                     + (result.delayDeviation && std::isfinite(*result.delayDeviation)
+                            ? " (+- " + significant(1e6 * *result.delayDeviation, 2) + " us)."
+                            : "."));
     terminal.say("Ended: " + result.reason + ".");
 }
 
-void writeUnstable(const StabilizeArguments& options, OpenModel open, const Decomposition& parts, Json& document, Terminal& terminal)
+void writeUnstable(const StabilizeArguments& options, OpenModel open, const Decomposition& parts, Json& document,
+                   Terminal& terminal)
 {
     open.named.model = parts.unstable;
     const auto kept = documentOf(open);
@@ -81,7 +87,8 @@ void writeUnstable(const StabilizeArguments& options, OpenModel open, const Deco
     if (options.unstable.empty())
         return;
     writeJson(kept, options.unstable);
-    terminal.say("Wrote " + options.unstable + ", the unstable part of order " + std::to_string(parts.unstable.order()) + ".");
+    terminal.say("Wrote " + options.unstable + ", the unstable part of order " + std::to_string(parts.unstable.order())
+                 + ".");
 }
 
 void run(const StabilizeArguments& options, Terminal& terminal)
@@ -96,9 +103,11 @@ void run(const StabilizeArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage, "--seconds goes with --method delay.");
     auto open = openModel(options.model);
     if (open.fractional && options.method == "delay")
-        throw Error(Error::Kind::usage, "No delay is fitted with a model of fractional order; mirror, project or decompose it.");
+        throw Error(Error::Kind::usage,
+                    "No delay is fitted with a model of fractional order; mirror, project or decompose it.");
     const auto data = dataFor(options, open);
-    Json document {{"format", "excursion-stabilization"}, {"version", 1}, {"source", options.model}, {"method", options.method}};
+    Json document {
+        {"format", "excursion-stabilization"}, {"version", 1}, {"source", options.model}, {"method", options.method}};
     document["response"] = options.response.path.empty() ? Json() : Json(options.response.path);
     const auto result = stabilizeBy(options, open, data, terminal);
     if (result.parts)
@@ -107,7 +116,10 @@ void run(const StabilizeArguments& options, Terminal& terminal)
     open.named.delay += result.delay;
     document["steps"] = Json::array();
     for (const auto& step : result.steps)
-        document["steps"].push_back({{"step", step.what}, {"order", step.order}, {"stable", step.stable}, {"errorDb", step.errorDb},
+        document["steps"].push_back({{"step", step.what},
+                                     {"order", step.order},
+                                     {"stable", step.stable},
+                                     {"errorDb", step.errorDb},
                                      {"weightedErrorDb", step.weightedErrorDb}});
     document["delay"] = result.delay;
     document["delayDeviation"] = numberOrNull(result.delayDeviation.value_or(unknown));
@@ -121,25 +133,32 @@ void run(const StabilizeArguments& options, Terminal& terminal)
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addStabilize(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<StabilizeArguments>();
-    auto* verb = app.add_subcommand("stabilize", "A stable linear model in place of an unstable one, and what each step costs")->group(step::fit);
+    auto* verb = app.add_subcommand("stabilize",
+                                    "A stable linear model in place of an unstable one, and what each step costs")
+                     ->group(step::fit);
     verb->add_option("MODEL", o->model, "the model, as identify --allow-unstable wrote it")->required();
     verb->add_option("--method", o->method,
-                     "mirror unstable poles, project on the stable part, add a delay and fit again, or decompose into a stable and an unstable model")
+                     "mirror unstable poles, project on the stable part, add a delay and fit again, or decompose into "
+                     "a stable and an unstable model")
         ->check(CLI::IsMember({"mirror", "project", "delay", "decompose"}))
         ->capture_default_str();
-    verb->add_option("--frf", o->response.path, "the take or response that the model is of, to fit it to again; by default the model's own response")
+    verb->add_option(
+            "--frf", o->response.path,
+            "the take or response that the model is of, to fit it to again; by default the model's own response")
         ->type_name("TAKE");
-    verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")->check(CLI::NonNegativeNumber);
+    verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")
+        ->check(CLI::NonNegativeNumber);
     verb->add_option("--seconds", o->seconds, "the delay to add; by default the one that fits best is looked for");
     verb->add_flag("--no-refit", o->unfitted, "leave out the constrained fit at the end");
-    verb->add_option("--unstable", o->unstable, "write the unstable part of --method decompose, a .json")->type_name("FILE");
+    verb->add_option("--unstable", o->unstable, "write the unstable part of --method decompose, a .json")
+        ->type_name("FILE");
     verb->add_option("--out", o->out, "the stable model, a .json")->required()->type_name("FILE");
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

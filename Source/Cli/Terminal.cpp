@@ -27,7 +27,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 extern "C" void onInterrupt(int signal)
 {
     interrupted = true;
-    std::signal(signal, SIG_DFL);   // the second Ctrl-C is for work that does not listen
+    std::signal(signal, SIG_DFL);  // the second Ctrl-C is for work that does not listen
 }
 
 bool isStderrATerminal()
@@ -63,12 +63,12 @@ double shareFrom(double fraction) { return std::isfinite(fraction) ? std::clamp(
 
 std::string formatted(double value, std::chars_format format, int precision)
 {
-    std::array<char, 400> text {};   // a fixed 1e308 has 309 digits
+    std::array<char, 400> text {};  // a fixed 1e308 has 309 digits
     const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, format, precision);
     return error == std::errc() ? std::string(text.data(), end) : std::string("?");
 }
 
-} // namespace
+}  // namespace
 
 Terminal::Terminal() : stderrIsTerminal_(isStderrATerminal())
 {
@@ -181,7 +181,7 @@ std::string fixed(double value, int decimals)
 {
     auto text = formatted(value, std::chars_format::fixed, decimals);
     if (text.starts_with('-') && text.find_first_not_of("-0.") == std::string::npos)
-        text.erase(0, 1);   // a rounded zero has no sign
+        text.erase(0, 1);  // a rounded zero has no sign
     return text;
 }
 
@@ -220,4 +220,4 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t colum
     return result;
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

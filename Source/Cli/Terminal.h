@@ -18,7 +18,8 @@ namespace excursion::cli {
 ///  - with --json the one document of the verb on stdout, and nothing else;
 ///  - with --json FILE.json the document in that file, and the text for a person on stdout;
 ///  - with --quiet nothing but errors (and the document, when --json asks for it too);
-///  - with --progress a line "progress 0.31 fitting stiffness" on stderr at each hundredth of the work, for programs that read it.
+///  - with --progress a line "progress 0.31 fitting stiffness" on stderr at each hundredth of the work, for programs
+///  that read it.
 /// Ctrl-C asks the work to stop (`stop()`); a second Ctrl-C ends the program on the spot.
 class Terminal {
 public:
@@ -28,11 +29,12 @@ public:
     Terminal& operator=(const Terminal&) = delete;
 
     std::string jsonFile;   ///< where the document goes: empty: nowhere; "-": stdout
-    bool exitZero = false;   ///< an answer that is no is no failure of the program: exit code 0
+    bool exitZero = false;  ///< an answer that is no is no failure of the program: exit code 0
     bool quiet = false, progressLines = false;
-    int answer = 0;   ///< exit code of a verb that ran well: 1 when its answer is no
+    int answer = 0;  ///< exit code of a verb that ran well: 1 when its answer is no
 
-    /// What long work is given: draws the bar, or prints the lines, and carries the stop of Ctrl-C. Valid as long as the terminal.
+    /// What long work is given: draws the bar, or prints the lines, and carries the stop of Ctrl-C. Valid as long as
+    /// the terminal.
     Progress progress();
     std::stop_token stop() const { return stop_.get_token(); }
 
@@ -55,9 +57,9 @@ private:
 
     bool stderrIsTerminal_ = false;
     bool barIsDrawn_ = false;
-    std::string lastBar_;   ///< or the last line of --progress
+    std::string lastBar_;  ///< or the last line of --progress
     std::stop_source stop_;
-    std::jthread interruptWatch_;   ///< a signal handler may not touch a stop_source itself
+    std::jthread interruptWatch_;  ///< a signal handler may not touch a stop_source itself
 };
 
 /// "-61.0": a number with a fixed count of decimals, for tables. Locale-free.
@@ -73,4 +75,4 @@ std::string significant(double value, int digits = 4);
 /// The text in lines of at most `columns`, broken at blanks; all but the first begin with `indent` blanks.
 std::string wrapped(std::string_view text, std::size_t indent = 0, std::size_t columns = 110);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -19,7 +19,7 @@ inline constexpr auto diagnose = "4. Find what the model is missing, and add it"
 inline constexpr auto use = "5. Use the model";
 inline constexpr auto batch = "6. Many loudspeakers";
 inline constexpr auto around = "Around it";
-} // namespace step
+}  // namespace step
 
 // Declared here in the order of the method, called in the same order by main.
 void addExcite(CLI::App&, Terminal&);
@@ -47,4 +47,4 @@ void addPredistort(CLI::App&, Terminal&);
 void addCollect(CLI::App&, Terminal&);
 void addDoctor(CLI::App&, Terminal&);
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -38,8 +38,10 @@ std::vector<bench::HiddenEffect> effectsOf(const std::vector<std::string>& texts
             const char *first = text.data() + colon + 1, *last = text.data() + text.size();
             const auto [end, error] = std::from_chars(first, last, effect.strength);
             if (error != std::errc() || end != last || !(effect.strength >= 0.01 && effect.strength <= 0.8))
-                throw Error(Error::Kind::usage, "\"" + text + "\" does not name an effect and a strength between 0.01 and 0.8, such as "
-                                                              "stiffness:0.3.");
+                throw Error(Error::Kind::usage,
+                            "\"" + text
+                                + "\" does not name an effect and a strength between 0.01 and 0.8, such as "
+                                  "stiffness:0.3.");
         }
         effects.push_back(effect);
     }
@@ -52,8 +54,9 @@ std::vector<Quantity> channelsOf(const std::vector<std::string>& names)
     for (const auto& text : names) {
         const auto quantity = quantityNamed(text);
         if (!quantity || *quantity == Quantity::force)
-            throw Error(Error::Kind::usage, "The virtual bench has no channel \"" + text
-                                                + "\"; choose from voltage, current, displacement, velocity, acceleration and pressure.");
+            throw Error(Error::Kind::usage,
+                        "The virtual bench has no channel \"" + text
+                            + "\"; choose from voltage, current, displacement, velocity, acceleration and pressure.");
         if (std::find(channels.begin(), channels.end(), *quantity) == channels.end())
             channels.push_back(*quantity);
     }
@@ -94,9 +97,15 @@ void run(const VirtualArguments& options, Terminal& terminal)
         publish(options.truth, bench::truthOf(drawn).dump(2) + "\n");
 
     const auto& plan = *take.excitation;
-    nlohmann::ordered_json document {{"format", "excursion-virtual"}, {"version", 1}, {"take", options.out}, {"seed", options.seed}, {"driver", drawn.driver}, {"sampleRate", take.sampleRate},
-                             {"seconds", static_cast<double>(take.length()) / take.sampleRate}, {"period", plan.period},
-                             {"levels", plan.levels}};
+    nlohmann::ordered_json document {{"format", "excursion-virtual"},
+                                     {"version", 1},
+                                     {"take", options.out},
+                                     {"seed", options.seed},
+                                     {"driver", drawn.driver},
+                                     {"sampleRate", take.sampleRate},
+                                     {"seconds", static_cast<double>(take.length()) / take.sampleRate},
+                                     {"period", plan.period},
+                                     {"levels", plan.levels}};
     for (const auto& channel : take.channels)
         document["channels"].push_back(name(channel.quantity));
     terminal.document(document);
@@ -104,25 +113,28 @@ void run(const VirtualArguments& options, Terminal& terminal)
     std::string channels;
     for (const auto& channel : take.channels)
         channels += (channels.empty() ? "" : ", ") + std::string(name(channel.quantity));
-    terminal.say(options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 1) + " s of a virtual " + drawn.driver
-                 + " at " + fixed(take.sampleRate, 0) + " Hz (" + channels + "), up to " + significant(plan.levels.back(), 3) + " V rms.");
+    terminal.say(options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 1)
+                 + " s of a virtual " + drawn.driver + " at " + fixed(take.sampleRate, 0) + " Hz (" + channels
+                 + "), up to " + significant(plan.levels.back(), 3) + " V rms.");
     if (!options.truth.empty())
         terminal.say("What was hidden is in " + options.truth + ".");
 }
 
-} // namespace
+}  // namespace
 
 void addVirtual(CLI::App& app, Terminal& terminal)
 {
     auto options = std::make_shared<VirtualArguments>();
-    auto* verb = app.add_subcommand("virtual", "A take of a virtual loudspeaker with something hidden in it")->group(step::measure);
+    auto* verb = app.add_subcommand("virtual", "A take of a virtual loudspeaker with something hidden in it")
+                     ->group(step::measure);
     verb->add_option("--seed", options->seed, "what is drawn, noise included")->required();
     auto* hidden = verb->add_option("--hidden", options->hidden,
                                     "effects to hide, each with an optional strength (stiffness:0.3), or none; "
                                     "without this option one is drawn and not told")
                        ->delimiter(',');
     verb->add_option("--driver", options->driver, "micro, midrange, midbass, woofer, subwoofer or seed");
-    auto* noise = verb->add_option("--noise", options->noise, "sensor noise in dB against the loudest level")->check(CLI::Range(-200.0, 0.0));
+    auto* noise = verb->add_option("--noise", options->noise, "sensor noise in dB against the loudest level")
+                      ->check(CLI::Range(-200.0, 0.0));
     verb->add_option("--rate", options->rate, "sample rate in Hz");
     verb->add_option("--seconds", options->seconds, "length of the take, about")->check(CLI::Range(1.0, 120.0));
     verb->add_option("--channels", options->channels, "what is recorded, beside voltage")->delimiter(',');
@@ -135,4 +147,4 @@ void addVirtual(CLI::App& app, Terminal& terminal)
     });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

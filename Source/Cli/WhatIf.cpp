@@ -42,8 +42,8 @@ void printChannel(const DistortionByEffect& distortion, std::size_t channel, Ter
     for (const auto& effect : distortion.effects) {
         const auto* without = effect.without.empty() ? nullptr : &effect.without[channel];
         const auto* alone = effect.alone.empty() ? nullptr : &effect.alone[channel];
-        rows.push_back({"without " + effect.effect, without ? levelText(without->evenDb) : "-", without ? levelText(without->oddDb) : "-",
-                        without ? fixed(without->gainDb, 2) : "-",
+        rows.push_back({"without " + effect.effect, without ? levelText(without->evenDb) : "-",
+                        without ? levelText(without->oddDb) : "-", without ? fixed(without->gainDb, 2) : "-",
                         without ? fixed(fallWithout(distortion, effect, whole.quantity), 1) : "-",
                         alone ? levelText(alone->evenDb) : "", alone ? levelText(alone->oddDb) : ""});
     }
@@ -56,10 +56,12 @@ void printLimits(const StrokeLimits& stroke, Terminal& terminal)
 {
     std::vector<std::vector<std::string>> rows;
     for (const auto& limit : stroke.limits)
-        rows.push_back({limit.name + " " + limit.criterion, placeOf(limit.inward, limit.inwardEnd), placeOf(limit.outward, limit.outwardEnd)});
+        rows.push_back({limit.name + " " + limit.criterion, placeOf(limit.inward, limit.inwardEnd),
+                        placeOf(limit.outward, limit.outwardEnd)});
     terminal.say("");
-    terminal.say("Stroke, within the measured " + significant(1e3 * stroke.range, 3) + " mm either way; impedance and Doppler shift at "
-                 + significant(stroke.tone, 3) + " Hz, 8.5 times the resonance");
+    terminal.say("Stroke, within the measured " + significant(1e3 * stroke.range, 3)
+                 + " mm either way; impedance and Doppler shift at " + significant(stroke.tone, 3)
+                 + " Hz, 8.5 times the resonance");
     terminal.table({"limit", "inward", "outward"}, rows);
 }
 
@@ -69,29 +71,35 @@ void run(const WhatIfArguments& options, Terminal& terminal)
     const auto open = openTake(options.take);
     requireSameKind(model, open);
     if (open.spectra())
-        throw Error(Error::Kind::data, "'" + options.take + "' is a frequency response: it has no stimulus that could be played. Give a take or a plan.");
+        throw Error(Error::Kind::data,
+                    "'" + options.take
+                        + "' is a frequency response: it has no stimulus that could be played. Give a take or a plan.");
     const auto result = whatIf(model, recordFor(model, open), terminal.progress());
-    terminal.say("Stimulus: the loudest of the take, " + significant(result.distortion.level, 3) + " " + open.measurement().input().unit + " rms.");
+    terminal.say("Stimulus: the loudest of the take, " + significant(result.distortion.level, 3) + " "
+                 + open.measurement().input().unit + " rms.");
     for (std::size_t c = 0; c < result.distortion.whole.size(); ++c)
         printChannel(result.distortion, c, terminal);
     terminal.say("Gain: the level against that of the linear part. Alone: the effect beside the linear ones only.");
     printLimits(result.stroke, terminal);
     terminal.say("");
     terminal.say(wrapped(advice(result)));
-    nlohmann::ordered_json document {{"format", "excursion-whatif"}, {"version", 1}, {"model", options.model}, {"take", options.take}};
+    nlohmann::ordered_json document {
+        {"format", "excursion-whatif"}, {"version", 1}, {"model", options.model}, {"take", options.take}};
     document.update(toJson(result));
     terminal.document(document);
 }
 
-} // namespace
+}  // namespace
 
 void addWhatIf(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<WhatIfArguments>();
-    auto* verb = app.add_subcommand("whatif", "Which effect makes which distortion, how far the coil may go, and what to change")->group(step::use);
+    auto* verb = app.add_subcommand("whatif",
+                                    "Which effect makes which distortion, how far the coil may go, and what to change")
+                     ->group(step::use);
     verb->add_option("MODEL", o->model, "the model, a .json")->required();
     verb->add_option("TAKE", o->take, "what is played: the loudest of a take")->required();
     verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
-} // namespace excursion::cli
+}  // namespace excursion::cli

@@ -37,20 +37,22 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
 No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with something hidden in it.
 A take is a folder (measurement.json and its WAV), or a file of another program, such as a .zma, .csv or .txt. Each verb has its own --help.)";
 
-constexpr auto footer = R"(Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file that cannot be used,
+constexpr auto footer =
+    R"(Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file that cannot be used,
 4 data that cannot answer the question, 5 a computation that failed, 6 stopped by Ctrl-C.)";
 
-constexpr int internalError = 70;   // as sysexits.h has it; 1 is an answer
+constexpr int internalError = 70;  // as sysexits.h has it; 1 is an answer
 
-/// The arguments, last one first as CLI11 wants them. "--json out.json" is made "--json=out.json", and "--json" alone "--json=-":
-/// an option whose value may be left out would take the take that follows it.
+/// The arguments, last one first as CLI11 wants them. "--json out.json" is made "--json=out.json", and "--json" alone
+/// "--json=-": an option whose value may be left out would take the take that follows it.
 std::vector<std::string> argumentsFrom(int argc, char** argv)
 {
     std::vector<std::string> arguments;
     for (int k = 1; k < argc; ++k) {
         std::string argument = argv[k];
         if (argument == "--json")
-            argument += std::string("=") + (k + 1 < argc && std::string_view(argv[k + 1]).ends_with(".json") ? argv[++k] : "-");
+            argument += std::string("=")
+                        + (k + 1 < argc && std::string_view(argv[k + 1]).ends_with(".json") ? argv[++k] : "-");
         arguments.insert(arguments.begin(), argument);
     }
     return arguments;
@@ -77,7 +79,7 @@ int run(CLI::App& app, cli::Terminal& terminal, std::vector<std::string> argumen
         app.parse(std::move(arguments));
         return terminal.exitZero ? 0 : terminal.answer;
     } catch (const CLI::ParseError& e) {
-        if (e.get_exit_code() == 0)   // --help and --version
+        if (e.get_exit_code() == 0)  // --help and --version
             return app.exit(e);
         terminal.complain(std::string(e.what()) + " (see excursion --help)");
         return static_cast<int>(Error::Kind::usage);
@@ -96,22 +98,24 @@ int run(CLI::App& app, cli::Terminal& terminal, std::vector<std::string> argumen
     }
 }
 
-} // namespace
+}  // namespace
 
 int main(int argc, char** argv)
 {
     cli::Terminal terminal;
     CLI::App app(tour, "excursion");
-    app.formatter(std::make_shared<cli::Help>());   // the verbs inherit it
-    app.fallthrough();   // so that --json may stand after the verb
+    app.formatter(std::make_shared<cli::Help>());  // the verbs inherit it
+    app.fallthrough();                             // so that --json may stand after the verb
     app.set_version_flag("--version", EXCURSION_VERSION);
     app.add_option("--json", terminal.jsonFile, "print one JSON document and nothing else, or write it to FILE.json")
         ->type_name("[FILE.json]");
-    app.add_flag("--exit-zero", terminal.exitZero, "exit with 0, not 1, when the work is done and its answer is no; for scripts that stop at failures");
+    app.add_flag("--exit-zero", terminal.exitZero,
+                 "exit with 0, not 1, when the work is done and its answer is no; for scripts that stop at failures");
     app.add_flag("--quiet", terminal.quiet, "print nothing but errors");
-    app.add_flag("--progress", terminal.progressLines, "tell on stderr how far the work is, in lines that a program can read");
+    app.add_flag("--progress", terminal.progressLines,
+                 "tell on stderr how far the work is, in lines that a program can read");
     app.require_subcommand(1);
-    app.parse_complete_callback([&terminal] {   // before the verb does its work
+    app.parse_complete_callback([&terminal] {  // before the verb does its work
         if (!terminal.jsonFile.empty() && terminal.jsonFile != "-")
             cli::requireFilePlace(terminal.jsonFile);
     });
@@ -143,7 +147,7 @@ int main(int argc, char** argv)
 
     cli::addDoctor(app, terminal);
 
-    app.footer(footer);   // last, as the verbs would inherit it
+    app.footer(footer);  // last, as the verbs would inherit it
 
     // For packages: no group, so that --help does not show them.
     const auto printing = [&app](auto make) {
@@ -152,8 +156,10 @@ int main(int argc, char** argv)
             throw CLI::Success();
         };
     };
-    app.add_flag_callback("--manual", printing([](const CLI::App& a) { return cli::manualOf(a, EXCURSION_VERSION); }))->group("");
-    app.add_flag_callback("--bash-completion", printing([](const CLI::App& a) { return cli::bashCompletionOf(a); }))->group("");
+    app.add_flag_callback("--manual", printing([](const CLI::App& a) { return cli::manualOf(a, EXCURSION_VERSION); }))
+        ->group("");
+    app.add_flag_callback("--bash-completion", printing([](const CLI::App& a) { return cli::bashCompletionOf(a); }))
+        ->group("");
 
     return run(app, terminal, argumentsFrom(argc, argv));
 }

@@ -12,9 +12,10 @@ class Error : public std::runtime_error {
 public:
     /// Scripts see the kind as the exit code of the command.
     enum class Kind {
-        usage = 2,      ///< an option or argument makes no sense
-        input = 3,      ///< a file is missing, unreadable, truncated, of the wrong version or not finite
-        data = 4,       ///< the file is well formed but cannot answer the question (too short, a channel is missing)
+        usage = 2,  ///< an option or argument makes no sense
+        input = 3,  ///< a file is missing, unreadable, truncated, of the wrong version or not finite
+        /// the file is well formed but cannot answer the question (too short, a channel is missing)
+        data = 4,
         numerical = 5,  ///< a computation did not converge or left the finite numbers
         cancelled = 6   ///< the caller asked to stop
     };
@@ -28,4 +29,4 @@ private:
     Kind kind_;
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -38,4 +38,4 @@ struct Progress {
     }
 };
 
-} // namespace excursion
+}  // namespace excursion

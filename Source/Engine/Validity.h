@@ -6,8 +6,8 @@
 
 namespace excursion {
 
-/// What isValid(std::string* reason) of options and models returns where something is wrong: false, and one sentence in `reason` where that is
-/// not null.
+/// What isValid(std::string* reason) of options and models returns where something is wrong: false, and one sentence in
+/// `reason` where that is not null.
 inline bool refuse(std::string* reason, std::string sentence)
 {
     if (reason)
@@ -15,4 +15,4 @@ inline bool refuse(std::string* reason, std::string sentence)
     return false;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,10 +10,10 @@
 namespace excursion {
 namespace {
 
-constexpr std::size_t mostNames = 8;   // that stand beside one another below an axis
+constexpr std::size_t mostNames = 8;  // that stand beside one another below an axis
 constexpr std::size_t mostInKey = 4;
 
-} // namespace
+}  // namespace
 
 Plot quantityPlot(const Collection& all, const Quantities& q)
 {
@@ -71,8 +71,8 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
     }
     const auto argument = displayUnit(across, laws.argumentUnit), value = displayUnit(up, laws.unit);
     Plot plot;
-    plot.title =
-        laws.name + " of " + std::to_string(laws.ofUnit.size()) + (laws.ofUnit.size() == 1 ? " unit" : " units");
+    plot.title = laws.name + " of " + std::to_string(laws.ofUnit.size())
+                 + (laws.ofUnit.size() == 1 ? " unit" : " units");
     plot.x = {laws.argument, argument.unit, false, 0.0, 0.0, {}};
     plot.y = {laws.name, value.unit, false, 0.0, 0.0, {}};
     const auto draw = [&](const LawTable& law, Role role, const std::string& title) {
@@ -101,4 +101,4 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
     return plot;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,4 +13,4 @@ Plot quantityPlot(const Collection&, const Quantities&);
 /// A law of every unit: the golden one and the outliers stand out.
 Plot lawsPlot(const Collection&, const LawsOfUnits&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,8 @@ namespace {
 std::string raw(double value, int decimals)
 {
     std::array<char, 400> text {};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr;
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr;
     return {text.data(), end};
 }
 
@@ -44,8 +45,8 @@ struct Prefix {
 
 Prefix prefixFor(double size)
 {
-    constexpr std::array prefixes {Prefix {-12, "p"}, Prefix {-9, "n"}, Prefix {-6, "\u00b5"}, Prefix {-3, "m"}, Prefix {0, ""},
-                                   Prefix {3, "k"},   Prefix {6, "M"},  Prefix {9, "G"}};
+    constexpr std::array prefixes {Prefix {-12, "p"}, Prefix {-9, "n"}, Prefix {-6, "\u00b5"}, Prefix {-3, "m"},
+                                   Prefix {0, ""},    Prefix {3, "k"},  Prefix {6, "M"},       Prefix {9, "G"}};
     auto best = prefixes.front();
     for (const auto& p : prefixes)
         if (size >= 0.9995 * std::pow(10.0, p.exponent))
@@ -59,11 +60,11 @@ int decimalsFor(double value, int digits)
     if (size == 0.0)
         return 0;
     const double unit = std::pow(10.0, std::floor(std::log10(size)) + 1 - digits);
-    size = std::max(size, unit * std::round(size / unit));   // 9.996 becomes 10.00 and has a decimal less
+    size = std::max(size, unit * std::round(size / unit));  // 9.996 becomes 10.00 and has a decimal less
     return std::clamp(digits - 1 - static_cast<int>(std::floor(std::log10(size) + 1e-9)), 0, 12);
 }
 
-} // namespace
+}  // namespace
 
 std::string typesetUnit(std::string_view unit)
 {
@@ -140,7 +141,7 @@ std::string withError(double value, double standardError, std::string_view unit)
     const double scaled = value * shown.factor, error = standardError * shown.factor;
     const int decimals = std::min(decimalsFor(error, 2), std::max(decimalsFor(scaled, 6), 0));
     return trueMinus(raw(scaled, decimals)) + " \u00b1 " + raw(error, decimals)
-         + (shown.unit.empty() ? "" : "\u202f" + shown.unit);
+           + (shown.unit.empty() ? "" : "\u202f" + shown.unit);
 }
 
 std::string fixedText(double value, int decimals)
@@ -153,4 +154,4 @@ std::string decibels(double value)
     return std::isfinite(value) ? fixedText(value, 1) + "\u202fdB" : std::string("\u2013");
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,7 +11,7 @@ namespace excursion {
 /// The unit to show numbers of about this size in: shown = value * factor.
 struct DisplayUnit {
     double factor = 1.0;
-    std::string unit;   ///< typeset, UTF-8: "µH", "N·s/m", "Ω"
+    std::string unit;  ///< typeset, UTF-8: "µH", "N·s/m", "Ω"
 };
 
 /// @param size  the largest of the numbers
@@ -32,6 +32,6 @@ std::string withError(double value, double standardError, std::string_view unit)
 
 /// Locale-free numbers. A minus is a true minus sign in typeset text.
 std::string fixedText(double value, int decimals);
-std::string decibels(double value);   ///< "−61.0 dB", an en dash when not finite
+std::string decibels(double value);  ///< "−61.0 dB", an en dash when not finite
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-} // namespace
+}  // namespace
 
 Plot fallPlot(const Ladder& ladder, Quantity quantity)
 {
@@ -49,4 +49,4 @@ Plot fallPlot(const Ladder& ladder, Quantity quantity)
     return plot;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -15,17 +15,31 @@ std::vector<Plot> lawPlots(const Model& model)
         plot.title = effectTitle(law.effectId);
         plot.x = {law.info.argument, across.unit, false, 0.0, 0.0, {}};
         plot.y = {law.info.name, up.unit, false, 0.0, 0.0, {}};
-        Series curve {law.info.name, Role::model, scaled(law.argument, across.factor), scaled(law.value, up.factor), {}, {}, Series::Shape::line, 0};
+        Series curve {law.info.name,
+                      Role::model,
+                      scaled(law.argument, across.factor),
+                      scaled(law.value, up.factor),
+                      {},
+                      {},
+                      Series::Shape::line,
+                      0};
         for (std::size_t k = 0; k < law.value.size(); ++k) {
             curve.lower.push_back((law.value[k] - law.halfWidth[k]) * up.factor);
             curve.upper.push_back((law.value[k] + law.halfWidth[k]) * up.factor);
         }
         const double base = model.baseParameter(law.info.base).value * up.factor;
-        plot.series = {{law.info.base + " at rest", Role::reference, {curve.x.front(), curve.x.back()}, {base, base}, {}, {}, Series::Shape::line, 0},
+        plot.series = {{law.info.base + " at rest",
+                        Role::reference,
+                        {curve.x.front(), curve.x.back()},
+                        {base, base},
+                        {},
+                        {},
+                        Series::Shape::line,
+                        0},
                        std::move(curve)};
         plots.push_back(std::move(plot));
     }
     return plots;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,12 +16,15 @@ using Complex = std::complex<double>;
 using std::numbers::pi;
 
 /// lambda of a pole or zero: ln z in discrete time.
-Complex lambdaOf(Complex root, const StateSpace& model) { return model.continuous() ? root : model.sampleRate * std::log(root); }
+Complex lambdaOf(Complex root, const StateSpace& model)
+{
+    return model.continuous() ? root : model.sampleRate * std::log(root);
+}
 
 double frequencyOf(Complex lambda, double alpha) { return std::pow(std::abs(lambda), 1.0 / alpha) / (2.0 * pi); }
 
-/// The frequencies over which a loudspeaker's model has something to tell: up to a decade around its poles below 100 kHz, within the Nyquist frequency. Poles
-/// beyond stand for what a fit could not resolve.
+/// The frequencies over which a loudspeaker's model has something to tell: up to a decade around its poles below 100
+/// kHz, within the Nyquist frequency. Poles beyond stand for what a fit could not resolve.
 std::array<double, 2> bandOf(const StateSpace& model, double alpha)
 {
     double low = std::numeric_limits<double>::infinity(), high = 0.0;
@@ -42,21 +45,23 @@ std::array<double, 2> bandOf(const StateSpace& model, double alpha)
 }
 
 /// Single points: a gap behind each keeps them apart.
-Series points(const std::string& title, Role role, const std::vector<Complex>& roots, const StateSpace& model, double alpha)
+Series points(const std::string& title, Role role, const std::vector<Complex>& roots, const StateSpace& model,
+              double alpha)
 {
     Series series {title, role, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
     for (const auto root : roots) {
         const auto lambda = lambdaOf(root, model);
         const double f = frequencyOf(lambda, alpha);
         if (!(f > 0.0) || !std::isfinite(f) || lambda.imag() < 0.0)
-            continue;   // the conjugate is there
+            continue;  // the conjugate is there
         series.x.insert(series.x.end(), {f, std::numeric_limits<double>::quiet_NaN()});
-        series.y.insert(series.y.end(), {std::abs(std::arg(lambda)) * 180.0 / pi, std::numeric_limits<double>::quiet_NaN()});
+        series.y.insert(series.y.end(),
+                        {std::abs(std::arg(lambda)) * 180.0 / pi, std::numeric_limits<double>::quiet_NaN()});
     }
     return series;
 }
 
-} // namespace
+}  // namespace
 
 Plot rootsPlot(const StateSpace& model, double alpha)
 {
@@ -70,7 +75,14 @@ Plot rootsPlot(const StateSpace& model, double alpha)
     const auto band = bandOf(model, alpha);
     plot.x.least = band[0];
     plot.x.most = band[1];
-    plot.series.push_back({"border of stability", Role::reference, {band[0], band[1]}, {90.0 * alpha, 90.0 * alpha}, {}, {}, Series::Shape::line, 0});
+    plot.series.push_back({"border of stability",
+                           Role::reference,
+                           {band[0], band[1]},
+                           {90.0 * alpha, 90.0 * alpha},
+                           {},
+                           {},
+                           Series::Shape::line,
+                           0});
     return plot;
 }
 
@@ -83,7 +95,8 @@ Plot gainSurfacePlot(const StateSpace& model, double alpha)
     const auto n = model.order();
     const auto band = bandOf(model, alpha);
     constexpr int count = 240;
-    const std::array<std::pair<double, Role>, 4> rays {{{90.0, Role::model}, {105.0, Role::after}, {135.0, Role::error}, {180.0, Role::noise}}};
+    const std::array<std::pair<double, Role>, 4> rays {
+        {{90.0, Role::model}, {105.0, Role::after}, {135.0, Role::error}, {180.0, Role::noise}}};
     for (const auto& [degrees, role] : rays) {
         std::array<char, 32> title {};
         std::snprintf(title.data(), title.size(), "%.0f\u00b0", degrees);
@@ -94,9 +107,12 @@ Plot gainSurfacePlot(const StateSpace& model, double alpha)
             const Complex lambda = model.continuous() ? std::pow(s, alpha) : std::exp(s / model.sampleRate);
             Eigen::MatrixXcd M = -model.A.cast<Complex>();
             M.diagonal().array() += lambda;
-            const Complex G = (model.C.row(0).cast<Complex>() * M.partialPivLu().solve(model.B.col(0).cast<Complex>())).value() + model.D(0, 0);
+            const Complex G =
+                (model.C.row(0).cast<Complex>() * M.partialPivLu().solve(model.B.col(0).cast<Complex>())).value()
+                + model.D(0, 0);
             series.x.push_back(f);
-            series.y.push_back(n > 0 || std::abs(G) > 0.0 ? 20.0 * std::log10(std::max(std::abs(G), 1e-15)) : std::numeric_limits<double>::quiet_NaN());
+            series.y.push_back(n > 0 || std::abs(G) > 0.0 ? 20.0 * std::log10(std::max(std::abs(G), 1e-15))
+                                                          : std::numeric_limits<double>::quiet_NaN());
         }
         plot.series.push_back(std::move(series));
     }
@@ -119,4 +135,4 @@ Plot orderPlot(const ErrorsByOrder& errors)
     return plot;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,20 +12,21 @@ enum class Role { measured, model, error, noise, before, after, reference };
 
 struct Series {
     enum class Shape { line, pointsAndLine };
-    std::string title;                  ///< for the key; empty: not in it
+    std::string title;  ///< for the key; empty: not in it
     Role role = Role::measured;
-    std::vector<double> x, y;           ///< a NaN interrupts the line
-    std::vector<double> lower, upper;   ///< of a band around the line; empty: none
+    std::vector<double> x, y;          ///< a NaN interrupts the line
+    std::vector<double> lower, upper;  ///< of a band around the line; empty: none
     Shape shape = Shape::line;
-    int dash = 0;                       ///< 0: the role's own; otherwise a pattern of gnuplot's, to tell apart lines of one role
+    /// 0: the role's own; otherwise a pattern of gnuplot's, to tell apart lines of one role
+    int dash = 0;
 };
 
 struct Axis {
     std::string title;
-    std::string unit;                   ///< typeset, see displayUnit()
+    std::string unit;  ///< typeset, see displayUnit()
     bool logarithmic = false;
-    double least = 0.0, most = 0.0;     ///< of the range; equal: from the data
-    std::vector<std::string> names;     ///< of the values 0, 1, 2, ...; empty: numbers
+    double least = 0.0, most = 0.0;  ///< of the range; equal: from the data
+    std::vector<std::string> names;  ///< of the values 0, 1, 2, ...; empty: numbers
 };
 
 /// A picture with two axes. Data is in the axes' display units.
@@ -37,4 +38,4 @@ struct Plot {
     int width = 460, height = 300;
 };
 
-} // namespace excursion
+}  // namespace excursion

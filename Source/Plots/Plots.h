@@ -31,4 +31,4 @@ std::vector<Plot> distortionPlots(const DistortionByEffect&);
 /// Measured frequency responses with those of the first and the last model.
 std::vector<Plot> responsePlots(const Ladder&, const std::vector<ResponseTarget>&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -26,7 +26,7 @@ Series series(const ResidualCurve& curve, const char* title, Role role, double a
     return s;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<Plot> residualPlots(const Comparison& before, const Comparison* after)
 {
@@ -48,4 +48,4 @@ std::vector<Plot> residualPlots(const Comparison& before, const Comparison* afte
     return plots;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -35,7 +35,7 @@ std::vector<double> degrees(const std::vector<std::complex<double>>& values)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<Plot> responsePlots(const Ladder& ladder, const std::vector<ResponseTarget>& responses)
 {
@@ -46,13 +46,23 @@ std::vector<Plot> responsePlots(const Ladder& ladder, const std::vector<Response
         const auto first = modelled(ladder.rungs.front().model, target), last = modelled(ladder.model(), target);
         const bool changed = ladder.rungs.size() > 1;
         const auto input = ladder.model().electrical() ? " per volt" : " per unit of force";
-        const auto shown = target.impedance ? DisplayUnit {1.0, typesetUnit("ohm")}
-                                            : displayUnit(largest(magnitudes(target.value, 1.0)), siUnit(target.quantity));
+        const auto shown = target.impedance
+                               ? DisplayUnit {1.0, typesetUnit("ohm")}
+                               : displayUnit(largest(magnitudes(target.value, 1.0)), siUnit(target.quantity));
         const auto series = [&](auto&& values) {
-            std::vector<Series> list {{"measured", Role::measured, target.frequency, values(target.value), {}, {}, Series::Shape::line, 0}};
+            std::vector<Series> list {
+                {"measured", Role::measured, target.frequency, values(target.value), {}, {}, Series::Shape::line, 0}};
             if (changed)
-                list.push_back({"first model", Role::before, target.frequency, values(first), {}, {}, Series::Shape::line, 2});
-            list.push_back({changed ? "final model" : "model", Role::model, target.frequency, values(last), {}, {}, Series::Shape::line, 0});
+                list.push_back(
+                    {"first model", Role::before, target.frequency, values(first), {}, {}, Series::Shape::line, 2});
+            list.push_back({changed ? "final model" : "model",
+                            Role::model,
+                            target.frequency,
+                            values(last),
+                            {},
+                            {},
+                            Series::Shape::line,
+                            0});
             return list;
         };
         Plot plot;
@@ -71,4 +81,4 @@ std::vector<Plot> responsePlots(const Ladder& ladder, const std::vector<Response
     return plots;
 }
 
-} // namespace excursion
+}  // namespace excursion

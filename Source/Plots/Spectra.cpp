@@ -18,10 +18,12 @@ std::vector<double> inDecibels(const std::vector<double>& values)
     return result;
 }
 
-/// Rms of groups of up to four: single lines, where they are sparse, would draw a comb of excited and silent ones in which nothing is seen.
+/// Rms of groups of up to four: single lines, where they are sparse, would draw a comb of excited and silent ones in
+/// which nothing is seen.
 ErrorSpectrum smoothed(const ErrorSpectrum& s)
 {
-    const auto group = std::clamp<std::size_t>(s.frequency.size() / 20, 1, 4);   // of a few points, as an impedance may have, all are shown
+    // of a few points, as an impedance may have, all are shown
+    const auto group = std::clamp<std::size_t>(s.frequency.size() / 20, 1, 4);
     ErrorSpectrum result;
     const auto grouped = [&](const std::vector<double>& values, std::size_t begin, std::size_t end) {
         double power = 0.0;
@@ -40,7 +42,7 @@ ErrorSpectrum smoothed(const ErrorSpectrum& s)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 Plot spectrumPlot(const ErrorSpectrum& spectrum, const std::string& unit)
 {
@@ -59,4 +61,4 @@ Plot spectrumPlot(const ErrorSpectrum& spectrum, const std::string& unit)
     return plot;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -47,4 +47,4 @@ double largest(const std::vector<double>& values)
     return most;
 }
 
-} // namespace excursion
+}  // namespace excursion

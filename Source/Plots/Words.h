@@ -20,6 +20,6 @@ std::string capitalized(std::string_view);
 
 /// Values times the factor of a display unit.
 std::vector<double> scaled(const std::vector<double>&, double factor);
-double largest(const std::vector<double>&);   ///< magnitude among the finite ones; 0 when there is none
+double largest(const std::vector<double>&);  ///< magnitude among the finite ones; 0 when there is none
 
-} // namespace excursion
+}  // namespace excursion

@@ -24,10 +24,12 @@ void fill(juce::ComboBox& list, const juce::StringArray& items, int otherwise)
 /// A stretch around the largest swing, as a whole period would be a black bar.
 Plot wavePlot(const Waveform& wave)
 {
-    const auto peak = std::max_element(wave.measured.begin(), wave.measured.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto peak = std::max_element(wave.measured.begin(), wave.measured.end(),
+                                       [](double a, double b) { return std::abs(a) < std::abs(b); });
     const auto reach = static_cast<std::ptrdiff_t>(0.02 * wave.sampleRate);
     const auto middle = peak - wave.measured.begin(), length = static_cast<std::ptrdiff_t>(wave.measured.size());
-    const auto from = std::clamp<std::ptrdiff_t>(middle - reach, 0, std::max<std::ptrdiff_t>(0, length - 2 * reach)), to = std::min(length, from + 2 * reach);
+    const auto from = std::clamp<std::ptrdiff_t>(middle - reach, 0, std::max<std::ptrdiff_t>(0, length - 2 * reach)),
+               to = std::min(length, from + 2 * reach);
     const auto unit = displayUnit(std::abs(*peak), wave.unit);
     Plot plot;
     plot.x = {"time", "ms", false, 0.0, 0.0, {}};
@@ -46,7 +48,7 @@ Plot wavePlot(const Waveform& wave)
     return plot;
 }
 
-} // namespace
+}  // namespace
 
 ComparePage::ComparePage(Window& window) : Page(window)
 {
@@ -84,7 +86,9 @@ void ComparePage::show(const std::shared_ptr<const Findings>& fresh)
 
 void ComparePage::draw()
 {
-    const auto shown = [](const juce::ComboBox& list) { return static_cast<std::size_t>(std::max(0, list.getSelectedItemIndex())); };
+    const auto shown = [](const juce::ComboBox& list) {
+        return static_cast<std::size_t>(std::max(0, list.getSelectedItemIndex()));
+    };
     residuals_.clear();
     spectrum_.show({});
     wave_.show({});
@@ -98,7 +102,8 @@ void ComparePage::draw()
     const auto& channel = comparison.channels[shown(channel_)];
     const auto level = shown(level_);
     const auto& error = channel.byLevel[level];
-    error_.setText("Error " + words(decibels(error.db)) + (error.noiseFloorDb ? ", noise " + words(decibels(*error.noiseFloorDb)) : juce::String()),
+    error_.setText("Error " + words(decibels(error.db))
+                       + (error.noiseFloorDb ? ", noise " + words(decibels(*error.noiseFloorDb)) : juce::String()),
                    juce::dontSendNotification);
     auto spectrum = spectrumPlot(channel.spectrumByLevel[level], channel.unit);
     double most = -1e9;
@@ -127,8 +132,10 @@ void ComparePage::paint(juce::Graphics& g)
     if (residuals_.empty() && findings_ && !findings_->file.ladder.rungs.empty()) {
         g.setColour(look::dim);
         g.setFont(13.0f);
-        g.drawFittedText("Residual force and voltage need a channel that tells the displacement, velocity or acceleration, and the current.",
-                         getLocalBounds().removeFromRight(getWidth() * 2 / 5).reduced(20), juce::Justification::centred, 3);
+        g.drawFittedText("Residual force and voltage need a channel that tells the displacement, velocity or "
+                         "acceleration, and the current.",
+                         getLocalBounds().removeFromRight(getWidth() * 2 / 5).reduced(20), juce::Justification::centred,
+                         3);
     }
 }
 
@@ -147,13 +154,15 @@ void ComparePage::resized()
     spectrum_.setBounds(area.removeFromTop(area.getHeight() * 3 / 5));
     area.removeFromTop(6);
     wave_.setBounds(area);
-    const int columns = residuals_.size() > 3 ? 2 : 1, rows = std::max(1, (static_cast<int>(residuals_.size()) + columns - 1) / columns);
+    const int columns = residuals_.size() > 3 ? 2 : 1,
+              rows = std::max(1, (static_cast<int>(residuals_.size()) + columns - 1) / columns);
     for (std::size_t k = 0; k < residuals_.size(); ++k) {
         // Column by column: the curves of the force in one, those of the voltage in the other.
         const int column = static_cast<int>(k) / rows, row = static_cast<int>(k) % rows;
-        residuals_[k]->setBounds(right.getX() + column * right.getWidth() / columns, right.getY() + row * right.getHeight() / rows,
-                                 right.getWidth() / columns, right.getHeight() / rows);
+        residuals_[k]->setBounds(right.getX() + column * right.getWidth() / columns,
+                                 right.getY() + row * right.getHeight() / rows, right.getWidth() / columns,
+                                 right.getHeight() / rows);
     }
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -9,7 +9,8 @@
 
 namespace excursion::plugin {
 
-/// Where the model fails: a channel at a level against frequency and time, and what the balances of force and voltage lack.
+/// Where the model fails: a channel at a level against frequency and time, and what the balances of force and voltage
+/// lack.
 class ComparePage : public Page {
 public:
     explicit ComparePage(Window&);
@@ -28,4 +29,4 @@ private:
     std::vector<std::unique_ptr<PlotView>> residuals_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -9,10 +9,11 @@
 
 namespace excursion::plugin {
 
-/// The signal as it is, later: what is played where no engine can run. A sample that is not a finite number is silence. Only its construction allocates.
+/// The signal as it is, later: what is played where no engine can run. A sample that is not a finite number is silence.
+/// Only its construction allocates.
 class Delay {
 public:
-    explicit Delay(int samples) : ring_(static_cast<std::size_t>(samples)) {}   ///< at least 1
+    explicit Delay(int samples) : ring_(static_cast<std::size_t>(samples)) {}  ///< at least 1
 
     void reset() { std::fill(ring_.begin(), ring_.end(), 0.0); }
 
@@ -31,4 +32,4 @@ private:
     std::size_t at_ = 0;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

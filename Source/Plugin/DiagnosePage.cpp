@@ -25,7 +25,8 @@ juce::String fallOf(const RankedEffect& ranked, const ErrorByChannel& before)
     juce::StringArray parts;
     for (const auto& [quantity, error] : before)
         if (const auto found = after.find(quantity); found != after.end())
-            parts.add(words(std::string(name(quantity)) + " " + fixedText(error.db, 1) + " \u2192 " + decibels(found->second)));
+            parts.add(words(std::string(name(quantity)) + " " + fixedText(error.db, 1) + " \u2192 "
+                            + decibels(found->second)));
     return parts.joinIntoString(", ") + (ranked.confirmedErrorDb.empty() ? " (predicted)" : "");
 }
 
@@ -48,7 +49,9 @@ Plot evidenceOf(const RankedEffect& ranked, const Findings& findings)
     for (auto& plot : plots)
         if ((plot.title == "Impedance") == electrical) {
             for (auto& series : plot.series)
-                series.title = series.role == Role::before ? "now" : series.role == Role::model ? "with the effect" : series.title;
+                series.title = series.role == Role::before  ? "now"
+                               : series.role == Role::model ? "with the effect"
+                                                            : series.title;
             return plot;
         }
     return plots.empty() ? Plot {} : plots.front();
@@ -74,14 +77,18 @@ void paintCard(juce::Graphics& g, juce::Rectangle<float> area, bool chosen)
     }
 }
 
-} // namespace
+}  // namespace
 
 /// One effect that competes.
 class DiagnosePage::Candidate : public juce::Component {
 public:
-    Candidate(const RankedEffect& ranked, const ErrorByChannel& before, std::size_t place, std::function<void()> selected, std::function<void()> added)
-        : title_(juce::String(static_cast<int>(place) + 1) + ".  " + words(effectTitle(ranked.effect))), fall_(fallOf(ranked, before)),
-          reason_(words(ranked.reason)), confidence_(ranked.confidence), selected_(std::move(selected))
+    Candidate(const RankedEffect& ranked, const ErrorByChannel& before, std::size_t place,
+              std::function<void()> selected, std::function<void()> added)
+        : title_(juce::String(static_cast<int>(place) + 1) + ".  " + words(effectTitle(ranked.effect))),
+          fall_(fallOf(ranked, before)),
+          reason_(words(ranked.reason)),
+          confidence_(ranked.confidence),
+          selected_(std::move(selected))
     {
         add_.onClick = std::move(added);
         addAndMakeVisible(add_);
@@ -118,7 +125,8 @@ public:
         g.setColour(look::accent);
         g.fillRoundedRectangle(gauge.withWidth(static_cast<float>(confidence_) * gauge.getWidth()), 3.0f);
         g.setColour(look::dim);
-        g.drawFittedText("  " + whole(100.0 * confidence_) + " %   " + fall_, bar.getSmallestIntegerContainer(), juce::Justification::left, 1, 0.8f);
+        g.drawFittedText("  " + whole(100.0 * confidence_) + " %   " + fall_, bar.getSmallestIntegerContainer(),
+                         juce::Justification::left, 1, 0.8f);
         area.removeFromTop(2.0f);
         g.setColour(look::text.withAlpha(0.85f));
         g.drawFittedText(reason_, area.getSmallestIntegerContainer(), juce::Justification::topLeft, 4, 1.0f);
@@ -127,7 +135,7 @@ public:
     void resized() override { add_.setBounds(getWidth() - 84, 9, 72, 24); }
 
 private:
-    bool speaksFor() const { return confidence_ >= 0.005; }   // else all of it would be about nothing
+    bool speaksFor() const { return confidence_ >= 0.005; }  // else all of it would be about nothing
 
     juce::String title_, fall_, reason_;
     double confidence_;
@@ -192,14 +200,18 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
         }
     };
     report_.onClick = [this] {
-        chooser_ = std::make_unique<juce::FileChooser>("Save the report", juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("report.html"), "*.html");
-        chooser_->launchAsync(juce::FileBrowserComponent::saveMode | juce::FileBrowserComponent::warnAboutOverwriting, [this](const juce::FileChooser& chosen) {
-            if (chosen.getResult() != juce::File())
-                session().saveReport(chosen.getResult().getFullPathName().toStdString());
-        });
+        chooser_ = std::make_unique<juce::FileChooser>(
+            "Save the report",
+            juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("report.html"), "*.html");
+        chooser_->launchAsync(juce::FileBrowserComponent::saveMode | juce::FileBrowserComponent::warnAboutOverwriting,
+                              [this](const juce::FileChooser& chosen) {
+                                  if (chosen.getResult() != juce::File())
+                                      session().saveReport(chosen.getResult().getFullPathName().toStdString());
+                              });
     };
     reveal_.onClick = [this] { truth_.setVisible(true); };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {&verdict_, &list_, &evidence_, &undo_, &linearize_, &report_})
+    for (juce::Component* component :
+         std::initializer_list<juce::Component*> {&verdict_, &list_, &evidence_, &undo_, &linearize_, &report_})
         addAndMakeVisible(component);
     addChildComponent(reveal_);
     addChildComponent(truth_);
@@ -220,11 +232,17 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     truth_.setText("Hidden: " + words(findings.truth), juce::dontSendNotification);
     const bool fit = findings.report.fitForUse();
     const bool unknown = !ladder.rungs.empty() && ladder.verdict == Verdict::unknownEffect;
-    const auto verdict = unknown ? foundInWords(ladder) + "Left unexplained: " + inFewWords(ladder.rungs.back().diagnosis.remainder) + "." : ladder.sentence;
+    const auto verdict = unknown ? foundInWords(ladder) + "Left unexplained: "
+                                       + inFewWords(ladder.rungs.back().diagnosis.remainder) + "."
+                                 : ladder.sentence;
     verdict_.setTooltip(words(ladder.sentence));
-    verdict_.setText(words(!ladder.rungs.empty() ? verdict : fit ? "The first model is being fitted." : findings.report.verdict()),
+    verdict_.setText(words(!ladder.rungs.empty() ? verdict
+                           : fit                 ? "The first model is being fitted."
+                                                 : findings.report.verdict()),
                      juce::dontSendNotification);
-    verdict_.setColour(juce::Label::textColourId, !ladder.rungs.empty() || !fit ? toneOf(fit ? ladder.verdict : Verdict::badMeasurement) : look::dim);
+    verdict_.setColour(juce::Label::textColourId, !ladder.rungs.empty() || !fit
+                                                      ? toneOf(fit ? ladder.verdict : Verdict::badMeasurement)
+                                                      : look::dim);
     if (!ladder.rungs.empty()) {
         const auto& diagnosis = ladder.rungs.back().diagnosis;
         if (findings.file.whatIf && ladder.verdict != Verdict::missingEffect) {
@@ -232,7 +250,8 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
             rows_.addAndMakeVisible(*advice_);
         }
         for (std::size_t k = 0; k < diagnosis.ranking.size(); ++k) {
-            candidates_.push_back(std::make_unique<Candidate>(diagnosis.ranking[k], diagnosis.error, k, [this, k] { select(k); }, [this, k] { add(k); }));
+            candidates_.push_back(std::make_unique<Candidate>(
+                diagnosis.ranking[k], diagnosis.error, k, [this, k] { select(k); }, [this, k] { add(k); }));
             rows_.addAndMakeVisible(*candidates_.back());
         }
         for (const auto& channel : ladder.rungs.front().comparison.channels) {
@@ -262,7 +281,9 @@ void DiagnosePage::select(std::size_t place)
         advice_->choose(place == noCandidate);
     for (std::size_t k = 0; k < candidates_.size(); ++k)
         candidates_[k]->choose(k == place);
-    evidence_.show(place < candidates_.size() ? evidenceOf(findings_->file.ladder.rungs.back().diagnosis.ranking[place], *findings_) : soundOf(*findings_));
+    evidence_.show(place < candidates_.size()
+                       ? evidenceOf(findings_->file.ladder.rungs.back().diagnosis.ranking[place], *findings_)
+                       : soundOf(*findings_));
 }
 
 void DiagnosePage::tick()
@@ -281,7 +302,8 @@ void DiagnosePage::paint(juce::Graphics& g)
     if (findings_ && candidates_.empty() && !advice_ && !findings_->file.ladder.rungs.empty()) {
         g.setColour(look::dim);
         g.setFont(14.0f);
-        g.drawFittedText("No effect of the catalogue competes.", list_.getBounds().removeFromTop(60), juce::Justification::centred, 2);
+        g.drawFittedText("No effect of the catalogue competes.", list_.getBounds().removeFromTop(60),
+                         juce::Justification::centred, 2);
     }
 }
 
@@ -309,10 +331,12 @@ void DiagnosePage::resized()
     rows_.setSize(width, std::max(1, below));
     auto top = area.removeFromTop(area.getHeight() / 2);
     evidence_.setBounds(top);
-    const int columns = falls_.size() > 2 ? 2 : 1, rows = std::max(1, (static_cast<int>(falls_.size()) + columns - 1) / columns);
+    const int columns = falls_.size() > 2 ? 2 : 1,
+              rows = std::max(1, (static_cast<int>(falls_.size()) + columns - 1) / columns);
     for (std::size_t k = 0; k < falls_.size(); ++k)
-        falls_[k]->setBounds(area.getX() + static_cast<int>(k) % columns * area.getWidth() / columns, area.getY() + static_cast<int>(k) / columns * area.getHeight() / rows,
+        falls_[k]->setBounds(area.getX() + static_cast<int>(k) % columns * area.getWidth() / columns,
+                             area.getY() + static_cast<int>(k) / columns * area.getHeight() / rows,
                              area.getWidth() / columns, area.getHeight() / rows);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -9,7 +9,8 @@
 
 namespace excursion::plugin {
 
-/// The verdict, what competes for the missing effect with the evidence, a button that adds it, and the ladder as it falls.
+/// The verdict, what competes for the missing effect with the evidence, a button that adds it, and the ladder as it
+/// falls.
 class DiagnosePage : public Page {
 public:
     explicit DiagnosePage(Window&);
@@ -26,7 +27,7 @@ public:
 private:
     class Candidate;
     class Advice;
-    static constexpr auto noCandidate = static_cast<std::size_t>(-1);   ///< selects the advice
+    static constexpr auto noCandidate = static_cast<std::size_t>(-1);  ///< selects the advice
     void select(std::size_t place);
 
     std::shared_ptr<const Findings> findings_;
@@ -38,8 +39,9 @@ private:
     std::size_t selected_ = 0;
     PlotView evidence_;
     std::vector<std::unique_ptr<PlotView>> falls_;
-    juce::TextButton undo_ {"Take the last effect back"}, linearize_ {"Linearize with this model"}, report_ {"Save the report..."}, reveal_ {"Reveal what was hidden"};
+    juce::TextButton undo_ {"Take the last effect back"}, linearize_ {"Linearize with this model"},
+        report_ {"Save the report..."}, reveal_ {"Reveal what was hidden"};
     std::unique_ptr<juce::FileChooser> chooser_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -8,10 +8,13 @@ NumberDial::NumberDial(Number& number) : number_(number)
     const auto& scale = number.scale();
     slider_.setTextBoxStyle(juce::Slider::TextBoxRight, false, 90, 20);
     slider_.setTextValueSuffix(juce::String(" ") + scale.unit);
-    slider_.setNormalisableRange({scale.range.least, scale.range.most, [&number](double, double, double proportion) { return number.at(proportion); },
+    slider_.setNormalisableRange({scale.range.least, scale.range.most,
+                                  [&number](double, double, double proportion) { return number.at(proportion); },
                                   [&number](double, double, double value) { return number.proportionOf(value); }});
     slider_.textFromValueFunction = [&number](double value) { return number.text(value); };
-    slider_.valueFromTextFunction = [&number](const juce::String& text) { return text.getDoubleValue() / number.scale().shown; };
+    slider_.valueFromTextFunction = [&number](const juce::String& text) {
+        return text.getDoubleValue() / number.scale().shown;
+    };
     slider_.setDoubleClickReturnValue(true, number.first());
     slider_.onDragStart = [this] {
         held_ = true;
@@ -72,4 +75,4 @@ void ChoiceBox::follow()
         box_.setSelectedItemIndex(choice_.getIndex(), juce::dontSendNotification);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -5,8 +5,9 @@
 
 namespace excursion::plugin {
 
-// A parameter and what shows it. What a person does is told to the host as one gesture; what a host does is seen when follow() is called, by the
-// window's timer: a listener would be called on the audio thread, and would have to post a message from there.
+// A parameter and what shows it. What a person does is told to the host as one gesture; what a host does is seen when
+// follow() is called, by the window's timer: a listener would be called on the audio thread, and would have to post a
+// message from there.
 
 class NumberDial {
 public:
@@ -20,7 +21,7 @@ private:
 
     Number& number_;
     juce::Slider slider_ {juce::Slider::LinearHorizontal, juce::Slider::TextBoxRight};
-    bool held_ = false;   ///< by a person
+    bool held_ = false;  ///< by a person
 };
 
 class OnOffButton {
@@ -47,4 +48,4 @@ private:
     juce::ComboBox box_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -16,17 +16,22 @@ bool holdsModel(const juce::File& file)
     if (!file.hasFileExtension("json") || file.getSize() > (1 << 26))
         return false;
     const auto document = nlohmann::json::parse(file.loadFileAsString().toStdString(), nullptr, false);
-    return !document.is_object() || (document.value("format", "") != "excursion-measurement" && document.value("format", "") != "excursion-plan");
+    return !document.is_object()
+           || (document.value("format", "") != "excursion-measurement"
+               && document.value("format", "") != "excursion-plan");
 }
 
-} // namespace
+}  // namespace
 
 Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
-    : AudioProcessorEditor(processor), owner_(processor), measure_(*this, devices != nullptr ? devices : standaloneDevices())
+    : AudioProcessorEditor(processor),
+      owner_(processor),
+      measure_(*this, devices != nullptr ? devices : standaloneDevices())
 {
     for (std::size_t k = 0; k < tabs_.size(); ++k) {
         tabs_[k].setClickingTogglesState(false);
-        tabs_[k].setConnectedEdges((k > 0 ? juce::Button::ConnectedOnLeft : 0) | (k + 1 < tabs_.size() ? juce::Button::ConnectedOnRight : 0));
+        tabs_[k].setConnectedEdges((k > 0 ? juce::Button::ConnectedOnLeft : 0)
+                                   | (k + 1 < tabs_.size() ? juce::Button::ConnectedOnRight : 0));
         tabs_[k].setColour(juce::TextButton::buttonOnColourId, look::accent.darker(0.6f));
         tabs_[k].onClick = [this, k] { go(static_cast<PageName>(k)); };
         addAndMakeVisible(tabs_[k]);
@@ -142,4 +147,4 @@ void Editor::resized()
         page->setBounds(area);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -45,4 +45,4 @@ void Forecast::run(const std::stop_token& stop)
     }
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -11,8 +11,8 @@
 
 namespace excursion::plugin {
 
-/// Keeps a prediction of the distortion up to date on a thread of its own; only the latest question is answered. Not for the audio
-/// thread.
+/// Keeps a prediction of the distortion up to date on a thread of its own; only the latest question is answered. Not
+/// for the audio thread.
 class Forecast {
 public:
     Forecast();
@@ -38,4 +38,4 @@ private:
     std::jthread thread_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

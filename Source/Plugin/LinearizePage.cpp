@@ -14,7 +14,8 @@
 
 namespace excursion::plugin {
 
-LinearizePage::LinearizePage(Window& window) : Page(window), processor_(window.processor()), mode_(processor_.parameters().mode())
+LinearizePage::LinearizePage(Window& window)
+    : Page(window), processor_(window.processor()), mode_(processor_.parameters().mode())
 {
     name_.setFont(juce::Font(20.0f));
     for (auto* label : {&name_, &forecastWords_})
@@ -40,7 +41,8 @@ LinearizePage::LinearizePage(Window& window) : Page(window), processor_(window.p
         }
     };
     load_.onClick = [this] { choose(); };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {&drivers_, &recipes_, &mode_.box(), &load_, &excursion_, &voltage_, &distortion_})
+    for (juce::Component* component : std::initializer_list<juce::Component*> {
+             &drivers_, &recipes_, &mode_.box(), &load_, &excursion_, &voltage_, &distortion_})
         addAndMakeVisible(component);
     addChildComponent(power_);
     for (auto* number : processor_.parameters().numbers()) {
@@ -58,7 +60,8 @@ LinearizePage::LinearizePage(Window& window) : Page(window), processor_(window.p
 
 void LinearizePage::showModel(const Model& model)
 {
-    name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name), juce::dontSendNotification);
+    name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name),
+                  juce::dontSendNotification);
     laws_.clear();
     for (auto& plot : lawPlots(model)) {
         laws_.push_back(std::make_unique<PlotView>());
@@ -74,15 +77,17 @@ void LinearizePage::showModel(const Model& model)
 void LinearizePage::choose()
 {
     chooser_ = std::make_unique<juce::FileChooser>("Load a model", juce::File(), "*.json");
-    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles, [this](const juce::FileChooser& chosen) {
-        if (chosen.getResult() == juce::File())
-            return;
-        try {
-            window_.use(readModel(chosen.getResult().getFullPathName().toStdString()), chosen.getResult().getFileName());
-        } catch (const Error& error) {
-            window_.tell(words(error.what()), true);
-        }
-    });
+    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles,
+                          [this](const juce::FileChooser& chosen) {
+                              if (chosen.getResult() == juce::File())
+                                  return;
+                              try {
+                                  window_.use(readModel(chosen.getResult().getFullPathName().toStdString()),
+                                              chosen.getResult().getFileName());
+                              } catch (const Error& error) {
+                                  window_.tell(words(error.what()), true);
+                              }
+                          });
 }
 
 /// What is to be expected at 0 dBFS, with the effects that are switched on.
@@ -100,11 +105,17 @@ void LinearizePage::showForecast()
     Plot plot;
     plot.title = "Predicted distortion at 0 dBFS";
     plot.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
-    plot.y = {"over the signal", "dB", false, std::max(-180.0, 20.0 * std::floor(*std::min_element(answer->after.begin(), answer->after.end()) / 20.0)), 0.0, {}};
+    plot.y = {"over the signal",
+              "dB",
+              false,
+              std::max(-180.0, 20.0 * std::floor(*std::min_element(answer->after.begin(), answer->after.end()) / 20.0)),
+              0.0,
+              {}};
     plot.series = {{"as it is", Role::before, answer->frequency, answer->before, {}, {}, Series::Shape::line, 0},
                    {"linearized", Role::after, answer->frequency, answer->after, {}, {}, Series::Shape::line, 0}};
     distortion_.show(std::move(plot));
-    forecastWords_.setText("Distortion " + words(decibels(answer->beforeDb)) + ", linearized " + words(decibels(answer->afterDb)) + ", at "
+    forecastWords_.setText("Distortion " + words(decibels(answer->beforeDb)) + ", linearized "
+                               + words(decibels(answer->afterDb)) + ", at "
                                + words(engineering(answer->displacement, "m", 2)) + " peak excursion",
                            juce::dontSendNotification);
 }
@@ -117,23 +128,30 @@ void LinearizePage::follow()
         dial.second->follow();
     for (auto& one : switches_)
         one->follow();
-    if (const auto title = words(processor_.parameters().recipe().title); title.isNotEmpty() && title != recipes_.getText())
+    if (const auto title = words(processor_.parameters().recipe().title);
+        title.isNotEmpty() && title != recipes_.getText())
         recipes_.setText(title, juce::dontSendNotification);
 }
 
 void LinearizePage::showMeters()
 {
     const auto meters = processor_.take();
-    const double range = measuredDisplacement(processor_.model()), reach = std::isfinite(range) ? meters.displacement / range : 0.0;
+    const double range = measuredDisplacement(processor_.model()),
+                 reach = std::isfinite(range) ? meters.displacement / range : 0.0;
     const auto limits = processor_.parameters().controls(range).linearization;
     if (!processor_.standstill().empty())
         excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
     else
-        excursion_.show(reach, juce::String(1e3 * meters.displacement, 2) + " mm" + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
-                        meters.displacementReduction);
-    voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V", meters.voltageReduction);
+        excursion_.show(
+            reach,
+            juce::String(1e3 * meters.displacement, 2) + " mm"
+                + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
+            meters.displacementReduction);
+    voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V",
+                  meters.voltageReduction);
     power_.setVisible(std::isfinite(limits.powerLimit));
-    power_.show(meters.power / limits.powerLimit, juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W", meters.powerReduction);
+    power_.show(meters.power / limits.powerLimit, juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W",
+                meters.powerReduction);
     if (meters.faults > faults_)
         window_.tell("Something was not finite: the engine has started anew.", true);
     faults_ = meters.faults;
@@ -178,12 +196,14 @@ void LinearizePage::resized()
     }
     forecastWords_.setBounds(area.removeFromBottom(24));
     distortion_.setBounds(area.removeFromBottom(area.getHeight() * 2 / 5));
-    const int columns = laws_.size() > 1 ? 2 : 1, rows = juce::jmax(1, (static_cast<int>(laws_.size()) + columns - 1) / columns);
+    const int columns = laws_.size() > 1 ? 2 : 1,
+              rows = juce::jmax(1, (static_cast<int>(laws_.size()) + columns - 1) / columns);
     for (std::size_t k = 0; k < laws_.size(); ++k) {
         const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
-        laws_[k]->setBounds(area.getX() + column * area.getWidth() / columns, area.getY() + row * area.getHeight() / rows, area.getWidth() / columns,
+        laws_[k]->setBounds(area.getX() + column * area.getWidth() / columns,
+                            area.getY() + row * area.getHeight() / rows, area.getWidth() / columns,
                             area.getHeight() / rows);
     }
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -15,8 +15,8 @@
 
 namespace excursion::plugin {
 
-/// What is done to the signal with the model: mode, limits, effects as switches, the laws, the meters of the protection, and the distortion that
-/// is to be expected with and without linearization.
+/// What is done to the signal with the model: mode, limits, effects as switches, the laws, the meters of the
+/// protection, and the distortion that is to be expected with and without linearization.
 class LinearizePage : public Page {
 public:
     explicit LinearizePage(Window&);
@@ -36,15 +36,17 @@ private:
     juce::ComboBox drivers_, recipes_;
     juce::TextButton load_ {"Load a model..."};
     ChoiceBox mode_;
-    std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;   ///< each behind its title
+    /// each behind its title
+    std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;
     std::vector<std::unique_ptr<OnOffButton>> switches_;
     std::vector<std::unique_ptr<PlotView>> laws_;
     PlotView distortion_;
     Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
     Forecast forecast_;
-    std::pair<std::uint64_t, std::string> asked_;   ///< version of the model, and the recipe, that the forecast is of
+    /// version of the model, and the recipe, that the forecast is of
+    std::pair<std::uint64_t, std::string> asked_;
     std::unique_ptr<juce::FileChooser> chooser_;
     int faults_ = 0;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

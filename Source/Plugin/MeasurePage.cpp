@@ -21,7 +21,14 @@ Plot signalPlot(const CheckReport& report)
     plot.y = {"signal to noise", "dB", false, 0.0, 0.0, {}};
     for (std::size_t k = 0; k < report.channels.size(); ++k) {
         const auto& channel = report.channels[k];
-        Series series {std::string(name(channel.quantity)), roles[k % std::size(roles)], {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+        Series series {std::string(name(channel.quantity)),
+                       roles[k % std::size(roles)],
+                       {},
+                       {},
+                       {},
+                       {},
+                       Series::Shape::pointsAndLine,
+                       0};
         for (const auto& band : channel.bands) {
             series.x.push_back(std::sqrt(band.low * band.high));
             series.y.push_back(band.db);
@@ -38,13 +45,14 @@ juce::String textOf(const Findings& findings)
     const auto& take = findings.file.take;
     if (take.sampleRate > 0.0)
         lines.add(juce::String(take.seconds, 1) + " s at " + words(nominal(take.sampleRate, "Hz"))
-                  + (take.realizations > 0 ? ", " + juce::String(static_cast<int>(take.levels.size())) + " levels of " + juce::String(take.realizations)
-                                                 + " realizations of " + juce::String(take.periods) + " periods"
+                  + (take.realizations > 0 ? ", " + juce::String(static_cast<int>(take.levels.size())) + " levels of "
+                                                 + juce::String(take.realizations) + " realizations of "
+                                                 + juce::String(take.periods) + " periods"
                                            : juce::String(", without periods")));
     lines.add("");
     for (const auto& channel : findings.report.channels) {
-        auto line = words(capitalized(name(channel.quantity))) + ": " + words(engineering(channel.rms, channel.unit, 3)) + " rms, peak "
-                  + words(engineering(channel.peak, channel.unit, 3));
+        auto line = words(capitalized(name(channel.quantity))) + ": " + words(engineering(channel.rms, channel.unit, 3))
+                    + " rms, peak " + words(engineering(channel.peak, channel.unit, 3));
         if (channel.snrDb)
             line += ", signal to noise " + juce::String(*channel.snrDb, 1) + " dB";
         if (channel.delay)
@@ -58,14 +66,15 @@ juce::String textOf(const Findings& findings)
     return lines.joinIntoString("\n");
 }
 
-} // namespace
+}  // namespace
 
 MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Page(window)
 {
     for (auto* title : {&openTitle_, &virtualTitle_, &measuringTitle_})
         title->setFont(juce::Font(16.0f));
     openTitle_.setText("A take that you have", juce::dontSendNotification);
-    openHint_.setText("Or drop it anywhere on this window: a folder, a .csv, .zma or .frd.", juce::dontSendNotification);
+    openHint_.setText("Or drop it anywhere on this window: a folder, a .csv, .zma or .frd.",
+                      juce::dontSendNotification);
     openHint_.setColour(juce::Label::textColourId, look::dim);
     openHint_.setFont(juce::Font(12.5f));
     virtualTitle_.setText("A virtual loudspeaker with a hidden effect", juce::dontSendNotification);
@@ -83,31 +92,38 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
     driver_.setSelectedItemIndex(2, juce::dontSendNotification);
     seed_.setRange(1.0, 9999.0, 1.0);
     seed_.setValue(7.0, juce::dontSendNotification);
-    draw_.onClick = [this] { session().open(VirtualOrder {driver_.getText().toStdString(), static_cast<std::uint64_t>(seed_.getValue())}); };
+    draw_.onClick = [this] {
+        session().open(VirtualOrder {driver_.getText().toStdString(), static_cast<std::uint64_t>(seed_.getValue())});
+    };
     open_.onClick = [this] { choose(); };
     folder_.onClick = [this] {
         chooser_ = std::make_unique<juce::FileChooser>("Open the folder of a take");
-        chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectDirectories, [this](const juce::FileChooser& chosen) {
-            if (chosen.getResult() != juce::File())
-                session().open(chosen.getResult().getFullPathName().toStdString());
-        });
+        chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectDirectories,
+                              [this](const juce::FileChooser& chosen) {
+                                  if (chosen.getResult() != juce::File())
+                                      session().open(chosen.getResult().getFullPathName().toStdString());
+                              });
     };
     save_.onClick = [this] {
-        chooser_ = std::make_unique<juce::FileChooser>("Save the take as a folder", juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("take"));
+        chooser_ = std::make_unique<juce::FileChooser>(
+            "Save the take as a folder",
+            juce::File::getSpecialLocation(juce::File::userHomeDirectory).getChildFile("take"));
         chooser_->launchAsync(juce::FileBrowserComponent::saveMode, [this](const juce::FileChooser& chosen) {
             if (chosen.getResult() != juce::File())
                 session().saveTake(chosen.getResult().getFullPathName().toStdString());
         });
     };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {&openTitle_, &openHint_, &virtualTitle_, &measuringTitle_, &verdict_, &open_, &folder_,
-                                                                              &draw_, &save_, &driver_, &seed_, &report_, &signal_})
+    for (juce::Component* component : std::initializer_list<juce::Component*> {
+             &openTitle_, &openHint_, &virtualTitle_, &measuringTitle_, &verdict_, &open_, &folder_, &draw_, &save_,
+             &driver_, &seed_, &report_, &signal_})
         addAndMakeVisible(component);
     save_.setEnabled(false);
     if (devices != nullptr) {
         measuring_ = std::make_unique<MeasuringPanel>(window, *devices);
         addAndMakeVisible(*measuring_);
     } else {
-        measuringTitle_.setText("To measure a loudspeaker, start the app: within a host the devices are the host's.", juce::dontSendNotification);
+        measuringTitle_.setText("To measure a loudspeaker, start the app: within a host the devices are the host's.",
+                                juce::dontSendNotification);
         measuringTitle_.setFont(juce::Font(13.0f));
         measuringTitle_.setColour(juce::Label::textColourId, look::dim);
     }
@@ -116,17 +132,20 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
 void MeasurePage::choose()
 {
     chooser_ = std::make_unique<juce::FileChooser>("Open a take", juce::File(), "*.json;*.csv;*.txt;*.zma;*.frd;*.mat");
-    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles, [this](const juce::FileChooser& chosen) {
-        if (chosen.getResult() != juce::File())
-            session().open(chosen.getResult().getFullPathName().toStdString());
-    });
+    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles,
+                          [this](const juce::FileChooser& chosen) {
+                              if (chosen.getResult() != juce::File())
+                                  session().open(chosen.getResult().getFullPathName().toStdString());
+                          });
 }
 
 void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)
 {
     const auto& findings = *fresh;
     const bool spectra = std::holds_alternative<Spectra>(*findings.take);
-    verdict_.setText(spectra ? juce::String("A frequency response: its linear effects can be told.") : words(findings.report.verdict()), juce::dontSendNotification);
+    verdict_.setText(spectra ? juce::String("A frequency response: its linear effects can be told.")
+                             : words(findings.report.verdict()),
+                     juce::dontSendNotification);
     verdict_.setColour(juce::Label::textColourId, findings.report.fitForUse() ? look::good : look::warning);
     report_.setText(textOf(findings), juce::dontSendNotification);
     signal_.show(signalPlot(findings.report));
@@ -170,4 +189,4 @@ void MeasurePage::resized()
     signal_.setBounds(area);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

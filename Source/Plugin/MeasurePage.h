@@ -9,7 +9,8 @@
 
 namespace excursion::plugin {
 
-/// Where takes come from: a file, the virtual loudspeaker, or an audio device; and what the check says of it, in plain words.
+/// Where takes come from: a file, the virtual loudspeaker, or an audio device; and what the check says of it, in plain
+/// words.
 class MeasurePage : public Page {
 public:
     /// @param devices  of the app; null within a host
@@ -25,7 +26,8 @@ private:
     void choose();
 
     juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;
-    juce::TextButton open_ {"Open a take..."}, folder_ {"Open a folder..."}, draw_ {"Measure it"}, save_ {"Save the take..."};
+    juce::TextButton open_ {"Open a take..."}, folder_ {"Open a folder..."}, draw_ {"Measure it"},
+        save_ {"Save the take..."};
     juce::ComboBox driver_;
     juce::Slider seed_ {juce::Slider::IncDecButtons, juce::Slider::TextBoxLeft};
     std::unique_ptr<MeasuringPanel> measuring_;
@@ -34,4 +36,4 @@ private:
     std::unique_ptr<juce::FileChooser> chooser_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -18,7 +18,8 @@ double entered(const juce::String& field, const char* what)
     const auto text = field.trim();
     const double value = text.getDoubleValue();
     if (!text.containsOnly("0123456789.eE-+") || !(value > 0.0) || !std::isfinite(value))
-        throw Error(Error::Kind::usage, std::string("\"") + text.toStdString() + "\" is no " + what + ": enter a number above zero.");
+        throw Error(Error::Kind::usage,
+                    std::string("\"") + text.toStdString() + "\" is no " + what + ": enter a number above zero.");
     return value;
 }
 
@@ -28,14 +29,15 @@ double rateOf(juce::AudioDeviceManager& devices)
     return device != nullptr ? device->getCurrentSampleRate() : 48000.0;
 }
 
-} // namespace
+}  // namespace
 
 MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices) : window_(window), devices_(devices)
 {
     device_.onClick = [this] { showDevices(); };
     go_.onClick = [this] { running() ? cancel() : start(); };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {&device_, &go_, &deviceName_, &preview_, &levelsTitle_, &bandTitle_,
-                                                                              &fullScaleTitle_, &outputTitle_, &levels_, &low_, &high_, &fullScale_, &outputChannel_})
+    for (juce::Component* component : std::initializer_list<juce::Component*> {
+             &device_, &go_, &deviceName_, &preview_, &levelsTitle_, &bandTitle_, &fullScaleTitle_, &outputTitle_,
+             &levels_, &low_, &high_, &fullScale_, &outputChannel_})
         addAndMakeVisible(component);
     for (int k = 0; k < inputs; ++k) {
         auto& input = inputs_[static_cast<std::size_t>(k)];
@@ -46,7 +48,8 @@ MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices
         input.role.setSelectedId(1, juce::dontSendNotification);
         input.role.onChange = [this, &input] { relabel(input); };
         input.fullScale.setText("1");
-        for (juce::Component* component : std::initializer_list<juce::Component*> {&input.title, &input.role, &input.fullScale, &input.unit})
+        for (juce::Component* component :
+             std::initializer_list<juce::Component*> {&input.title, &input.role, &input.fullScale, &input.unit})
             addAndMakeVisible(component);
     }
     setRole(0, Quantity::voltage, 16.0);
@@ -77,7 +80,9 @@ void MeasuringPanel::relabel(Input& input)
 {
     const int q = input.role.getSelectedId() - 2;
     input.fullScale.setEnabled(q >= 0);
-    input.unit.setText(q >= 0 ? words(siUnit(quantities[static_cast<std::size_t>(q)])) + " at full scale" : juce::String(), juce::dontSendNotification);
+    input.unit.setText(q >= 0 ? words(siUnit(quantities[static_cast<std::size_t>(q)])) + " at full scale"
+                              : juce::String(),
+                       juce::dontSendNotification);
 }
 
 void MeasuringPanel::setRole(int input, Quantity quantity, double fullScale)
@@ -138,12 +143,13 @@ void MeasuringPanel::preview()
 {
     try {
         const auto options = planOptions();
-        const double seconds = static_cast<double>(options.multisine.period * (options.settlePeriods + options.periods) * options.realizations)
-                             * static_cast<double>(options.levels.size()) / options.multisine.sampleRate;
+        const double seconds = static_cast<double>(options.multisine.period * (options.settlePeriods + options.periods)
+                                                   * options.realizations)
+                               * static_cast<double>(options.levels.size()) / options.multisine.sampleRate;
         // A random-phase multisine peaks at some four times its rms.
         const double peak = 4.0 * options.levels.back(), most = entered(fullScale_.getText(), "voltage");
-        preview_.setText("Plays " + whole(seconds) + " s of odd multisines, to about " + juce::String(peak, 1) + " V peak"
-                             + (peak > most ? ", more than the output can give!" : "."),
+        preview_.setText("Plays " + whole(seconds) + " s of odd multisines, to about " + juce::String(peak, 1)
+                             + " V peak" + (peak > most ? ", more than the output can give!" : "."),
                          juce::dontSendNotification);
         preview_.setColour(juce::Label::textColourId, peak > most ? look::warning : look::dim);
     } catch (const Error& error) {
@@ -162,7 +168,8 @@ void MeasuringPanel::start()
         const double fullScale = entered(fullScale_.getText(), "voltage");
         for (const double volts : plan.input().samples)
             if (std::abs(volts) > fullScale)
-                throw Error(Error::Kind::usage, "The loudest level peaks above what the output can give: lower the levels or turn up the amplifier.");
+                throw Error(Error::Kind::usage, "The loudest level peaks above what the output can give: lower the "
+                                                "levels or turn up the amplifier.");
         const auto wanted = roles();
         bool voltage = false;
         for (const auto& role : wanted) {
@@ -171,9 +178,11 @@ void MeasuringPanel::start()
                 throw Error(Error::Kind::usage, "The device has no input " + std::to_string(role.input + 1) + ".");
         }
         if (!voltage || wanted.size() < 2)
-            throw Error(Error::Kind::usage, "Choose an input for the voltage at the terminals and at least one other, such as the current.");
+            throw Error(
+                Error::Kind::usage,
+                "Choose an input for the voltage at the terminals and at least one other, such as the current.");
         recorder_ = std::make_unique<Recorder>(std::move(plan), wanted, outputChannel_.getSelectedId() - 1, fullScale);
-        window_.processor().suspendProcessing(true);   // nothing else is heard meanwhile
+        window_.processor().suspendProcessing(true);  // nothing else is heard meanwhile
         devices_.addAudioCallback(recorder_.get());
         go_.setButtonText("Stop");
         window_.tell("Measuring. Do not touch the loudspeaker.", false);
@@ -202,9 +211,10 @@ void MeasuringPanel::cancel()
 void MeasuringPanel::tick()
 {
     auto* device = devices_.getCurrentAudioDevice();
-    deviceName_.setText(device != nullptr ? device->getName() + ", " + whole(device->getCurrentSampleRate()) + " Hz, "
-                                                + juce::String(device->getActiveInputChannels().countNumberOfSetBits()) + " inputs"
-                                          : juce::String("no device is open"),
+    deviceName_.setText(device != nullptr
+                            ? device->getName() + ", " + whole(device->getCurrentSampleRate()) + " Hz, "
+                                  + juce::String(device->getActiveInputChannels().countNumberOfSetBits()) + " inputs"
+                            : juce::String("no device is open"),
                         juce::dontSendNotification);
     if (!recorder_)
         return;
@@ -216,7 +226,10 @@ void MeasuringPanel::tick()
         end();
         const auto done = std::exchange(recorder_, nullptr);
         try {
-            window_.processor().session().open(done->take(), "Measured with " + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")));
+            window_.processor().session().open(
+                done->take(),
+                "Measured with "
+                    + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")));
         } catch (const Error& error) {
             window_.tell(words(error.what()), true);
         }
@@ -276,4 +289,4 @@ void MeasuringPanel::resized()
     go_.setBounds(area.removeFromTop(30).removeFromLeft(130));
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -11,7 +11,8 @@
 
 namespace excursion::plugin {
 
-/// A measurement through an audio device: which input is what and how it is calibrated, the excitation and its levels, go and stop.
+/// A measurement through an audio device: which input is what and how it is calibrated, the excitation and its levels,
+/// go and stop.
 class MeasuringPanel : public juce::Component {
 public:
     MeasuringPanel(Window&, juce::AudioDeviceManager&);
@@ -21,14 +22,14 @@ public:
     ExcitationPlanOptions planOptions() const;
     std::vector<InputRole> roles() const;
 
-    void start();   ///< as if the button had been pressed
+    void start();  ///< as if the button had been pressed
     void cancel();
     void tick();
     bool running() const { return recorder_ != nullptr; }
 
     void setRole(int input, Quantity, double fullScale);
     void setLevels(const juce::String& text) { levels_.setText(text); }
-    void setBand(double low, double high);   ///< Hz
+    void setBand(double low, double high);  ///< Hz
 
     void resized() override;
 
@@ -57,4 +58,4 @@ private:
     std::unique_ptr<Recorder> recorder_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -8,10 +8,10 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr double audible = 0.05;   // dB
-constexpr int second = 20;         // calls
+constexpr double audible = 0.05;  // dB
+constexpr int second = 20;        // calls
 
-} // namespace
+}  // namespace
 
 void Meter::show(double share, const juce::String& words, double reduction)
 {
@@ -27,7 +27,10 @@ void Meter::show(double share, const juce::String& words, double reduction)
     repaint();
 }
 
-juce::String Meter::words() const { return told_ > 0 ? words_ + ", turned down by " + juce::String(reduction_, 1) + " dB" : words_; }
+juce::String Meter::words() const
+{
+    return told_ > 0 ? words_ + ", turned down by " + juce::String(reduction_, 1) + " dB" : words_;
+}
 
 void Meter::paint(juce::Graphics& g)
 {
@@ -45,4 +48,4 @@ void Meter::paint(juce::Graphics& g)
     g.fillRoundedRectangle(area.withWidth(static_cast<float>(share_) * area.getWidth()), 4.0f);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -5,7 +5,8 @@
 
 namespace excursion::plugin {
 
-/// A bar against a limit, with the words that belong to it; it falls slowly and turns its colour when the limit is at work.
+/// A bar against a limit, with the words that belong to it; it falls slowly and turns its colour when the limit is at
+/// work.
 class Meter : public juce::Component {
 public:
     explicit Meter(juce::String title) : title_(std::move(title)) {}
@@ -14,14 +15,14 @@ public:
     /// @param words      the value with its unit
     /// @param reduction  dB by which the limit has turned the signal down; told, for a second, where it can be heard
     void show(double share, const juce::String& words, double reduction);
-    juce::String words() const;   ///< as they are shown
+    juce::String words() const;  ///< as they are shown
     void paint(juce::Graphics&) override;
 
 private:
     juce::String title_, words_;
     double share_ = 0.0;
-    double reduction_ = 0.0;   ///< the largest of those that are told
-    int told_ = 0;             ///< how many more times
+    double reduction_ = 0.0;  ///< the largest of those that are told
+    int told_ = 0;            ///< how many more times
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -7,8 +7,12 @@
 namespace excursion::plugin {
 
 Number::Number(const juce::String& id, const juce::String& title, const Scale& scale, double value)
-    : AudioProcessorParameterWithID({id, versionHint}, title, juce::AudioProcessorParameterWithIDAttributes().withLabel(scale.unit)), scale_(scale), default_(value),
-      skew_(std::log(0.5) / std::log((scale.centre - scale.range.least) / (scale.range.most - scale.range.least))), value_(value)
+    : AudioProcessorParameterWithID({id, versionHint}, title,
+                                    juce::AudioProcessorParameterWithIDAttributes().withLabel(scale.unit)),
+      scale_(scale),
+      default_(value),
+      skew_(std::log(0.5) / std::log((scale.centre - scale.range.least) / (scale.range.most - scale.range.least))),
+      value_(value)
 {
 }
 
@@ -32,19 +36,21 @@ double Number::proportionOf(double value) const noexcept
 
 double Number::snapped(double value) const noexcept
 {
-    return std::clamp(std::round(value * scale_.stepsPerUnit) / scale_.stepsPerUnit, scale_.range.least, scale_.range.most);
+    return std::clamp(std::round(value * scale_.stepsPerUnit) / scale_.stepsPerUnit, scale_.range.least,
+                      scale_.range.most);
 }
 
 void Number::setValue(float sent)
 {
-    const float proportion = sent > 0.0f ? std::min(sent, 1.0f) : 0.0f;   // what is no number is 0
+    const float proportion = sent > 0.0f ? std::min(sent, 1.0f) : 0.0f;  // what is no number is 0
     if (proportion != getValue())
         value_.store(at(static_cast<double>(proportion)), std::memory_order_relaxed);
 }
 
 juce::String Number::text(double value) const
 {
-    return juce::String(value * scale_.shown, static_cast<int>(std::lround(std::log10(scale_.stepsPerUnit / scale_.shown))));
+    return juce::String(value * scale_.shown,
+                        static_cast<int>(std::lround(std::log10(scale_.stepsPerUnit / scale_.shown))));
 }
 
 juce::String Number::getText(float proportion, int longest) const
@@ -53,6 +59,9 @@ juce::String Number::getText(float proportion, int longest) const
     return longest > 0 ? words.substring(0, longest) : words;
 }
 
-float Number::getValueForText(const juce::String& text) const { return static_cast<float>(proportionOf(text.getDoubleValue() / scale_.shown)); }
+float Number::getValueForText(const juce::String& text) const
+{
+    return static_cast<float>(proportionOf(text.getDoubleValue() / scale_.shown));
+}
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

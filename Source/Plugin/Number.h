@@ -8,15 +8,16 @@
 
 namespace excursion::plugin {
 
-/// A number of the settings that a host sees and automates. What a document says and what a host sends is held as it is, between the steps of a dial
-/// too, and stays so when a host sends back what it has read. Setting and reading are wait-free.
+/// A number of the settings that a host sees and automates. What a document says and what a host sends is held as it
+/// is, between the steps of a dial too, and stays so when a host sends back what it has read. Setting and reading are
+/// wait-free.
 class Number : public juce::AudioProcessorParameterWithID {
 public:
     struct Scale {
         Settings::Range range;
-        int stepsPerUnit;       ///< of a dial
-        double centre;          ///< in the middle of a dial
-        double shown = 1.0;     ///< for a value of 1, as 100 for a share in %
+        int stepsPerUnit;    ///< of a dial
+        double centre;       ///< in the middle of a dial
+        double shown = 1.0;  ///< for a value of 1, as 100 for a share in %
         const char* unit = "";
     };
     Number(const juce::String& id, const juce::String& title, const Scale&, double value);
@@ -27,10 +28,10 @@ public:
     void set(double value);
 
     const Scale& scale() const noexcept { return scale_; }
-    double at(double proportion) const noexcept;        ///< 0 to 1
+    double at(double proportion) const noexcept;  ///< 0 to 1
     double proportionOf(double value) const noexcept;
-    double snapped(double value) const noexcept;        ///< on the next step
-    juce::String text(double value) const;              ///< to the decimals of a step
+    double snapped(double value) const noexcept;  ///< on the next step
+    juce::String text(double value) const;        ///< to the decimals of a step
 
     float getValue() const override { return static_cast<float>(proportionOf(get())); }
     void setValue(float sent) override;
@@ -45,4 +46,4 @@ private:
     static_assert(std::atomic<double>::is_always_lock_free);
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

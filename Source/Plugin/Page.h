@@ -18,8 +18,9 @@ public:
     virtual ~Window() = default;
     virtual Processor& processor() = 0;
     virtual void go(PageName) = 0;
-    virtual void use(const Model&, const juce::String& from) = 0;   ///< loads it into the processor; tells when it can't be run
-    virtual void tell(const juce::String&, bool trouble) = 0;       ///< in the status line
+    /// loads it into the processor; tells when it can't be run
+    virtual void use(const Model&, const juce::String& from) = 0;
+    virtual void tell(const juce::String&, bool trouble) = 0;  ///< in the status line
 };
 
 /// One side of the window. All on the message thread.
@@ -27,8 +28,8 @@ class Page : public juce::Component {
 public:
     explicit Page(Window& window) : window_(window) {}
 
-    virtual void show(const std::shared_ptr<const Findings>&) {}   ///< they are new; never null
-    virtual void tick() {}                                         ///< 20 times a second, while the page is seen
+    virtual void show(const std::shared_ptr<const Findings>&) {}  ///< they are new; never null
+    virtual void tick() {}                                        ///< 20 times a second, while the page is seen
 
 protected:
     Session& session() { return window_.processor().session(); }
@@ -36,4 +37,4 @@ protected:
     Window& window_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

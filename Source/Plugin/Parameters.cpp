@@ -25,8 +25,10 @@ Parameters::Parameters(juce::AudioProcessor& processor)
     mode_ = added(new Choice("mode", "Mode", titles));
     fullScale_ = number("fullScale", "Volts at 0 dBFS", {Settings::fullScales, 100, 10.0, 1.0, "V"}, first.fullScale);
     amount_ = number("amount", "Amount", {Settings::amounts, 1000, 0.5, 100.0, "%"}, first.amount);
-    displacementLimit_ = number("displacementLimit", "Excursion limit", {Settings::displacements, 1000, 1.0, 100.0, "%"}, first.displacementLimit);
-    voltageLimit_ = number("voltageLimit", "Voltage limit", {Settings::voltages, 100, 30.0, 1.0, "V"}, first.voltageLimit);
+    displacementLimit_ = number("displacementLimit", "Excursion limit",
+                                {Settings::displacements, 1000, 1.0, 100.0, "%"}, first.displacementLimit);
+    voltageLimit_ = number("voltageLimit", "Voltage limit", {Settings::voltages, 100, 30.0, 1.0, "V"},
+                           first.voltageLimit);
     trim_ = number("trim", "Output trim", {Settings::trims, 10, 0.0, 1.0, "dB"}, first.trimDb);
     // Later ones stand behind, so that the earlier ones keep their places.
     constexpr std::size_t firstEffects = 6;
@@ -117,7 +119,8 @@ void Parameters::set(const Recipe& recipe, const Between& between)
     margin_->set(recipe.margin);
     trim_->set(recipe.trimDb);
     for (std::size_t k = 0; k < effects_.size(); ++k)
-        put(*effects_[k], std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);
+        put(*effects_[k],
+            std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -13,36 +13,40 @@
 namespace excursion::plugin {
 
 /// The parameters that a host sees and automates: those of a Recipe, and a switch for every effect of the catalogue.
-///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V), trim (dB),
-///     effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects
+///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V), trim
+///     (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects
 /// No listener hangs at them, as those are called on the audio thread: who wants to know reads them, now and then.
 class Parameters {
 public:
     /// Adds them to the processor, which owns them from then on and must outlive this.
     explicit Parameters(juce::AudioProcessor&);
 
-    Recipe recipe() const;     ///< title and words are of the one that was set last; not for the audio thread
+    Recipe recipe() const;  ///< title and words are of the one that was set last; not for the audio thread
     /// A valid one; tells the host; not for the audio thread.
     void set(const Recipe&, const Between& = {});
 
-    /// Of the parameters with steps those that a host has put between two: id and number. Kept with a state, see Stepped.
+    /// Of the parameters with steps those that a host has put between two: id and number. Kept with a state, see
+    /// Stepped.
     Between between() const;
 
     /// For the audio thread as well.
     Settings settings() const;
     ChainControls controls(double measuredDisplacement) const;
-    std::uint64_t switches() const;   ///< a bit for every effect that is on
+    std::uint64_t switches() const;  ///< a bit for every effect that is on
 
     Choice& mode() { return *mode_; }
-    std::vector<Number*> numbers() const { return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, margin_, trim_}; }
+    std::vector<Number*> numbers() const
+    {
+        return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, margin_, trim_};
+    }
     const std::vector<OnOff*>& effects() const { return effects_; }
 
 private:
     Choice* mode_;
     Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_;
-    std::vector<OnOff*> effects_;   ///< in the order of the catalogue
-    mutable std::mutex mutex_;      ///< of what follows; never locked on the audio thread
+    std::vector<OnOff*> effects_;  ///< in the order of the catalogue
+    mutable std::mutex mutex_;     ///< of what follows; never locked on the audio thread
     std::string title_, words_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -33,14 +33,17 @@ juce::String number(double value, double step)
     return decimals == 0 ? whole(value) : juce::String(value, decimals);
 }
 
-} // namespace
+}  // namespace
 
 double PlotView::Range::share(double value) const
 {
     return logarithmic ? std::log(value / least) / std::log(most / least) : (value - least) / (most - least);
 }
 
-double PlotView::Range::value(double share) const { return logarithmic ? least * std::pow(most / least, share) : least + share * (most - least); }
+double PlotView::Range::value(double share) const
+{
+    return logarithmic ? least * std::pow(most / least, share) : least + share * (most - least);
+}
 
 PlotView::Range PlotView::rangeOf(const Plot& plot, const Axis& axis, bool across)
 {
@@ -56,13 +59,15 @@ PlotView::Range PlotView::rangeOf(const Plot& plot, const Axis& axis, bool acros
         }
     };
     for (const auto& series : plot.series)
-        for (const auto* values : across ? std::array {&series.x, &series.x, &series.x} : std::array {&series.y, &series.lower, &series.upper})
+        for (const auto* values : across ? std::array {&series.x, &series.x, &series.x}
+                                         : std::array {&series.y, &series.lower, &series.upper})
             for (const double value : *values)
                 include(value);
     if (!(range.least <= range.most))
         return {axis.logarithmic ? 0.1 : 0.0, 1.0, axis.logarithmic};
     if (range.least == range.most)
-        range = axis.logarithmic ? Range {range.least / 2.0, range.most * 2.0, true} : Range {range.least - 1.0, range.most + 1.0, false};
+        range = axis.logarithmic ? Range {range.least / 2.0, range.most * 2.0, true}
+                                 : Range {range.least - 1.0, range.most + 1.0, false};
     if (!across && !axis.logarithmic) {
         const double room = 0.06 * (range.most - range.least);
         range.least -= room;
@@ -81,16 +86,23 @@ std::vector<PlotView::Tick> PlotView::ticksOf(const Axis& axis, const Range& ran
     }
     if (range.logarithmic) {
         const bool many = std::log10(range.most / range.least) > 0.6 * most;
-        for (int decade = static_cast<int>(std::floor(std::log10(range.least))); decade <= std::ceil(std::log10(range.most)); ++decade)
+        for (int decade = static_cast<int>(std::floor(std::log10(range.least)));
+             decade <= std::ceil(std::log10(range.most)); ++decade)
             for (const int digit : {1, 2, 5}) {
                 const double value = digit * std::pow(10.0, decade);
                 if (value >= range.least * 0.999 && value <= range.most * 1.001 && (digit == 1 || !many))
-                    ticks.push_back({value, value >= 1e3 ? number(value / 1e3, 1.0) + "k" : number(value, value >= 1.0 ? 1.0 : value)});
+                    ticks.push_back({value, value >= 1e3 ? number(value / 1e3, 1.0) + "k"
+                                                         : number(value, value >= 1.0 ? 1.0 : value)});
             }
         return ticks;
     }
-    const double rough = (range.most - range.least) / std::max(1, most), decade = std::pow(10.0, std::floor(std::log10(rough)));
-    const double step = decade * (rough / decade <= 1.0 ? 1.0 : rough / decade <= 2.0 ? 2.0 : rough / decade <= 5.0 ? 5.0 : 10.0);
+    const double rough = (range.most - range.least) / std::max(1, most),
+                 decade = std::pow(10.0, std::floor(std::log10(rough)));
+    const double step = decade
+                        * (rough / decade <= 1.0   ? 1.0
+                           : rough / decade <= 2.0 ? 2.0
+                           : rough / decade <= 5.0 ? 5.0
+                                                   : 10.0);
     for (double value = std::ceil(range.least / step - 1e-9) * step; value <= range.most + 1e-9 * step; value += step)
         ticks.push_back({value, number(std::abs(value) < 1e-9 * step ? 0.0 : value, step)});
     return ticks;
@@ -119,7 +131,7 @@ void PlotView::follow(juce::Point<float> where)
 void PlotView::drawGrid(juce::Graphics& g) const
 {
     g.setFont(11.5f);
-    float free = -1e9f;   // labels do not run into each other
+    float free = -1e9f;  // labels do not run into each other
     for (const auto& tick : ticksOf(plot_.x, across_, std::max(3, static_cast<int>(area_.getWidth() / 60.0f)))) {
         const float x = place(tick.value, up_.least).x;
         g.setColour(look::grid);
@@ -128,14 +140,16 @@ void PlotView::drawGrid(juce::Graphics& g) const
             continue;
         free = x + 14.0f;
         g.setColour(look::dim);
-        g.drawText(tick.text, juce::Rectangle<float>(x - 30.0f, area_.getBottom() + 2.0f, 60.0f, 14.0f), juce::Justification::centred);
+        g.drawText(tick.text, juce::Rectangle<float>(x - 30.0f, area_.getBottom() + 2.0f, 60.0f, 14.0f),
+                   juce::Justification::centred);
     }
     for (const auto& tick : ticksOf(plot_.y, up_, std::max(3, static_cast<int>(area_.getHeight() / 32.0f)))) {
         const float y = place(across_.least, tick.value).y;
         g.setColour(look::grid);
         g.drawHorizontalLine(juce::roundToInt(y), area_.getX(), area_.getRight());
         g.setColour(look::dim);
-        g.drawText(tick.text, juce::Rectangle<float>(area_.getX() - 48.0f, y - 7.0f, 44.0f, 14.0f), juce::Justification::right);
+        g.drawText(tick.text, juce::Rectangle<float>(area_.getX() - 48.0f, y - 7.0f, 44.0f, 14.0f),
+                   juce::Justification::right);
     }
 }
 
@@ -144,7 +158,8 @@ void PlotView::drawSeries(juce::Graphics& g, const Series& series) const
     const auto colour = colourOf(series.role);
     const auto count = std::min(series.x.size(), series.y.size());
     const auto drawable = [&](std::size_t k) {
-        return std::isfinite(series.x[k]) && std::isfinite(series.y[k]) && (!across_.logarithmic || series.x[k] > 0.0) && (!up_.logarithmic || series.y[k] > 0.0);
+        return std::isfinite(series.x[k]) && std::isfinite(series.y[k]) && (!across_.logarithmic || series.x[k] > 0.0)
+               && (!up_.logarithmic || series.y[k] > 0.0);
     };
     if (series.lower.size() == count && series.upper.size() == count && count > 1) {
         // A quadrilateral from point to point: the rasterizer leaves holes in one polygon round the whole band.
@@ -154,10 +169,11 @@ void PlotView::drawSeries(juce::Graphics& g, const Series& series) const
             if (!drawable(k) || !std::isfinite(series.lower[k]) || !std::isfinite(series.upper[k]))
                 continue;
             if (before < k)
-                band.addQuadrilateral(place(series.x[before], series.lower[before]).x, place(series.x[before], series.lower[before]).y,
-                                      place(series.x[before], series.upper[before]).x, place(series.x[before], series.upper[before]).y,
-                                      place(series.x[k], series.upper[k]).x, place(series.x[k], series.upper[k]).y,
-                                      place(series.x[k], series.lower[k]).x, place(series.x[k], series.lower[k]).y);
+                band.addQuadrilateral(
+                    place(series.x[before], series.lower[before]).x, place(series.x[before], series.lower[before]).y,
+                    place(series.x[before], series.upper[before]).x, place(series.x[before], series.upper[before]).y,
+                    place(series.x[k], series.upper[k]).x, place(series.x[k], series.upper[k]).y,
+                    place(series.x[k], series.lower[k]).x, place(series.x[k], series.lower[k]).y);
             before = k;
         }
         g.setColour(colour.withAlpha(0.18f));
@@ -212,13 +228,17 @@ void PlotView::drawReading(juce::Graphics& g) const
     g.setColour(look::dim);
     g.drawVerticalLine(juce::roundToInt(mouse_.x), area_.getY(), area_.getBottom());
     const double x = across_.value((mouse_.x - area_.getX()) / area_.getWidth());
-    juce::StringArray lines {number(x, std::abs(x) < 10.0 ? 0.01 : std::abs(x) < 100.0 ? 0.1 : 1.0) + " " + words(plot_.x.unit)};
+    juce::StringArray lines {number(x, std::abs(x) < 10.0    ? 0.01
+                                       : std::abs(x) < 100.0 ? 0.1
+                                                             : 1.0)
+                             + " " + words(plot_.x.unit)};
     for (const auto& series : plot_.series) {
         if (series.title.empty() || series.x.empty())
             continue;
         std::size_t nearest = 0;
         for (std::size_t k = 1; k < std::min(series.x.size(), series.y.size()); ++k)
-            if (std::abs(across_.share(series.x[k]) - across_.share(x)) < std::abs(across_.share(series.x[nearest]) - across_.share(x)))
+            if (std::abs(across_.share(series.x[k]) - across_.share(x))
+                < std::abs(across_.share(series.x[nearest]) - across_.share(x)))
                 nearest = k;
         if (std::isfinite(series.y[nearest]))
             lines.add(words(series.title) + "  " + juce::String(series.y[nearest], 2) + " " + words(plot_.y.unit));
@@ -227,7 +247,8 @@ void PlotView::drawReading(juce::Graphics& g) const
     float width = 0.0f;
     for (const auto& line : lines)
         width = std::max(width, g.getCurrentFont().getStringWidthFloat(line) + 14.0f);
-    auto box = juce::Rectangle<float>(mouse_.x + 10.0f, area_.getY() + 4.0f, width, 6.0f + 15.0f * static_cast<float>(lines.size()));
+    auto box = juce::Rectangle<float>(mouse_.x + 10.0f, area_.getY() + 4.0f, width,
+                                      6.0f + 15.0f * static_cast<float>(lines.size()));
     if (box.getRight() > area_.getRight())
         box.setX(mouse_.x - 10.0f - width);
     g.setColour(look::background.withAlpha(0.9f));
@@ -246,7 +267,9 @@ void PlotView::paint(juce::Graphics& g)
     if (plot_.series.empty())
         return;
     panel.reduce(10.0f, 6.0f);
-    const auto label = [](const Axis& axis) { return words(axis.unit.empty() ? axis.title : axis.title + " (" + axis.unit + ")"); };
+    const auto label = [](const Axis& axis) {
+        return words(axis.unit.empty() ? axis.title : axis.title + " (" + axis.unit + ")");
+    };
     g.setColour(look::text);
     g.setFont(14.0f);
     if (!plot_.title.empty())
@@ -275,4 +298,4 @@ void PlotView::paint(juce::Graphics& g)
     drawReading(g);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

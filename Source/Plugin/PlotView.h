@@ -6,7 +6,8 @@
 
 namespace excursion::plugin {
 
-/// Draws a plot as the report draws it: one colour a role, bands as shades, the key above, and under the mouse what the lines say there.
+/// Draws a plot as the report draws it: one colour a role, bands as shades, the key above, and under the mouse what the
+/// lines say there.
 class PlotView : public juce::Component {
 public:
     void show(Plot);
@@ -20,7 +21,7 @@ private:
     struct Range {
         double least = 0.0, most = 1.0;
         bool logarithmic = false;
-        double share(double value) const;   ///< 0 at least, 1 at most
+        double share(double value) const;  ///< 0 at least, 1 at most
         double value(double share) const;
     };
     struct Tick {
@@ -43,4 +44,4 @@ private:
     juce::Point<float> mouse_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -9,7 +9,7 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr auto patience = std::chrono::milliseconds(20);   // how long a moved switch may wait
+constexpr auto patience = std::chrono::milliseconds(20);  // how long a moved switch may wait
 
 Model firstModel()
 {
@@ -18,7 +18,8 @@ Model firstModel()
 }
 
 /// One chain a channel.
-std::vector<std::unique_ptr<Chain>> chains(const Model& model, const RealTimeOptions& options, const ChainControls& controls, int channels)
+std::vector<std::unique_ptr<Chain>> chains(const Model& model, const RealTimeOptions& options,
+                                           const ChainControls& controls, int channels)
 {
     std::vector<std::unique_ptr<Chain>> result;
     for (int k = 0; k < channels; ++k)
@@ -38,14 +39,18 @@ Model asSwitched(const Model& model, const Recipe& recipe, const RealTimeOptions
     return result;
 }
 
-} // namespace
+}  // namespace
 
 Processor::Processor()
-    : AudioProcessor(BusesProperties().withInput("Input", juce::AudioChannelSet::stereo(), true).withOutput("Output", juce::AudioChannelSet::stereo(), true)),
-      parameters_(*this), model_(firstModel()), measuredDisplacement_(measuredDisplacement(model_)),
+    : AudioProcessor(BusesProperties()
+                         .withInput("Input", juce::AudioChannelSet::stereo(), true)
+                         .withOutput("Output", juce::AudioChannelSet::stereo(), true)),
+      parameters_(*this),
+      model_(firstModel()),
+      measuredDisplacement_(measuredDisplacement(model_)),
       worker_([this](const std::stop_token& stop) { work(stop); })
 {
-    setLatencySamples(Chain(model_, options(), {}).latency());   // the same at every rate
+    setLatencySamples(Chain(model_, options(), {}).latency());  // the same at every rate
 }
 
 Processor::~Processor()
@@ -54,7 +59,8 @@ Processor::~Processor()
     worker_.join();
 }
 
-/// With the mutex held: at the rate that was prepared, or at one at which any model runs where the engine cannot run at that.
+/// With the mutex held: at the rate that was prepared, or at one at which any model runs where the engine cannot run at
+/// that.
 RealTimeOptions Processor::options() const
 {
     const RealTimeOptions asked {sampleRate_, oversampling};
@@ -134,7 +140,9 @@ void Processor::prepareToPlay(double sampleRate, int)
         auto first = chains(running, options(), parameters_.controls(measured), count);
         measuredDisplacement_.store(measured, std::memory_order_relaxed);
         for (auto& chain : first) {
-            channels_.push_back(std::make_unique<Crossfade<Chain>>(static_cast<int>(fadeTime * sampleRate), getLatencySamples() + static_cast<int>(warmTime * sampleRate)));
+            channels_.push_back(
+                std::make_unique<Crossfade<Chain>>(static_cast<int>(fadeTime * sampleRate),
+                                                   getLatencySamples() + static_cast<int>(warmTime * sampleRate)));
             channels_.back()->start(std::move(chain));
         }
     } catch (const std::exception& error) {
@@ -156,7 +164,8 @@ void Processor::reset()
 bool Processor::isBusesLayoutSupported(const BusesLayout& layout) const
 {
     const auto& out = layout.getMainOutputChannelSet();
-    return out == layout.getMainInputChannelSet() && (out == juce::AudioChannelSet::mono() || out == juce::AudioChannelSet::stereo());
+    return out == layout.getMainInputChannelSet()
+           && (out == juce::AudioChannelSet::mono() || out == juce::AudioChannelSet::stereo());
 }
 
 template <class Sample>
@@ -203,7 +212,12 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
 
 Processor::Meters Processor::take()
 {
-    return {displacement_.take(), voltage_.take(), power_.take(), displacementReduction_.take(), voltageReduction_.take(), powerReduction_.take(),
+    return {displacement_.take(),
+            voltage_.take(),
+            power_.take(),
+            displacementReduction_.take(),
+            voltageReduction_.take(),
+            powerReduction_.take(),
             faults_.load(std::memory_order_relaxed)};
 }
 
@@ -227,6 +241,6 @@ void Processor::setStateInformation(const void* data, int size)
 
 juce::AudioProcessorEditor* Processor::createEditor() { return new Editor(*this); }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin
 
 juce::AudioProcessor* JUCE_CALLTYPE createPluginFilter() { return new excursion::plugin::Processor(); }

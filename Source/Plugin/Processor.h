@@ -19,14 +19,15 @@
 
 namespace excursion::plugin {
 
-/// The plugin without its window. One Chain a channel plays; a thread of its own builds new chains when the model or the switches of
-/// the effects change, and frees the old ones. The audio thread sees parameters (atomics) and the hand-over, nothing else.
-/// At a rate at which no chain can run the signal goes through as it is, as late as ever.
+/// The plugin without its window. One Chain a channel plays; a thread of its own builds new chains when the model or
+/// the switches of the effects change, and frees the old ones. The audio thread sees parameters (atomics) and the
+/// hand-over, nothing else. At a rate at which no chain can run the signal goes through as it is, as late as ever.
 class Processor : public juce::AudioProcessor {
 public:
     static constexpr int oversampling = 2;
-    static constexpr double fadeTime = 0.05;   ///< s, from model to model
-    static constexpr double warmTime = 0.05;   ///< s, in which a new model runs unheard after its delay lines are full: a driver forgets in that
+    static constexpr double fadeTime = 0.05;  ///< s, from model to model
+    /// s, in which a new model runs unheard after its delay lines are full: a driver forgets in that
+    static constexpr double warmTime = 0.05;
 
     Processor();
     ~Processor() override;
@@ -39,17 +40,18 @@ public:
     /// Any thread but the audio thread. Throws Error for a model that cannot be run; then the one before stays.
     void setModel(const Model&);
     Model model() const;
-    std::uint64_t modelVersion() const { return modelVersion_.load(std::memory_order_acquire); }   ///< counts the models, from 1
+    /// counts the models, from 1
+    std::uint64_t modelVersion() const { return modelVersion_.load(std::memory_order_acquire); }
 
     /// Why the signal goes through as it is, in a sentence; empty while the engine runs.
     std::string standstill() const;
 
     /// Since the last call, over all channels; see Predistorter::Meters.
     struct Meters {
-        double displacement = 0.0;   ///< m, of the predistorter's plan or of the modelled speaker
+        double displacement = 0.0;  ///< m, of the predistorter's plan or of the modelled speaker
         double voltage = 0.0, power = 0.0;
-        double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;   ///< dB
-        int faults = 0;              ///< of the chains that play now
+        double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;  ///< dB
+        int faults = 0;  ///< of the chains that play now
     };
     Meters take();
 
@@ -85,15 +87,16 @@ private:
     RealTimeOptions options() const;
 
     Parameters parameters_;
-    mutable std::mutex mutex_;   ///< of what follows; never locked on the audio thread
+    mutable std::mutex mutex_;  ///< of what follows; never locked on the audio thread
     Model model_;
     std::atomic<std::uint64_t> modelVersion_ {1};
-    double sampleRate_ = 0.0;    ///< 0: not prepared
+    double sampleRate_ = 0.0;  ///< 0: not prepared
     std::atomic<double> measuredDisplacement_ {0.0};
-    std::uint64_t switches_ = 0;   ///< of the effects, as they were when chains were built
+    std::uint64_t switches_ = 0;  ///< of the effects, as they were when chains were built
     std::string standstill_;
-    std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;   ///< these two are changed only while no audio runs
-    std::vector<Delay> delays_;                                 ///< in place of the channels, where no chain can run
+    std::vector<std::unique_ptr<Crossfade<Chain>>> channels_;  ///< these two are changed only while no audio runs
+    /// in place of the channels, where no chain can run
+    std::vector<Delay> delays_;
     std::array<double, 256> block_ {};
     Peak displacement_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};
@@ -102,4 +105,4 @@ private:
     Session session_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

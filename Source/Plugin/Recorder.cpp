@@ -10,11 +10,15 @@ Recorder::Recorder(Measurement plan, std::vector<InputRole> roles, int output, d
 {
     for (const double volts : plan_.input().samples)
         played_.push_back(static_cast<float>(volts / fullScale));
-    played_.resize(played_.size() + static_cast<std::size_t>(plan_.sampleRate), 0.0f);   // converters deliver later than they are fed
+    // converters deliver later than they are fed
+    played_.resize(played_.size() + static_cast<std::size_t>(plan_.sampleRate), 0.0f);
     recorded_.assign(roles_.size(), std::vector<float>(played_.size(), 0.0f));
 }
 
-double Recorder::fraction() const { return static_cast<double>(position_.load(std::memory_order_acquire)) / static_cast<double>(played_.size()); }
+double Recorder::fraction() const
+{
+    return static_cast<double>(position_.load(std::memory_order_acquire)) / static_cast<double>(played_.size());
+}
 
 void Recorder::audioDeviceAboutToStart(juce::AudioIODevice* device)
 {
@@ -28,8 +32,8 @@ void Recorder::audioDeviceStopped()
         broken_ = true;
 }
 
-void Recorder::audioDeviceIOCallbackWithContext(const float* const* in, int inputs, float* const* out, int outputs, int length,
-                                                const juce::AudioIODeviceCallbackContext&)
+void Recorder::audioDeviceIOCallbackWithContext(const float* const* in, int inputs, float* const* out, int outputs,
+                                                int length, const juce::AudioIODeviceCallbackContext&)
 {
     const auto from = position_.load(std::memory_order_relaxed);
     const auto count = std::min(static_cast<std::size_t>(length), played_.size() - from);
@@ -53,4 +57,4 @@ Measurement Recorder::take() const
     return takeFrom(plan_, channels);
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -24,7 +24,7 @@ std::string titlesOf(const std::vector<bench::HiddenEffect>& hidden)
     return text.empty() ? "nothing" : text;
 }
 
-} // namespace
+}  // namespace
 
 Session::Session() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -187,7 +187,8 @@ void Session::open(const VirtualOrder& wanted)
         options.seconds = 4.0;
         const auto drawn = bench::draw(wanted.seed, options);
         auto take = bench::measure(drawn.speaker, drawn.setup, progress.part(0.0, 0.2));
-        begin(std::move(take), "Virtual " + drawn.driver + ", seed " + std::to_string(wanted.seed), titlesOf(drawn.hidden), progress.part(0.2, 1.0));
+        begin(std::move(take), "Virtual " + drawn.driver + ", seed " + std::to_string(wanted.seed),
+              titlesOf(drawn.hidden), progress.part(0.2, 1.0));
     });
 }
 
@@ -236,4 +237,4 @@ void Session::saveTake(const std::string& folder)
     });
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -20,49 +20,49 @@ namespace excursion::plugin {
 
 /// What the pages show of a take and its ladder. It does not change once it is handed out.
 struct Findings {
-    std::string source;                                ///< where the take is from, in words
-    std::string truth;                                 ///< what the virtual loudspeaker hides; empty for a real one
+    std::string source;  ///< where the take is from, in words
+    std::string truth;   ///< what the virtual loudspeaker hides; empty for a real one
     std::shared_ptr<const Take> take;
     CheckReport report;
-    LadderFile file;                                   ///< without rungs until the first fit is done
-    std::vector<std::vector<Waveform>> waveforms;      ///< [level][channel], of the last rung
+    LadderFile file;                               ///< without rungs until the first fit is done
+    std::vector<std::vector<Waveform>> waveforms;  ///< [level][channel], of the last rung
 };
 
 /// A virtual loudspeaker to be measured: one that the seed draws, with one effect hidden that the seed chooses.
 struct VirtualOrder {
-    std::string driver;        ///< class, see bench::driverClasses()
+    std::string driver;  ///< class, see bench::driverClasses()
     std::uint64_t seed = 1;
 };
 
-/// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back. Every method may
-/// be called from any thread but the audio thread, and returns at once; orders are carried out one after the other. A new take makes what
-/// is under way stop.
+/// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back. Every
+/// method may be called from any thread but the audio thread, and returns at once; orders are carried out one after the
+/// other. A new take makes what is under way stop.
 class Session {
 public:
     Session();
     ~Session();
 
-    void open(const std::string& path);                   ///< as readTake()
+    void open(const std::string& path);  ///< as readTake()
     void open(const VirtualOrder&);
-    void open(Measurement, const std::string& source);    ///< one that was just made
+    void open(Measurement, const std::string& source);  ///< one that was just made
     void add(const std::string& effect);
     void undo();
     void saveReport(const std::string& path);
     void saveTake(const std::string& folder);
 
-    void cancel();   ///< what is under way, and what was ordered after it
+    void cancel();  ///< what is under way, and what was ordered after it
 
     struct Status {
         bool busy = false;
         double fraction = 0.0;
-        std::string words;            ///< what is being done, or what the last order came to
-        bool trouble = false;         ///< the last order failed
-        std::uint64_t version = 0;    ///< counts the findings
+        std::string words;          ///< what is being done, or what the last order came to
+        bool trouble = false;       ///< the last order failed
+        std::uint64_t version = 0;  ///< counts the findings
     };
     Status status() const;
-    std::shared_ptr<const Findings> findings() const;   ///< null before the first take
+    std::shared_ptr<const Findings> findings() const;  ///< null before the first take
 
-    void wait() const;   ///< until nothing is under way
+    void wait() const;  ///< until nothing is under way
 
 private:
     using Work = std::function<void(const Progress&)>;
@@ -74,15 +74,15 @@ private:
     void say(const std::string&);
     Improvement& improvement();
 
-    std::optional<Improvement> improvement_;   ///< of the thread
-    mutable std::mutex mutex_;                 ///< of what follows
+    std::optional<Improvement> improvement_;  ///< of the thread
+    mutable std::mutex mutex_;                ///< of what follows
     mutable std::condition_variable_any changed_;
     std::vector<Work> orders_;
-    std::stop_source stop_;                    ///< of the order under way
+    std::stop_source stop_;  ///< of the order under way
     bool working_ = false;
     Status status_;
     std::shared_ptr<const Findings> findings_;
     std::jthread thread_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

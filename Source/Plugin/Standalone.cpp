@@ -11,4 +11,4 @@ juce::AudioDeviceManager* standaloneDevices()
     return app != nullptr ? &app->deviceManager : nullptr;
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

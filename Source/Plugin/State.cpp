@@ -26,11 +26,14 @@ nlohmann::json parsed(std::string_view text, const std::string& where)
 
 double resonance(const Model& model) { return model.baseParameter("K").value / model.baseParameter("m").value; }
 
-} // namespace
+}  // namespace
 
 std::string bytesOf(const State& state)
 {
-    nlohmann::ordered_json document {{"format", formatName}, {"version", formatVersion}, {"recipe", toJson(state.recipe)}, {"model", toJson(state.model)}};
+    nlohmann::ordered_json document {{"format", formatName},
+                                     {"version", formatVersion},
+                                     {"recipe", toJson(state.recipe)},
+                                     {"model", toJson(state.model)}};
     if (!state.between.empty())
         document["between"] = state.between;
     return jsonText(document);
@@ -98,4 +101,4 @@ const std::vector<Factory>& factoryRecipes()
     return list;
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

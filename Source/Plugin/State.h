@@ -13,12 +13,12 @@ namespace excursion::plugin {
 /// Numbers that a host has sent between the steps of parameters, by their ids.
 using Between = std::map<std::string, double>;
 
-/// What a host keeps of the plugin, format "excursion-plugin-state", version 1: the recipe and the model itself, not a path to it.
-/// Same state, same bytes.
+/// What a host keeps of the plugin, format "excursion-plugin-state", version 1: the recipe and the model itself, not a
+/// path to it. Same state, same bytes.
 struct State {
     Recipe recipe;
     Model model;
-    Between between;   ///< if any
+    Between between;  ///< if any
 };
 
 std::string bytesOf(const State&);
@@ -30,10 +30,10 @@ struct Factory {
     std::string title;
     std::string_view text;
 };
-const std::vector<Factory>& factoryDrivers();   ///< by resonance, the highest first
+const std::vector<Factory>& factoryDrivers();  ///< by resonance, the highest first
 const std::vector<Factory>& factoryRecipes();
 
-Model modelFromText(std::string_view text, const std::string& where);     ///< throws Error (input)
-Recipe recipeFromText(std::string_view text, const std::string& where);   ///< throws Error (input)
+Model modelFromText(std::string_view text, const std::string& where);    ///< throws Error (input)
+Recipe recipeFromText(std::string_view text, const std::string& where);  ///< throws Error (input)
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -13,7 +13,7 @@ void Stepped::set(float proportion)
 
 void Stepped::setValue(float sent)
 {
-    sent_.store(sent > 0.0f ? std::min(sent, 1.0f) : 0.0f, std::memory_order_relaxed);   // what is no number is 0
+    sent_.store(sent > 0.0f ? std::min(sent, 1.0f) : 0.0f, std::memory_order_relaxed);  // what is no number is 0
 }
 
 OnOff& OnOff::operator=(bool on)
@@ -36,4 +36,4 @@ Choice& Choice::operator=(int index)
     return *this;
 }
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -9,8 +9,8 @@ namespace excursion::plugin {
 
 constexpr int versionHint = 1;
 
-/// A parameter that has a few steps. A host may send any number, keeps it as what the parameter is at, and wants it back with a state; so it is kept,
-/// and what it stands for is the step next to it. Setting and reading are wait-free.
+/// A parameter that has a few steps. A host may send any number, keeps it as what the parameter is at, and wants it
+/// back with a state; so it is kept, and what it stands for is the step next to it. Setting and reading are wait-free.
 class Stepped : public juce::AudioProcessorParameterWithID {
 public:
     Stepped(const juce::String& id, const juce::String& title, float value)
@@ -18,8 +18,8 @@ public:
     {
     }
 
-    virtual float step(float proportion) const = 0;   ///< what a number stands for
-    void set(float proportion);                       ///< tells the host; not for the audio thread
+    virtual float step(float proportion) const = 0;  ///< what a number stands for
+    void set(float proportion);                      ///< tells the host; not for the audio thread
 
     float getValue() const final { return sent_.load(std::memory_order_relaxed); }
     void setValue(float sent) final;
@@ -49,7 +49,10 @@ public:
 /// One of several, the first to begin with.
 class Choice : public Stepped {
 public:
-    Choice(const juce::String& id, const juce::String& title, const juce::StringArray& all) : Stepped(id, title, 0.0f), choices(all) {}
+    Choice(const juce::String& id, const juce::String& title, const juce::StringArray& all)
+        : Stepped(id, title, 0.0f), choices(all)
+    {
+    }
 
     const juce::StringArray choices;
 
@@ -60,10 +63,16 @@ public:
     float proportionOf(int index) const { return static_cast<float>(index) / static_cast<float>(choices.size() - 1); }
     int getNumSteps() const override { return choices.size(); }
     juce::String getText(float proportion, int) const override { return choices[indexAt(proportion)]; }
-    float getValueForText(const juce::String& text) const override { return proportionOf(juce::jmax(0, choices.indexOf(text))); }
+    float getValueForText(const juce::String& text) const override
+    {
+        return proportionOf(juce::jmax(0, choices.indexOf(text)));
+    }
 
 private:
-    int indexAt(float proportion) const { return juce::roundToInt(proportion * static_cast<float>(choices.size() - 1)); }
+    int indexAt(float proportion) const
+    {
+        return juce::roundToInt(proportion * static_cast<float>(choices.size() - 1));
+    }
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -224,7 +224,7 @@ void addValues(Page& page, const Collection& all)
     page.table(header, rows);
 }
 
-} // namespace
+}  // namespace
 
 std::string batchHtml(const Collection& all)
 {
@@ -240,4 +240,4 @@ std::string batchHtml(const Collection& all)
 
 void writeBatchReport(const Collection& all, const std::filesystem::path& path) { publish(path, batchHtml(all)); }
 
-} // namespace excursion
+}  // namespace excursion

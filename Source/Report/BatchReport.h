@@ -15,4 +15,4 @@ std::string batchHtml(const Collection&);
 
 void writeBatchReport(const Collection&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

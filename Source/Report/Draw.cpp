@@ -15,7 +15,7 @@ namespace {
 
 struct RoleStyle {
     StandIn colour;
-    int dash;      // of gnuplot
+    int dash;  // of gnuplot
     double width;
 };
 
@@ -57,7 +57,7 @@ std::string quoted(const std::string& text)
     std::string result = "'";
     for (const char c : text)
         if (c == '\'')
-            result += "\u2019";   // gnuplot's own way to write one fails at the head of a text
+            result += "\u2019";  // gnuplot's own way to write one fails at the head of a text
         else if (static_cast<unsigned char>(c) >= ' ')
             result += c;
     return result + "'";
@@ -66,7 +66,7 @@ std::string quoted(const std::string& text)
 bool drawable(const Plot& plot, const Series& s, std::size_t k)
 {
     return std::isfinite(s.x[k]) && std::isfinite(s.y[k]) && (!plot.x.logarithmic || s.x[k] > 0.0)
-        && (!plot.y.logarithmic || s.y[k] > 0.0);
+           && (!plot.y.logarithmic || s.y[k] > 0.0);
 }
 
 /// The data of a series as a here-document: x, y, lower, upper; an empty line is a gap. False when there is none.
@@ -80,9 +80,10 @@ bool writeData(std::string& script, const Plot& plot, const Series& s, const std
             continue;
         }
         any = true;
-        const bool band = k < s.lower.size() && k < s.upper.size() && std::isfinite(s.lower[k]) && std::isfinite(s.upper[k]);
+        const bool band = k < s.lower.size() && k < s.upper.size() && std::isfinite(s.lower[k])
+                          && std::isfinite(s.upper[k]);
         rows += number(s.x[k]) + ' ' + number(s.y[k]) + ' ' + number(band ? s.lower[k] : s.y[k]) + ' '
-              + number(band ? s.upper[k] : s.y[k]) + '\n';
+                + number(band ? s.upper[k] : s.y[k]) + '\n';
     }
     if (any)
         script += name + " << EOD\n" + rows + "EOD\n";
@@ -128,11 +129,13 @@ void writeAxis(std::string& script, const Axis& axis, char letter)
 
 void writePlot(std::string& script, const Plot& plot)
 {
-    script += "reset\nset terminal svg noenhanced dynamic size " + std::to_string(plot.width) + "," + std::to_string(plot.height)
-            + " font 'sans-serif,12'\n";
+    script += "reset\nset terminal svg noenhanced dynamic size " + std::to_string(plot.width) + ","
+              + std::to_string(plot.height) + " font 'sans-serif,12'\n";
     script += "set border 3 linewidth 0.8 linecolor " + colour(ink) + "\n";
     script += "set grid linetype 1 linewidth 0.7 linecolor " + colour(grid) + "\n";
-    script += plot.key ? "set key tmargin left Left reverse horizontal samplen 1.1 width -0.5 textcolor " + colour(ink) + "\n" : "set key off\n";
+    script += plot.key ? "set key tmargin left Left reverse horizontal samplen 1.1 width -0.5 textcolor " + colour(ink)
+                             + "\n"
+                       : "set key off\n";
     writeAxis(script, plot.x, 'x');
     writeAxis(script, plot.y, 'y');
     std::string bands, lines;
@@ -144,11 +147,12 @@ void writePlot(std::string& script, const Plot& plot)
         const auto& style = styleOf(s.role);
         if (!s.lower.empty())
             bands += name + " using 1:3:4 with filledcurves fillcolor " + colour(style.colour)
-                   + " fillstyle transparent solid 0.18 noborder notitle, ";
+                     + " fillstyle transparent solid 0.18 noborder notitle, ";
         const bool points = s.shape == Series::Shape::pointsAndLine;
         lines += name + " using 1:2 with " + (points ? "linespoints pointtype 7 pointsize 0.5" : "lines") + " dashtype "
-               + std::to_string(s.dash > 0 ? s.dash : style.dash) + " linewidth " + number(style.width) + " linecolor "
-               + colour(style.colour) + (s.title.empty() ? " notitle" : " title " + quoted(s.title)) + ", ";
+                 + std::to_string(s.dash > 0 ? s.dash : style.dash) + " linewidth " + number(style.width)
+                 + " linecolor " + colour(style.colour) + (s.title.empty() ? " notitle" : " title " + quoted(s.title))
+                 + ", ";
     }
     if (lines.empty()) {
         script += "set xrange [1:10]\nset yrange [1:10]\nplot NaN notitle\n";
@@ -159,7 +163,7 @@ void writePlot(std::string& script, const Plot& plot)
     script += "plot " + command + "\n";
 }
 
-} // namespace
+}  // namespace
 
 std::vector<std::string> draw(const std::vector<Plot>& plots)
 {
@@ -169,13 +173,15 @@ std::vector<std::string> draw(const std::vector<Plot>& plots)
     for (const auto& plot : plots)
         writePlot(script, plot);
     std::vector<StandIn> colours {ink, grid};
-    for (const auto role : {Role::measured, Role::model, Role::error, Role::noise, Role::before, Role::after, Role::reference})
+    for (const auto role :
+         {Role::measured, Role::model, Role::error, Role::noise, Role::before, Role::after, Role::reference})
         colours.push_back(styleOf(role).colour);
     auto pictures = inlineSvgs(runGnuplot(script), colours);
     if (pictures.size() != plots.size())
         throw Error(Error::Kind::numerical, "gnuplot drew " + std::to_string(pictures.size()) + " of "
-                                                + std::to_string(plots.size()) + " plots of the report; version 5 or later is needed.");
+                                                + std::to_string(plots.size())
+                                                + " plots of the report; version 5 or later is needed.");
     return pictures;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,8 +8,8 @@
 
 namespace excursion {
 
-/// Draws all plots in one run of gnuplot and returns an SVG element for each, to be put into a page that defines the colours
-/// of style.css. Same plots, same text. Throws Error (numerical) when gnuplot is not there or refuses.
+/// Draws all plots in one run of gnuplot and returns an SVG element for each, to be put into a page that defines the
+/// colours of style.css. Same plots, same text. Throws Error (numerical) when gnuplot is not there or refuses.
 std::vector<std::string> draw(const std::vector<Plot>&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -23,9 +23,10 @@ public:
     Pipe()
     {
         if (::pipe(ends_.data()) != 0)
-            throw Error(Error::Kind::numerical, "The report cannot be drawn: the system has no pipe left; close other programs.");
+            throw Error(Error::Kind::numerical,
+                        "The report cannot be drawn: the system has no pipe left; close other programs.");
         for (const int end : ends_)
-            ::fcntl(end, F_SETFD, FD_CLOEXEC);   // a child that held a writing end would keep the reader waiting
+            ::fcntl(end, F_SETFD, FD_CLOEXEC);  // a child that held a writing end would keep the reader waiting
     }
     ~Pipe()
     {
@@ -90,7 +91,7 @@ std::vector<std::string> plainEnvironment()
     return result;
 }
 
-} // namespace
+}  // namespace
 
 std::string runGnuplot(const std::string& script)
 {
@@ -129,8 +130,7 @@ std::string runGnuplot(const std::string& script)
     writer.join();
     listener.join();
     int status = 0;
-    while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-    }
+    while (waitpid(process, &status, 0) < 0 && errno == EINTR) {}
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         throw Error(Error::Kind::numerical, "gnuplot failed to draw the report's plots: "
                                                 + (said.empty() ? std::string("it said nothing") : said.substr(0, 400))
@@ -138,4 +138,4 @@ std::string runGnuplot(const std::string& script)
     return text;
 }
 
-} // namespace excursion
+}  // namespace excursion

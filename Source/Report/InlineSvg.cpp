@@ -77,7 +77,7 @@ std::string withPageColours(std::string_view text, const std::vector<StandIn>& c
     }
 }
 
-} // namespace
+}  // namespace
 
 std::vector<std::string> inlineSvgs(std::string_view printed, const std::vector<StandIn>& colours)
 {
@@ -91,7 +91,7 @@ std::vector<std::string> inlineSvgs(std::string_view printed, const std::vector<
         printed.remove_prefix(end + 6);
         cut(svg, "<title>", "</title>");
         cut(svg, "<desc>", "</desc>");
-        if (svg.find("#gpPt", svg.find("</defs>")) == std::string::npos)   // no picture needs the marks of another
+        if (svg.find("#gpPt", svg.find("</defs>")) == std::string::npos)  // no picture needs the marks of another
             cut(svg, "<defs>", "</defs>");
         cut(svg, " id=\"", "\"");
         svg.replace(0, 4, "<svg class=\"plot\" role=\"img\"");
@@ -99,4 +99,4 @@ std::vector<std::string> inlineSvgs(std::string_view printed, const std::vector<
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

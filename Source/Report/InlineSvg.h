@@ -11,11 +11,11 @@ namespace excursion {
 /// serves light pages, dark pages and paper.
 struct StandIn {
     int red, green, blue;
-    const char* property;   ///< "--measured"
+    const char* property;  ///< "--measured"
 };
 
 /// Makes what gnuplot's svg terminal printed, one document after the other, fit to stand in one HTML page: only the svg
 /// elements, no ids that would clash, no empty groups, stand-ins replaced by the page's colours.
 std::vector<std::string> inlineSvgs(std::string_view printed, const std::vector<StandIn>&);
 
-} // namespace excursion
+}  // namespace excursion

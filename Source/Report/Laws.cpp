@@ -13,10 +13,11 @@ void addLaws(Page& page, const LadderFile& file)
     page.section("The laws of the driver");
     const int columns = columnsFor(plots.size());
     page.figures(std::move(plots), columns,
-                 "Each curve is drawn over the range that the take visited; the shade is its 95 % confidence band, the dashes its value at rest.");
+                 "Each curve is drawn over the range that the take visited; the shade is its 95 % confidence band, the "
+                 "dashes its value at rest.");
     for (std::size_t k = 1; k < model.components.size(); ++k)
         page.paragraph(model.components[k].effect->title() + ": " + model.components[k].effect->physics() + " "
                        + model.components[k].effect->remedy());
 }
 
-} // namespace excursion
+}  // namespace excursion

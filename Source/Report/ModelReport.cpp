@@ -25,14 +25,17 @@ void addRoots(Page& page, const StateSpace& model, double alpha)
 {
     page.section("The model");
     page.figures({rootsPlot(model, alpha), gainSurfacePlot(model, alpha)}, 2,
-                 "Left: a pole or zero by its frequency and its angle from the positive real axis; poles above the border decay. Right: the gain along rays in the "
-                 "plane of s; the one at 90\u00b0 is the frequency response, and the closer a pole is to a ray the more it stands out on it.");
+                 "Left: a pole or zero by its frequency and its angle from the positive real axis; poles above the "
+                 "border decay. Right: the gain along rays in the "
+                 "plane of s; the one at 90\u00b0 is the frequency response, and the closer a pole is to a ray the "
+                 "more it stands out on it.");
 }
 
 void addStateSpace(Page& page, const JsonField& document)
 {
     const auto named = stateSpaceFromJson(document);
-    page.headline(named.name + ": " + std::to_string(named.model.order()) + " states, " + (isStable(named.model) ? "stable" : "not stable"),
+    page.headline(named.name + ": " + std::to_string(named.model.order()) + " states, "
+                      + (isStable(named.model) ? "stable" : "not stable"),
                   isStable(named.model) ? "good" : "bad");
     addRoots(page, named.model, 1.0);
 }
@@ -41,8 +44,8 @@ void addFractionalStateSpace(Page& page, const JsonField& document)
 {
     const auto named = fractionalStateSpaceFromJson(document);
     const bool stable = isStable(named.model);
-    page.headline(named.name + ": " + std::to_string(named.model.form.order()) + " states of order " + fixedText(named.model.alpha, 4) + ", "
-                      + (stable ? "stable" : "not stable"),
+    page.headline(named.name + ": " + std::to_string(named.model.form.order()) + " states of order "
+                      + fixedText(named.model.alpha, 4) + ", " + (stable ? "stable" : "not stable"),
                   stable ? "good" : "bad");
     addRoots(page, named.model.form, named.model.alpha);
 }
@@ -57,10 +60,11 @@ void addSweep(Page& page, const JsonField& document)
         errors.order.push_back(entry.at("order").number());
         errors.error.push_back(entry.at("errorDb").numberOrNaN());
         errors.weighted.push_back(entry.at("weightedErrorDb").numberOrNaN());
-        errors.validation.push_back(entry.has("validationDb") ? entry.at("validationDb").number() : std::numeric_limits<double>::quiet_NaN());
+        errors.validation.push_back(entry.has("validationDb") ? entry.at("validationDb").number()
+                                                              : std::numeric_limits<double>::quiet_NaN());
         rows.push_back({Page::figure(fixedText(errors.order.back(), 0)), Page::figure(decibelsIn(entry, "errorDb")),
-                        Page::figure(decibelsIn(entry, "weightedErrorDb")), Page::figure(decibelsIn(entry, "validationDb")),
-                        entry.at("stable").flag() ? "yes" : "no"});
+                        Page::figure(decibelsIn(entry, "weightedErrorDb")),
+                        Page::figure(decibelsIn(entry, "validationDb")), entry.at("stable").flag() ? "yes" : "no"});
         if (!entry.has("curve") || entry.at("curve").items().size() < 2)
             continue;
         Plot curve;
@@ -90,7 +94,8 @@ void addSweep(Page& page, const JsonField& document)
     page.section("The error against the order");
     page.table({"order", "error dB", "weighted dB", "validation dB", "stable"}, rows);
     if (!plots.empty())
-        page.figures(plots, plots.size() == 1 ? 1 : 2, "Errors are relative; the weighted one counts each line by what its noise allows.");
+        page.figures(plots, plots.size() == 1 ? 1 : 2,
+                     "Errors are relative; the weighted one counts each line by what its noise allows.");
 }
 
 void addIdentification(Page& page, const JsonField& document)
@@ -109,15 +114,17 @@ void addFractionalIdentification(Page& page, const JsonField& document)
 void addMotorCone(Page& page, const JsonField& document)
 {
     const bool stable = document.at("stable").flag();
-    page.headline("Motor and cone: together " + decibelsIn(document, "errorDb") + " dB from the pressure" + (stable ? "" : "; not both stable"),
+    page.headline("Motor and cone: together " + decibelsIn(document, "errorDb") + " dB from the pressure"
+                      + (stable ? "" : "; not both stable"),
                   stable ? "good" : "bad");
     page.paragraph(document.at("sentence").text());
     std::vector<std::vector<Page::Cell>> rows;
     std::vector<Plot> plots;
-    for (const auto& [key, title, error] : {std::tuple {"motor", "Motor", "motorErrorDb"}, {"cone", "Cone", "coneErrorDb"}}) {
+    for (const auto& [key, title, error] :
+         {std::tuple {"motor", "Motor", "motorErrorDb"}, {"cone", "Cone", "coneErrorDb"}}) {
         const auto named = stateSpaceFromJson(document.at(key));
-        rows.push_back({title, named.inputs.front(), named.outputs.front(), Page::figure(std::to_string(named.model.order())),
-                        Page::figure(decibelsIn(document, error))});
+        rows.push_back({title, named.inputs.front(), named.outputs.front(),
+                        Page::figure(std::to_string(named.model.order())), Page::figure(decibelsIn(document, error))});
         if (named.model.order() == 0)
             continue;
         // Of the motor the displacement: its other outputs are derivatives of that.
@@ -130,14 +137,17 @@ void addMotorCone(Page& page, const JsonField& document)
     page.section("The halves");
     page.table({"", "from", "to", "order", "error dB"}, rows);
     if (!plots.empty())
-        page.figures(plots, static_cast<int>(plots.size()), "A pole or zero by its frequency and its angle from the positive real axis; poles above the border decay.");
+        page.figures(
+            plots, static_cast<int>(plots.size()),
+            "A pole or zero by its frequency and its angle from the positive real axis; poles above the border decay.");
 }
 
 void addPnlssFit(Page& page, const JsonField& document)
 {
     const bool stable = document.at("stable").flag();
-    page.headline("Polynomial state space: " + decibelsIn(document, "estimationDb") + " dB on what it was fitted to, " + decibelsIn(document, "validationDb")
-                      + " dB on what it had not seen" + (stable ? "" : "; its linear part is not stable"),
+    page.headline("Polynomial state space: " + decibelsIn(document, "estimationDb") + " dB on what it was fitted to, "
+                      + decibelsIn(document, "validationDb") + " dB on what it had not seen"
+                      + (stable ? "" : "; its linear part is not stable"),
                   stable ? "good" : "bad");
     if (document.has("laws"))
         page.paragraph(document.at("laws").at("sentence").text());
@@ -152,7 +162,9 @@ void addPnlssFit(Page& page, const JsonField& document)
     fall.key = false;
     if (document.at("history").items().size() > 1) {
         page.section("The fit");
-        page.figures({fall}, 1, "On the records that it was fitted to, after each step that was taken; it stopped because " + document.at("stopped").text() + ".");
+        page.figures({fall}, 1,
+                     "On the records that it was fitted to, after each step that was taken; it stopped because "
+                         + document.at("stopped").text() + ".");
     }
     if (document.at("model").at("format").text() == "excursion-pnlss")
         addRoots(page, stateSpaceFromJson(document.at("model").at("linear")).model, 1.0);
@@ -177,14 +189,16 @@ void addRankingOfClasses(Page& page, const JsonField& document)
             troubles.push_back(name + ": " + model.at("trouble").text());
             continue;
         }
-        const double judged = model.has("validationDb") ? model.at("validationDb").number() : model.at("estimationDb").numberOrNaN();
+        const double judged = model.has("validationDb") ? model.at("validationDb").number()
+                                                        : model.at("estimationDb").numberOrNaN();
         const double parameters = model.at("parameters").number();
         classes.x.insert(classes.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
         classes.y.insert(classes.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
         fewest = std::min(fewest, parameters);
         most = std::max(most, parameters);
         rows.push_back({name, Page::figure(fixedText(parameters, 0)), Page::figure(decibelsIn(model, "estimationDb")),
-                        Page::figure(decibelsIn(model, "validationDb")), Page::figure(fixedText(100.0 * model.at("load").number(), 2) + " %"),
+                        Page::figure(decibelsIn(model, "validationDb")),
+                        Page::figure(fixedText(100.0 * model.at("load").number(), 2) + " %"),
                         model.at("stable").flag() ? "yes" : "no", model.at("description").text()});
     }
     plot.series.push_back(std::move(classes));
@@ -197,7 +211,9 @@ void addRankingOfClasses(Page& page, const JsonField& document)
     for (const auto& trouble : troubles)
         page.note(trouble);
     if (!rows.empty())
-        page.figures({plot}, 1, "Errors are those of simulations, relative to the output. The load is the time that one core simulates for.");
+        page.figures({plot}, 1,
+                     "Errors are those of simulations, relative to the output. The load is the time that one core "
+                     "simulates for.");
 }
 
 struct PageOf {
@@ -206,15 +222,16 @@ struct PageOf {
     void (*add)(Page&, const JsonField&);
 };
 
-constexpr PageOf pagesOf[] {{"excursion-state-space", "Linear model", addStateSpace},
-                            {"excursion-fractional-state-space", "Fractional model", addFractionalStateSpace},
-                            {"excursion-identification", "Identification", addIdentification},
-                            {"excursion-fractional-identification", "Fractional identification", addFractionalIdentification},
-                            {"excursion-motor-cone", "Motor and cone", addMotorCone},
-                            {"excursion-pnlss-fit", "Polynomial model", addPnlssFit},
-                            {"excursion-ranking", "Classes of models", addRankingOfClasses}};
+constexpr PageOf pagesOf[] {
+    {"excursion-state-space", "Linear model", addStateSpace},
+    {"excursion-fractional-state-space", "Fractional model", addFractionalStateSpace},
+    {"excursion-identification", "Identification", addIdentification},
+    {"excursion-fractional-identification", "Fractional identification", addFractionalIdentification},
+    {"excursion-motor-cone", "Motor and cone", addMotorCone},
+    {"excursion-pnlss-fit", "Polynomial model", addPnlssFit},
+    {"excursion-ranking", "Classes of models", addRankingOfClasses}};
 
-} // namespace
+}  // namespace
 
 std::string documentHtml(const JsonField& document)
 {
@@ -232,6 +249,9 @@ std::string documentHtml(const JsonField& document)
     document.at("format").refuse("a document that has a page");
 }
 
-void writeDocumentPage(const JsonField& document, const std::filesystem::path& path) { publish(path, documentHtml(document)); }
+void writeDocumentPage(const JsonField& document, const std::filesystem::path& path)
+{
+    publish(path, documentHtml(document));
+}
 
-} // namespace excursion
+}  // namespace excursion

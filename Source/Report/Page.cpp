@@ -21,12 +21,12 @@ std::string cellHtml(const Page::Cell& cell)
     if (cell.share) {
         const double share = std::isfinite(*cell.share) ? std::clamp(*cell.share, 0.0, 1.0) : 0.0;
         return "<td class=\"share\"><span class=\"bar\"><i style=\"width:" + fixedText(100.0 * share, 1)
-             + "%\"></i></span>" + escapeHtml(cell.text) + "</td>";
+               + "%\"></i></span>" + escapeHtml(cell.text) + "</td>";
     }
     return (cell.numeric ? "<td class=\"figure\">" : "<td>") + escapeHtml(cell.text) + "</td>";
 }
 
-} // namespace
+}  // namespace
 
 std::string escapeHtml(std::string_view text)
 {
@@ -79,7 +79,9 @@ void Page::table(const std::vector<std::string>& header, const std::vector<std::
 {
     body_ += "<div class=\"wide\"><table><thead><tr>";
     for (std::size_t c = 0; c < header.size(); ++c) {
-        const bool numeric = !rows.empty() && std::all_of(rows.begin(), rows.end(), [c](const auto& row) { return c >= row.size() || row[c].numeric; });
+        const bool numeric = !rows.empty() && std::all_of(rows.begin(), rows.end(), [c](const auto& row) {
+            return c >= row.size() || row[c].numeric;
+        });
         body_ += (numeric ? "<th class=\"figure\">" : "<th>") + escapeHtml(header[c]) + "</th>";
     }
     body_ += "</tr></thead><tbody>\n";
@@ -106,7 +108,8 @@ void Page::figures(std::vector<Plot> plots, int columns, const std::string& howT
         return;
     body_ += "<figure><div class=\"grid columns" + std::to_string(columns) + "\">\n";
     for (auto& plot : plots) {
-        plot.width = columns == 1 ? 640 : columns == 2 ? 460 : 330;   // about as wide as it will be shown, or its text shrinks
+        // about as wide as it will be shown, or its text shrinks
+        plot.width = columns == 1 ? 640 : columns == 2 ? 460 : 330;
         plot.height = columns == 1 ? 340 : columns == 2 ? 270 : 240;
         body_ += "<div><h4>" + escapeHtml(plot.title) + "</h4>";
         places_.push_back(body_.size());
@@ -130,8 +133,10 @@ std::string Page::html() const
     return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<meta name=\"color-scheme\" content=\"light dark\">\n"
-           "<title>" + escapeHtml(title_) + "</title>\n<style>\n" + std::string(pageStyle()) + "</style></head>\n<body><main>\n<h1>"
-         + escapeHtml(title_) + "</h1>\n<nav>" + contents_ + "</nav>\n" + body + "</main></body></html>\n";
+           "<title>"
+           + escapeHtml(title_) + "</title>\n<style>\n" + std::string(pageStyle())
+           + "</style></head>\n<body><main>\n<h1>" + escapeHtml(title_) + "</h1>\n<nav>" + contents_ + "</nav>\n" + body
+           + "</main></body></html>\n";
 }
 
-} // namespace excursion
+}  // namespace excursion

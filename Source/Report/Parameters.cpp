@@ -9,15 +9,18 @@
 namespace excursion {
 namespace {
 
-void addRows(std::vector<std::vector<Page::Cell>>& rows, const std::string& of, const std::vector<Parameter>& parameters,
-             const std::vector<Parameter>* atStart)
+void addRows(std::vector<std::vector<Page::Cell>>& rows, const std::string& of,
+             const std::vector<Parameter>& parameters, const std::vector<Parameter>* atStart)
 {
     for (std::size_t k = 0; k < parameters.size(); ++k) {
         const auto& p = parameters[k];
-        std::vector<Page::Cell> row {k == 0 ? of : std::string(), p.name,
-                                     Page::figure(p.free ? withError(p.value, p.standardError, p.unit) : engineering(p.value, p.unit)),
-                                     Page::figure(atStart && k < atStart->size() ? engineering((*atStart)[k].value, p.unit) : "")};
-        row.emplace_back(!p.free ? "held, this take cannot see it" : std::isfinite(p.standardError) ? "" : "error unknown");
+        std::vector<Page::Cell> row {
+            k == 0 ? of : std::string(), p.name,
+            Page::figure(p.free ? withError(p.value, p.standardError, p.unit) : engineering(p.value, p.unit)),
+            Page::figure(atStart && k < atStart->size() ? engineering((*atStart)[k].value, p.unit) : "")};
+        row.emplace_back(!p.free                          ? "held, this take cannot see it"
+                         : std::isfinite(p.standardError) ? ""
+                                                          : "error unknown");
         rows.push_back(std::move(row));
     }
 }
@@ -27,12 +30,12 @@ void addRows(std::vector<std::vector<Page::Cell>>& rows, const std::string& of, 
 {
     for (std::size_t k = 0; k < figures.size(); ++k) {
         const auto& f = figures[k];
-        rows.push_back({k == 0 ? of : std::string(), f.name, Page::figure(withError(f.value, f.standardError, f.unit)), Page::figure(""),
-                        "summary of the spectrum"});
+        rows.push_back({k == 0 ? of : std::string(), f.name, Page::figure(withError(f.value, f.standardError, f.unit)),
+                        Page::figure(""), "summary of the spectrum"});
     }
 }
 
-} // namespace
+}  // namespace
 
 void addParameters(Page& page, const LadderFile& file)
 {
@@ -48,7 +51,8 @@ void addParameters(Page& page, const LadderFile& file)
     }
     addRows(rows, model.path.effect->title(), model.path.parameters, &first.path.parameters);
     page.table({"", "Parameter", "Final model", "First model", ""}, rows);
-    page.note("Values with their standard errors; those of a law are the coefficients of its expansion over the visited range.");
+    page.note("Values with their standard errors; those of a law are the coefficients of its expansion over the "
+              "visited range.");
 }
 
-} // namespace excursion
+}  // namespace excursion

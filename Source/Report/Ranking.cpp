@@ -16,7 +16,7 @@ std::string errorsText(const std::map<Quantity, double>& errors)
     return text.empty() ? "not tried" : text;
 }
 
-} // namespace
+}  // namespace
 
 void addRanking(Page& page, const LadderFile& file)
 {
@@ -32,16 +32,19 @@ void addRanking(Page& page, const LadderFile& file)
             std::string names;
             for (const auto& id : diagnosis.indistinguishable)
                 names += (names.empty() ? "" : ", ") + effectTitle(id);
-            page.paragraph("This take cannot tell the first of the ranking from: " + names + ". " + diagnosis.measureNext);
+            page.paragraph("This take cannot tell the first of the ranking from: " + names + ". "
+                           + diagnosis.measureNext);
         }
         std::vector<std::vector<Page::Cell>> rows;
         std::string untried;
         for (const auto& ranked : diagnosis.ranking) {
-            if (ranked.confirmedErrorDb.empty()) {   // what promises nothing has no reason to be read
+            if (ranked.confirmedErrorDb.empty()) {  // what promises nothing has no reason to be read
                 untried += (untried.empty() ? "" : ", ") + effectTitle(ranked.effect);
                 continue;
             }
-            rows.push_back({effectTitle(ranked.effect), Page::Cell::bar(ranked.confidence, fixedText(std::min(99.0, 100.0 * ranked.confidence), 0) + "\u202f%"),
+            rows.push_back({effectTitle(ranked.effect),
+                            Page::Cell::bar(ranked.confidence,
+                                            fixedText(std::min(99.0, 100.0 * ranked.confidence), 0) + "\u202f%"),
                             errorsText(ranked.predictedErrorDb), errorsText(ranked.confirmedErrorDb), ranked.reason});
         }
         if (!rows.empty())
@@ -49,7 +52,8 @@ void addRanking(Page& page, const LadderFile& file)
         if (!untried.empty())
             page.paragraph("Not tried, as they promised less: " + untried + ".");
     }
-    page.note("The predicted error comes from a score test, the confirmed one from a refit judged on data that it did not see.");
+    page.note("The predicted error comes from a score test, the confirmed one from a refit judged on data that it did "
+              "not see.");
 }
 
-} // namespace excursion
+}  // namespace excursion

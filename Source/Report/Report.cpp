@@ -6,10 +6,7 @@
 
 namespace excursion {
 
-int columnsFor(std::size_t pictures)
-{
-    return pictures == 1 ? 1 : pictures % 3 == 0 ? 3 : 2;
-}
+int columnsFor(std::size_t pictures) { return pictures == 1 ? 1 : pictures % 3 == 0 ? 3 : 2; }
 
 std::string reportHtml(const LadderFile& file)
 {
@@ -31,4 +28,4 @@ std::string reportHtml(const LadderFile& file)
 
 void writeReport(const LadderFile& file, const std::filesystem::path& path) { publish(path, reportHtml(file)); }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,12 +10,14 @@ namespace excursion {
 void addResiduals(Page& page, const LadderFile& file)
 {
     const auto& rungs = file.ladder.rungs;
-    const bool any = std::any_of(rungs.begin(), rungs.end(), [](const Rung& r) { return !r.comparison.residuals.empty(); });
+    const bool any = std::any_of(rungs.begin(), rungs.end(),
+                                 [](const Rung& r) { return !r.comparison.residuals.empty(); });
     if (!any)
         return;
     page.section("Missing force and voltage");
-    const std::string how = "The line is the mean of what the model's force and voltage balance lacks at the loudest level, the shade its "
-                            "scatter: a missing law shows as a curve, and lies flat once it is found.";
+    const std::string how =
+        "The line is the mean of what the model's force and voltage balance lacks at the loudest level, the shade its "
+        "scatter: a missing law shows as a curve, and lies flat once it is found.";
     if (rungs.size() == 1)
         page.figures(residualPlots(rungs.front().comparison, nullptr), 3, how);
     for (std::size_t k = 1; k < rungs.size(); ++k) {
@@ -24,4 +26,4 @@ void addResiduals(Page& page, const LadderFile& file)
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

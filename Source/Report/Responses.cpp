@@ -12,7 +12,8 @@ void addResponses(Page& page, const LadderFile& file)
     page.section("Frequency responses");
     const int columns = columnsFor(plots.size());
     page.figures(std::move(plots), columns,
-                 "Measured at the quietest level, where the driver is most linear: the final model should lie on the measured line.");
+                 "Measured at the quietest level, where the driver is most linear: the final model should lie on the "
+                 "measured line.");
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-} // namespace
+}  // namespace
 
 void addRungs(Page& page, const LadderFile& file)
 {
@@ -34,7 +34,8 @@ void addRungs(Page& page, const LadderFile& file)
             const auto error = errors.find(channel.quantity);
             const auto guess = rung.predictedErrorDb.find(channel.quantity);
             row.push_back(Page::figure(error == errors.end() ? "\u2013" : decibels(error->second.db)));
-            row.push_back(Page::figure(rung.added.empty() || guess == rung.predictedErrorDb.end() ? "\u2013" : decibels(guess->second)));
+            row.push_back(Page::figure(
+                rung.added.empty() || guess == rung.predictedErrorDb.end() ? "\u2013" : decibels(guess->second)));
         }
         row.push_back(Page::figure(rung.comparison.noiseKnown ? engineering(rung.comparison.chi, "1", 3) : "\u2013"));
         rows.push_back(std::move(row));
@@ -48,7 +49,8 @@ void addRungs(Page& page, const LadderFile& file)
     rows.push_back(std::move(floors));
     page.table(header, rows);
     page.note(std::string("Errors are relative rms over all levels, on ")
-              + (ladder.rungs.back().comparison.validated ? "data that no fit saw. " : "the data that was fitted, as nothing could be held out. ")
+              + (ladder.rungs.back().comparison.validated ? "data that no fit saw. "
+                                                          : "the data that was fitted, as nothing could be held out. ")
               + "A misfit of 1 means that nothing but noise is left.");
     for (const auto& id : ladder.withdrawn)
         page.paragraph("Tried and withdrawn: " + effectTitle(id) + "; what it left was as large as what it explained.");
@@ -57,7 +59,8 @@ void addRungs(Page& page, const LadderFile& file)
         plots.push_back(fallPlot(ladder, channel.quantity));
     const int columns = columnsFor(plots.size());
     page.figures(std::move(plots), columns,
-                 "Each rung adds one effect and refits everything: the model is complete where the error meets the noise floor.");
+                 "Each rung adds one effect and refits everything: the model is complete where the error meets the "
+                 "noise floor.");
 }
 
-} // namespace excursion
+}  // namespace excursion

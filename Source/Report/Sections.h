@@ -10,18 +10,18 @@
 namespace excursion {
 
 /// The sections of the report, each in its own file. All but the first two need a rung.
-void addVerdict(Page&, const LadderFile&);      ///< the answer and what it was got from
-void addProblems(Page&, const LadderFile&);     ///< what is wrong with the take
-void addRungs(Page&, const LadderFile&);        ///< how the error fell
-void addLaws(Page&, const LadderFile&);         ///< Bl(x), K(x), ... with their bands
-void addWhatIf(Page&, const LadderFile&);       ///< which effect makes which distortion; limits of the stroke
-void addResponses(Page&, const LadderFile&);    ///< impedance and other frequency responses
-void addSpectra(Page&, const LadderFile&);      ///< per level and channel
-void addResiduals(Page&, const LadderFile&);    ///< missing force and voltage, before and after each rung
-void addRanking(Page&, const LadderFile&);      ///< what competed at each rung, and why
+void addVerdict(Page&, const LadderFile&);    ///< the answer and what it was got from
+void addProblems(Page&, const LadderFile&);   ///< what is wrong with the take
+void addRungs(Page&, const LadderFile&);      ///< how the error fell
+void addLaws(Page&, const LadderFile&);       ///< Bl(x), K(x), ... with their bands
+void addWhatIf(Page&, const LadderFile&);     ///< which effect makes which distortion; limits of the stroke
+void addResponses(Page&, const LadderFile&);  ///< impedance and other frequency responses
+void addSpectra(Page&, const LadderFile&);    ///< per level and channel
+void addResiduals(Page&, const LadderFile&);  ///< missing force and voltage, before and after each rung
+void addRanking(Page&, const LadderFile&);    ///< what competed at each rung, and why
 void addParameters(Page&, const LadderFile&);
 
 /// Columns in which so many pictures leave no hole, at most three.
 int columnsFor(std::size_t pictures);
 
-} // namespace excursion
+}  // namespace excursion

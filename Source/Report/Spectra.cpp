@@ -30,7 +30,7 @@ const ChannelComparison* channelOf(const Comparison& comparison, Quantity quanti
     return nullptr;
 }
 
-} // namespace
+}  // namespace
 
 void addSpectra(Page& page, const LadderFile& file)
 {
@@ -46,12 +46,15 @@ void addSpectra(Page& page, const LadderFile& file)
             for (const auto rung : shown) {
                 const auto& comparison = ladder.rungs[rung].comparison;
                 const auto* here = channelOf(comparison, channel.quantity);
-                if (here == nullptr || level >= here->spectrumByLevel.size() || here->spectrumByLevel[level].frequency.empty())
+                if (here == nullptr || level >= here->spectrumByLevel.size()
+                    || here->spectrumByLevel[level].frequency.empty())
                     continue;
                 auto plot = spectrumPlot(here->spectrumByLevel[level], here->unit);
                 const double rms = level < comparison.levels.size() ? comparison.levels[level] : 0.0;
-                plot.title = (rms > 0.0 ? nominal(rms, "V") + " \u00b7 " : "") + (shown.size() > 1 ? (rung == 0 ? "first model" : "final model") : "model")
-                           + (level < here->byLevel.size() ? " \u00b7 error " + decibels(here->byLevel[level].db) : "");
+                plot.title = (rms > 0.0 ? nominal(rms, "V") + " \u00b7 " : "")
+                             + (shown.size() > 1 ? (rung == 0 ? "first model" : "final model") : "model")
+                             + (level < here->byLevel.size() ? " \u00b7 error " + decibels(here->byLevel[level].db)
+                                                             : "");
                 for (const auto& series : plot.series)
                     range.include(series.y);
                 plots.push_back(std::move(plot));
@@ -62,13 +65,14 @@ void addSpectra(Page& page, const LadderFile& file)
             page.section("Spectra");
         begun = true;
         page.subsection(capitalized(name(channel.quantity)));
-        for (auto& plot : plots) {   // one scale, so that pictures can be compared at a glance
+        for (auto& plot : plots) {  // one scale, so that pictures can be compared at a glance
             plot.y.most = 10.0 * std::ceil(range.most / 10.0 + 0.1);
             plot.y.least = std::max(10.0 * std::floor(range.least / 10.0), plot.y.most - 140.0);
         }
         page.figures(std::move(plots), static_cast<int>(shown.size()),
-                     "The error (measured minus model) should fall from left to right towards the noise; where it stays above, something is missing there.");
+                     "The error (measured minus model) should fall from left to right towards the noise; where it "
+                     "stays above, something is missing there.");
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -55,4 +55,4 @@ figcaption { margin-top: .7rem }
 )";
 }
 
-} // namespace excursion
+}  // namespace excursion

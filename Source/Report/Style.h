@@ -8,4 +8,4 @@ namespace excursion {
 /// The page's style sheet: one column of text, one colour a role (light, dark and on paper), figures that line up.
 std::string_view pageStyle();
 
-} // namespace excursion
+}  // namespace excursion

@@ -24,7 +24,7 @@ std::string joined(const std::vector<std::string>& parts)
     return text;
 }
 
-} // namespace
+}  // namespace
 
 void addVerdict(Page& page, const LadderFile& file)
 {
@@ -34,10 +34,12 @@ void addVerdict(Page& page, const LadderFile& file)
                   tone(ladder.verdict));
     if (ladder.rungs.size() > 1) {
         std::vector<std::string> falls;
-        const auto first = errorByChannel(ladder.rungs.front().comparison), last = errorByChannel(ladder.rungs.back().comparison);
+        const auto first = errorByChannel(ladder.rungs.front().comparison),
+                   last = errorByChannel(ladder.rungs.back().comparison);
         for (const auto& [quantity, error] : last)
             if (const auto before = first.find(quantity); before != first.end())
-                falls.push_back(std::string(name(quantity)) + " from " + decibels(before->second.db) + " to " + decibels(error.db));
+                falls.push_back(std::string(name(quantity)) + " from " + decibels(before->second.db) + " to "
+                                + decibels(error.db));
         std::vector<std::string> added;
         for (const auto& rung : ladder.rungs)
             if (!rung.added.empty())
@@ -58,7 +60,8 @@ void addVerdict(Page& page, const LadderFile& file)
         facts.emplace_back("Levels, rms", joined(levels));
     }
     if (take.realizations > 0)
-        facts.emplace_back("Realizations \u00d7 periods", std::to_string(take.realizations) + " \u00d7 " + std::to_string(take.periods));
+        facts.emplace_back("Realizations \u00d7 periods",
+                           std::to_string(take.realizations) + " \u00d7 " + std::to_string(take.periods));
     page.facts(facts);
 }
 
@@ -69,10 +72,11 @@ void addProblems(Page& page, const LadderFile& file)
     page.section("Problems of the take");
     std::vector<std::vector<Page::Cell>> rows;
     for (const auto& p : file.ladder.problems)
-        rows.push_back({p.fatal ? "fatal" : "noted", p.kind, p.channel ? std::string(name(*p.channel)) : std::string("all"),
+        rows.push_back({p.fatal ? "fatal" : "noted", p.kind,
+                        p.channel ? std::string(name(*p.channel)) : std::string("all"),
                         Page::figure(engineering(p.value, p.unit, 3)), p.sentence});
     page.table({"", "Kind", "Channel", "Amount", "In words"}, rows);
     page.note("A fatal problem stops the diagnosis, as a model would explain the fault instead of the loudspeaker.");
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -20,7 +20,7 @@ Page::Cell side(const std::optional<double>& metres, double atEnd)
 /// One row an effect, one column a channel: by how much the distortion falls without it.
 void addFalls(Page& page, const DistortionByEffect& distortion)
 {
-    constexpr double full = 20.0;   // dB that fill the bar
+    constexpr double full = 20.0;  // dB that fill the bar
     std::vector<std::string> header {"Without"};
     for (const auto& channel : distortion.whole)
         header.push_back(capitalized(name(channel.quantity)) + ", " + decibels(distortionDb(channel)));
@@ -34,11 +34,13 @@ void addFalls(Page& page, const DistortionByEffect& distortion)
         rows.push_back(std::move(row));
     }
     page.table(header, rows);
-    page.note("The header gives the distortion of the whole model, even and odd together, over the channel's power; a row the change when that effect is switched off. Effects need not add up: some cancel, and some make the others' "
-              "excursion.");
+    page.note(
+        "The header gives the distortion of the whole model, even and odd together, over the channel's power; a row "
+        "the change when that effect is switched off. Effects need not add up: some cancel, and some make the others' "
+        "excursion.");
 }
 
-} // namespace
+}  // namespace
 
 void addWhatIf(Page& page, const LadderFile& file)
 {
@@ -51,21 +53,26 @@ void addWhatIf(Page& page, const LadderFile& file)
     auto plots = distortionPlots(distortion);
     const int columns = columnsFor(plots.size());
     page.figures(std::move(plots), columns,
-                 "Even and odd distortion together over the signal in each band, at " + nominal(distortion.level, file.ladder.model().electrical() ? "V" : "N")
+                 "Even and odd distortion together over the signal in each band, at "
+                     + nominal(distortion.level, file.ladder.model().electrical() ? "V" : "N")
                      + " rms: of the whole model, and of the effects that alone make most.");
     std::vector<std::vector<Page::Cell>> rows;
     for (const auto& limit : stroke.limits)
-        rows.push_back({capitalized(limit.name) + " " + limit.criterion, side(limit.inward, limit.inwardEnd), side(limit.outward, limit.outwardEnd)});
+        rows.push_back({capitalized(limit.name) + " " + limit.criterion, side(limit.inward, limit.inwardEnd),
+                        side(limit.outward, limit.outwardEnd)});
     page.table({"Limit", "Inward", "Outward"}, rows);
-    page.note("Within the " + engineering(stroke.range, "m", 3) + " that were measured either way; impedance and Doppler shift at " + engineering(stroke.tone, "Hz", 3)
+    page.note("Within the " + engineering(stroke.range, "m", 3)
+              + " that were measured either way; impedance and Doppler shift at " + engineering(stroke.tone, "Hz", 3)
               + ", 8.5 times the resonance. In brackets: what there is at the end of the range.");
     std::vector<std::pair<std::string, std::string>> facts;
     if (stroke.gapCentre)
-        facts.emplace_back("Middle of the gap, from the coil's rest", withError(stroke.gapCentre->value, stroke.gapCentre->standardError, "m"));
+        facts.emplace_back("Middle of the gap, from the coil's rest",
+                           withError(stroke.gapCentre->value, stroke.gapCentre->standardError, "m"));
     if (stroke.stiffnessAsymmetry)
-        facts.emplace_back("Stiffness, inward over outward", withError(stroke.stiffnessAsymmetry->value, stroke.stiffnessAsymmetry->standardError, "%"));
+        facts.emplace_back("Stiffness, inward over outward",
+                           withError(stroke.stiffnessAsymmetry->value, stroke.stiffnessAsymmetry->standardError, "%"));
     if (!facts.empty())
         page.facts(facts);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -65,4 +65,4 @@ inline Unit unitOf(const std::string& name, Model model, Verdict verdict = Verdi
     return unit;
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

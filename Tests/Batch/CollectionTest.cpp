@@ -32,7 +32,7 @@ Units tenUnits()
 
 double resonanceOf(double K) { return std::sqrt(1800.0 * K / 0.0143) / (2.0 * 3.14159265358979323846); }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Medians, spreads and trends of a batch", "[batch]")
 {
@@ -208,8 +208,8 @@ TEST_CASE("What is no batch is refused, or told beside the table", "[batch]")
 TEST_CASE("Limits in a file", "[batch]")
 {
     const Scratch scratch;
-    const auto limits =
-        readLimits(scratch.file("good.json", R"({"fs": {"min": 45, "max": 55.5}, "Qts": {"max": 0.6}})"));
+    const auto limits = readLimits(
+        scratch.file("good.json", R"({"fs": {"min": 45, "max": 55.5}, "Qts": {"max": 0.6}})"));
     CHECK(limits.size() == 2);
     CHECK(limits.at("fs").least == 45.0);
     CHECK(limits.at("fs").most == 55.5);

@@ -33,7 +33,7 @@ BenchSetup smallSetup()
     return setup;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a take is laid out as the format says", "[bench]")
 {
@@ -43,15 +43,17 @@ TEST_CASE("a take is laid out as the format says", "[bench]")
     const auto& u = take.find(Quantity::voltage)->samples;
     REQUIRE(u.size() == static_cast<std::size_t>(plan.totalSamples()));
     CHECK(take.driver.coneArea == 0.0132);
-    const auto period = static_cast<std::size_t>(plan.period), part = static_cast<std::size_t>(plan.samplesPerRealization());
+    const auto period = static_cast<std::size_t>(plan.period),
+               part = static_cast<std::size_t>(plan.samplesPerRealization());
     for (std::size_t l = 0; l < 2; ++l)
         for (std::size_t r = 0; r < 2; ++r) {
-            const auto first = std::span(u).subspan((2 * l + r) * part + period, period), second = std::span(u).subspan((2 * l + r) * part + 2 * period, period);
+            const auto first = std::span(u).subspan((2 * l + r) * part + period, period),
+                       second = std::span(u).subspan((2 * l + r) * part + 2 * period, period);
             CHECK(rms(first) == Approx(plan.levels[l]).epsilon(1e-6));
             std::vector<double> change(period);
             for (std::size_t n = 0; n < period; ++n)
                 change[n] = second[n] - first[n];
-            CHECK(rms(change) < 1e-9);   // periodic to the last sample
+            CHECK(rms(change) < 1e-9);  // periodic to the last sample
         }
     CHECK(std::all_of(plan.lines.begin(), plan.lines.end(), [](int k) { return k % 2 == 1; }));
     CHECK(plan.lines.front() * setup.sampleRate / plan.period >= plan.bandLow);
@@ -106,7 +108,8 @@ TEST_CASE("faults are what they say", "[bench]")
     CHECK(rms(faulty({dead, Quantity::displacement, 0.0}).samples) == 0.0);
     const auto clipped = faulty({clipping, Quantity::displacement, 0.5});
     CHECK(*std::max_element(clipped.samples.begin(), clipped.samples.end()) == clipped.fullScale);
-    CHECK(clipped.fullScale == Approx(0.5 * std::max(*std::max_element(x.begin(), x.end()), -*std::min_element(x.begin(), x.end()))));
+    CHECK(clipped.fullScale
+          == Approx(0.5 * std::max(*std::max_element(x.begin(), x.end()), -*std::min_element(x.begin(), x.end()))));
     CHECK(faulty({drift, Quantity::displacement, 100.0}).samples[30000] == Approx(x[29997]).epsilon(1e-8));
     const double loud = rms(std::span(x).last(x.size() / 2));
     CHECK(faulty({offset, Quantity::displacement, 0.1}).samples[20000] == Approx(x[20000] + 0.1 * loud));
@@ -134,7 +137,7 @@ TEST_CASE("senseless setups are refused in a sentence", "[bench]")
 
 namespace {
 
-Draw someDraw(std::uint64_t seed)   // of thirteen, every class and every effect is one
+Draw someDraw(std::uint64_t seed)  // of thirteen, every class and every effect is one
 {
     DrawOptions options;
     options.driver = driverClasses()[seed % driverClasses().size()];
@@ -145,7 +148,7 @@ Draw someDraw(std::uint64_t seed)   // of thirteen, every class and every effect
     return draw(seed, options);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a draw is repeatable", "[bench]")
 {

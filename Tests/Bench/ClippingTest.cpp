@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clipping ahead of the noise, on random takes: how often it is found, and whether a sound channel is accused. The bench knows no such
-// clipping: its noise-free channels are clipped here, then given white noise.
+// Clipping ahead of the noise, on random takes: how often it is found, and whether a sound channel is accused. The
+// bench knows no such clipping: its noise-free channels are clipped here, then given white noise.
 #include "Bench/Draw.h"
 #include "Bench/Random.h"
 #include "Engine/Measurement/Periods.h"
@@ -53,9 +53,9 @@ Measurement soundTake(std::uint64_t seed, double longest)
 
 struct Limit {
     std::size_t channel = 0;
-    double share = 0.0;        ///< of the used samples of the loudest level
+    double share = 0.0;  ///< of the used samples of the loudest level
     bool high = true, low = true;
-    double noiseDb = 0.0;      ///< below the rms of the channel there
+    double noiseDb = 0.0;  ///< below the rms of the channel there
 };
 
 Limit drawLimit(const Measurement& take, Random& random)
@@ -120,9 +120,10 @@ void judge(const Measurement& sound, Random& random, Count& count)
             continue;
         }
         count.found += !piles.empty();
-        count.wrongSides += std::any_of(piles.begin(), piles.end(), [&](const PileUp& p) { return p.high ? !limit.high : !limit.low; });
-        UNSCOPED_INFO("take " << count.takes << ": " << name(take.channels[c].quantity) << ", " << 100.0 * limit.share << " %, "
-                              << limit.noiseDb << " dB, " << (piles.empty() ? "missed" : "found"));
+        count.wrongSides += std::any_of(piles.begin(), piles.end(),
+                                        [&](const PileUp& p) { return p.high ? !limit.high : !limit.low; });
+        UNSCOPED_INFO("take " << count.takes << ": " << name(take.channels[c].quantity) << ", " << 100.0 * limit.share
+                              << " %, " << limit.noiseDb << " dB, " << (piles.empty() ? "missed" : "found"));
     }
     auto clean = sound;
     sense(sound, clean, random.uniform(35.0, 110.0), random);
@@ -130,7 +131,7 @@ void judge(const Measurement& sound, Random& random, Count& count)
         count.falseAlarms += !pileUps(clean, channel).empty();
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("clipping ahead of the noise is named on random takes", "[bench]")
 {
@@ -141,7 +142,7 @@ TEST_CASE("clipping ahead of the noise is named on random takes", "[bench]")
         for (int n = 0; n < 3; ++n)
             judge(sound, random, count);
     }
-    CHECK(count.found >= 22);   // of 24
+    CHECK(count.found >= 22);  // of 24
     CHECK(count.wrongChannels == 0);
     CHECK(count.wrongSides == 0);
     CHECK(count.falseAlarms == 0);
@@ -177,8 +178,8 @@ TEST_CASE("clipping ahead of the noise: 95 % of many takes, and no sound one", "
         for (int n = 0; n < 3; ++n)
             judge(sound, random, count);
     }
-    WARN("found " << count.found << " of " << count.takes << ", wrong channels " << count.wrongChannels << ", wrong sides "
-                  << count.wrongSides << ", false alarms " << count.falseAlarms);
+    WARN("found " << count.found << " of " << count.takes << ", wrong channels " << count.wrongChannels
+                  << ", wrong sides " << count.wrongSides << ", false alarms " << count.falseAlarms);
     CHECK(count.found >= 0.95 * count.takes);
     CHECK(count.wrongChannels == 0);
     CHECK(count.wrongSides == 0);

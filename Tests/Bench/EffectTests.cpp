@@ -18,7 +18,7 @@ Loudspeaker with(const std::string& effect, double strength, const BenchSetup& s
     return speaker;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("halving the step changes less than -100 dB", "[bench][slow]")
 {
@@ -48,7 +48,8 @@ TEST_CASE("every effect plays, and changes what is heard or measured", "[bench]"
         const auto take = measure(with(id, 0.4, setup), setup);
         CHECK(difference(take, linear, Quantity::pressure).band > -70.0);
         for (const auto& channel : take.channels)
-            CHECK(std::all_of(channel.samples.begin(), channel.samples.end(), [](double s) { return std::isfinite(s); }));
+            CHECK(
+                std::all_of(channel.samples.begin(), channel.samples.end(), [](double s) { return std::isfinite(s); }));
     }
 }
 
@@ -60,7 +61,8 @@ TEST_CASE("an effect shows in the channels it should", "[bench][slow]")
     CHECK(distortion(linear, current, true) < -110.0);
     CHECK(distortion(linear, pressure, false) < -110.0);
 
-    for (const std::string id : {"force-factor", "stiffness", "inductance-position", "inductance-current", "damping-velocity", "friction"}) {
+    for (const std::string id :
+         {"force-factor", "stiffness", "inductance-position", "inductance-current", "damping-velocity", "friction"}) {
         INFO(id);
         const auto take = measure(with(id, 0.5, setup), setup);
         for (const auto quantity : {current, displacement})
@@ -70,7 +72,7 @@ TEST_CASE("an effect shows in the channels it should", "[bench][slow]")
         INFO(id);
         const auto take = measure(with(id, 0.5, setup), setup);
         CHECK(difference(take, linear, current).band > -45.0);
-        CHECK(distortion(take, current, true) < -60.0);   // linear, but for memories that have not settled
+        CHECK(distortion(take, current, true) < -60.0);  // linear, but for memories that have not settled
     }
     const auto hot = measure(with("coil-heating", 0.5, setup), setup);
     CHECK(difference(hot, linear, current).band > -45.0);
@@ -82,7 +84,7 @@ TEST_CASE("an effect shows in the channels it should", "[bench][slow]")
         CHECK(difference(take, linear, pressure).band > -60.0);
     }
     const auto moving = measure(with("doppler", 0.5, setup), setup);
-    CHECK(distortion(moving, pressure, false) > -70.0);   // product of x and da/dt: even
+    CHECK(distortion(moving, pressure, false) > -70.0);  // product of x and da/dt: even
 }
 
 TEST_CASE("the reluctance force pulls the coil in", "[bench]")
@@ -91,7 +93,7 @@ TEST_CASE("the reluctance force pulls the coil in", "[bench]")
     setup.excitation.levels = {15.0};
     Loudspeaker speaker;
     speaker.Le = 2e-3;
-    speaker.inductancePosition = Curve {Curve::Shape::tanhStep, 0.0, 2e-3, 0.7, 0.0};   // Le falls outward
+    speaker.inductancePosition = Curve {Curve::Shape::tanhStep, 0.0, 2e-3, 0.7, 0.0};  // Le falls outward
     const auto take = measure(speaker, setup);
     CHECK(lastPeriod(take, Quantity::displacement)[0].real() < 0.0);
 }
@@ -99,7 +101,7 @@ TEST_CASE("the reluctance force pulls the coil in", "[bench]")
 TEST_CASE("a coil heats towards its steady temperature", "[bench]")
 {
     Loudspeaker speaker;
-    speaker.coilHeating = CoilHeating {0.0039, 0.05, 4.0, 1e6, 1.0};   // 0.2 s
+    speaker.coilHeating = CoilHeating {0.0039, 0.05, 4.0, 1e6, 1.0};  // 0.2 s
     std::vector<double> voltage(96000, 0.0);
     for (std::size_t n = 0; n < voltage.size(); ++n)
         voltage[n] = 5.0 * std::sqrt(2.0) * std::sin(0.05 * static_cast<double>(n)) * (n < 90000 ? 1.0 : 0.0);

@@ -64,9 +64,10 @@ TEST_CASE("the decayed powers agree where series and closed form meet", "[bench]
 TEST_CASE("every curve has its slope, is 1 at rest and reaches the strength asked for", "[bench]")
 {
     using Shape = Curve::Shape;
-    for (const auto shape : {Shape::erfGap, Shape::logisticGap, Shape::quarticGap, Shape::gaussianGap, Shape::coshSpring, Shape::expSpring,
-                             Shape::rationalSpring, Shape::skewedSpring, Shape::tanhStep, Shape::arctanStep, Shape::rootStep,
-                             Shape::saturation, Shape::rootDrag, Shape::powerDrag, Shape::tanhDrag}) {
+    for (const auto shape :
+         {Shape::erfGap, Shape::logisticGap, Shape::quarticGap, Shape::gaussianGap, Shape::coshSpring, Shape::expSpring,
+          Shape::rationalSpring, Shape::skewedSpring, Shape::tanhStep, Shape::arctanStep, Shape::rootStep,
+          Shape::saturation, Shape::rootDrag, Shape::powerDrag, Shape::tanhDrag}) {
         INFO(name(shape));
         const double extra = shape == Shape::powerDrag ? 1.8 : shape == Shape::rationalSpring ? 0.2 : 0.9;
         for (const double strength : {0.05, 0.3, 0.6}) {
@@ -75,7 +76,8 @@ TEST_CASE("every curve has its slope, is 1 at rest and reaches the strength aske
             CHECK(curve.change(2e-3) == Approx(strength).epsilon(1e-6));
             for (const double q : {-1.7e-3, -0.4e-3, 0.3e-3, 1.9e-3}) {
                 const double h = 1e-8;
-                CHECK(curve.slope(q) == Approx((curve.value(q + h) - curve.value(q - h)) / (2.0 * h)).epsilon(1e-5).margin(1e-4));
+                CHECK(curve.slope(q)
+                      == Approx((curve.value(q + h) - curve.value(q - h)) / (2.0 * h)).epsilon(1e-5).margin(1e-4));
             }
         }
     }
@@ -87,7 +89,8 @@ TEST_CASE("resampling keeps the band and rejects what would fold", "[bench]")
     const auto tone = [&](double f, int factor) {
         std::vector<double> x(length * static_cast<std::size_t>(factor));
         for (std::size_t n = 0; n < x.size(); ++n) {
-            const double t = static_cast<double>(n) / factor, window = std::exp(-0.5 * std::pow((t - 2000.0) / 200.0, 2));
+            const double t = static_cast<double>(n) / factor,
+                         window = std::exp(-0.5 * std::pow((t - 2000.0) / 200.0, 2));
             x[n] = window * std::cos(2.0 * std::numbers::pi * f * (t - 2000.0));
         }
         return x;

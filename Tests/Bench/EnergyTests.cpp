@@ -13,7 +13,7 @@ namespace {
 
 double integral(double to, const std::function<double(double)>& f)
 {
-    constexpr int count = 2000;   // Simpson
+    constexpr int count = 2000;  // Simpson
     double sum = f(0.0) + f(to);
     for (int n = 1; n < count; ++n)
         sum += (n % 2 ? 4.0 : 2.0) * f(to * n / count);
@@ -26,8 +26,10 @@ double imbalance(const Loudspeaker& speaker)
     const double h = 2e-6, end = 0.0503;
     Simulator simulator(speaker, h, 2.0 * std::numbers::pi * 24e3, 2.0 * std::numbers::pi);
     const auto voltage = [](double t) {
-        return 14.0 * std::pow(std::sin(std::min(t, 0.02) * std::numbers::pi / 0.04), 2) * std::sin(2.0 * std::numbers::pi * 55.0 * t)
-               + 6.0 * std::pow(std::sin(std::min(t, 0.02) * std::numbers::pi / 0.04), 2) * std::sin(2.0 * std::numbers::pi * 730.0 * t);
+        return 14.0 * std::pow(std::sin(std::min(t, 0.02) * std::numbers::pi / 0.04), 2)
+                   * std::sin(2.0 * std::numbers::pi * 55.0 * t)
+               + 6.0 * std::pow(std::sin(std::min(t, 0.02) * std::numbers::pi / 0.04), 2)
+                     * std::sin(2.0 * std::numbers::pi * 730.0 * t);
     };
     double in = 0.0, lost = 0.0, work = 0.0, heat = 0.0;
     const auto steps = static_cast<int>(end / h);
@@ -38,7 +40,8 @@ double imbalance(const Loudspeaker& speaker)
             u[j] = voltage(t + h * Radau::points()[j]);
         const auto& s = simulator.step(u);
         const double workNow = u[2] * s.current;
-        const double heatNow = speaker.Re * s.current * s.current + speaker.dampingAt(s.velocity) * s.velocity * s.velocity;
+        const double heatNow = speaker.Re * s.current * s.current
+                               + speaker.dampingAt(s.velocity) * s.velocity * s.velocity;
         in += 0.5 * h * (work + workNow);
         lost += 0.5 * h * (heat + heatNow);
         work = workNow;
@@ -53,7 +56,7 @@ double imbalance(const Loudspeaker& speaker)
     return (in - lost - stored) / in;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("energy in is energy lost and stored, whatever the laws", "[bench]")
 {
@@ -63,7 +66,7 @@ TEST_CASE("energy in is energy lost and stored, whatever the laws", "[bench]")
     speaker.stiffness = Curve {Curve::Shape::skewedSpring, 0.5e-3, 3e-3, 0.0, 0.5};
     speaker.dampingVelocity = Curve {Curve::Shape::rootDrag, 0.0, 0.3, 1.0, 0.0};
     CHECK(std::abs(imbalance(speaker)) < 1e-7);
-    speaker.Le = 3e-3;   // so that the reluctance force does real work
+    speaker.Le = 3e-3;  // so that the reluctance force does real work
     speaker.inductancePosition = Curve {Curve::Shape::arctanStep, 0.5e-3, 2e-3, 0.6, 0.0};
     CHECK(std::abs(imbalance(speaker)) < 1e-7);
     speaker.inductanceCurrent = Curve {Curve::Shape::saturation, 0.1, 2.0, 0.0, 0.0};
@@ -92,7 +95,7 @@ TEST_CASE("loops in the iron that move with the inductance add to it when they l
     whole.inductancePosition = Curve {Curve::Shape::arctanStep, 0.5e-3, 2e-3, 0.6, 0.0};
     parts = whole;
     parts.Le = 1e-3;
-    constexpr double rate = 1e9;   // beyond anything that is played: the loop's resistance carries nothing
+    constexpr double rate = 1e9;  // beyond anything that is played: the loop's resistance carries nothing
     parts.eddyCurrents = EddyCurrents {0.0, 0.6, {{2e-3 * rate, rate}}, true};
 
     const double h = 5e-6;
@@ -105,7 +108,8 @@ TEST_CASE("loops in the iron that move with the inductance add to it when they l
         Triple u {};
         for (int j = 0; j < 3; ++j) {
             const double t = h * (n + Radau::points()[j]);
-            u[j] = 14.0 * std::sin(2.0 * std::numbers::pi * 55.0 * t) + 6.0 * std::sin(2.0 * std::numbers::pi * 730.0 * t);
+            u[j] = 14.0 * std::sin(2.0 * std::numbers::pi * 55.0 * t)
+                   + 6.0 * std::sin(2.0 * std::numbers::pi * 730.0 * t);
         }
         const double current = one.step(u).current;
         largest = std::max(largest, std::abs(current));

@@ -69,4 +69,4 @@ inline double distortion(const Measurement& take, Quantity quantity, bool odd)
     return dB(std::sqrt(silent / all));
 }
 
-} // namespace excursion::bench
+}  // namespace excursion::bench

@@ -33,7 +33,7 @@ double againstClosedForm(const Loudspeaker& speaker, const BenchSetup& setup)
     return dB(worst);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a linear driver's steady state is the closed form", "[bench]")
 {
@@ -48,7 +48,7 @@ TEST_CASE("a linear driver's steady state is the closed form", "[bench]")
 TEST_CASE("linear effects are their closed forms", "[bench][slow]")
 {
     auto setup = quietSetup();
-    setup.excitation.settlePeriods = 20;   // creep and eddy currents have long memories
+    setup.excitation.settlePeriods = 20;  // creep and eddy currents have long memories
     Loudspeaker speaker;
 
     SECTION("eddy currents")
@@ -130,7 +130,7 @@ TEST_CASE("a driver plays any record", "[bench]")
     CHECK(!again.excitation);
     double error = 0.0, power = 0.0;
     const auto &a = take.find(Quantity::current)->samples, &b = again.find(Quantity::current)->samples;
-    for (std::size_t n = 0; n + 500 < a.size(); ++n) {   // the record breaks off at its end
+    for (std::size_t n = 0; n + 500 < a.size(); ++n) {  // the record breaks off at its end
         error += (a[n] - b[n]) * (a[n] - b[n]);
         power += a[n] * a[n];
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever is wrong with what the program is given, it ends with one sentence and the right exit code, and writes nothing.
+// Whatever is wrong with what the program is given, it ends with one sentence and the right exit code, and writes
+// nothing.
 #include "Cli/Chain.h"
 
 #include "Engine/Measurement/WavFile.h"
@@ -49,7 +50,7 @@ void editJson(const std::string& file, const std::function<void(nlohmann::json&)
     std::ofstream(file) << document.dump();
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A WAV that is truncated, empty, not finite or boasts is refused", "[cli][bad-input]")
 {
@@ -158,11 +159,13 @@ TEST_CASE("A take that is not there, or has nothing to explain, is refused", "[c
 TEST_CASE("Models and ladders that cannot be used are refused", "[cli][bad-input]")
 {
     const Scratch scratch;
-    const auto take = Chain::get().take(), model = (scratch / "model.json").string(), folder = (scratch / "played").string();
+    const auto take = Chain::get().take(), model = (scratch / "model.json").string(),
+               folder = (scratch / "played").string();
     const auto refused = [&](const std::string& named) {
         refusedWith(3, {"compare", take, "--model", model}, scratch, named);
         refusedWith(3, {"diagnose", take, "--model", model}, scratch, named);
-        refusedWith(3, {"add", take, "--model", model, "stiffness", "--out", (scratch / "out.json").string()}, scratch, named);
+        refusedWith(3, {"add", take, "--model", model, "stiffness", "--out", (scratch / "out.json").string()}, scratch,
+                    named);
         refusedWith(3, {"simulate", model, take, "--out", folder}, scratch, named);
         refusedWith(3, {"report", scratch.folder().string()}, scratch, "ladder.json");
     };
@@ -203,7 +206,8 @@ TEST_CASE("Models and ladders that cannot be used are refused", "[cli][bad-input
 TEST_CASE("A WAV that simulate cannot play is refused", "[cli][bad-input]")
 {
     const Scratch scratch;
-    const auto model = Chain::get().model(), wav = (scratch / "in.wav").string(), folder = (scratch / "played").string();
+    const auto model = Chain::get().model(), wav = (scratch / "in.wav").string(),
+               folder = (scratch / "played").string();
     const auto refused = [&](int code, const std::string& named) {
         refusedWith(code, {"simulate", model, wav, "--full-scale", "4", "--out", folder}, scratch, named);
     };
@@ -218,7 +222,8 @@ TEST_CASE("A WAV that simulate cannot play is refused", "[cli][bad-input]")
     excursion::writeWav(wav, 48000, one, excursion::SampleFormat::float32);
     refused(3, "sample 99");
     refusedWith(2, {"simulate", model, wav, "--full-scale", "-4", "--out", folder}, scratch, "--full-scale");
-    refusedWith(2, {"simulate", model, wav, "--full-scale", "4", "--tolerance", "7", "--out", folder}, scratch, "tolerance");
+    refusedWith(2, {"simulate", model, wav, "--full-scale", "4", "--tolerance", "7", "--out", folder}, scratch,
+                "tolerance");
 }
 
 TEST_CASE("A place that cannot be written to is told before the work", "[cli][bad-input]")
@@ -233,7 +238,8 @@ TEST_CASE("A place that cannot be written to is told before the work", "[cli][ba
     refusedWith(3, {"add", take, "--model", model, "stiffness", "--out", folder}, scratch, "it is a folder");
     refusedWith(3, {"improve", take, "--out", file}, scratch, "is not a folder");
     refusedWith(3, {"simulate", model, take, "--out", file}, scratch, "is not a folder");
-    refusedWith(3, {"fit", take, "--out", (scratch / "m.json").string(), "--json", file + "/said.json"}, scratch, "is not a folder");
+    refusedWith(3, {"fit", take, "--out", (scratch / "m.json").string(), "--json", file + "/said.json"}, scratch,
+                "is not a folder");
     if (::geteuid() == 0) {
         WARN("skipped: root may write to every folder and read every file");
         return;
@@ -273,7 +279,8 @@ TEST_CASE("Effects that do not exist or do not suit are refused before the work"
     refusedWith(2, {"improve", pushed, "--with", "force-factor", "--out", folder}, scratch, "force-factor");
     refusedWith(4, {"compare", pushed, "--model", model}, scratch, "coil");
 
-    const auto impedance = scratch.file("z.zma", "20 7.1 10\n40 30 5\n80 9 -20\n160 7 -5\n320 7 5\n640 8 20\n1280 10 35\n").string();
+    const auto impedance =
+        scratch.file("z.zma", "20 7.1 10\n40 30 5\n80 9 -20\n160 7 -5\n320 7 5\n640 8 20\n1280 10 35\n").string();
     refusedWith(2, {"fit", impedance, "--effects", "stiffness", "--out", out}, scratch, "stiffness");
 }
 

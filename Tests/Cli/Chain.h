@@ -12,8 +12,8 @@
 
 namespace excursion::test {
 
-/// A folder with a short virtual take of a loudspeaker whose stiffness bends, and a linear model of it: made once for all
-/// tests, which read it only.
+/// A folder with a short virtual take of a loudspeaker whose stiffness bends, and a linear model of it: made once for
+/// all tests, which read it only.
 class Chain {
 public:
     static const Chain& get()
@@ -30,8 +30,9 @@ public:
 private:
     Chain()
     {
-        const auto measured = runProgram(folder(), {"virtual", "--seed", "3", "--driver", "midrange", "--hidden", "stiffness:0.4", "--rate", "32000",
-                                                   "--noise", "-60", "--seconds", "2", "--channels", "current,displacement", "--out", take()});
+        const auto measured = runProgram(folder(), {"virtual", "--seed", "3", "--driver", "midrange", "--hidden",
+                                                    "stiffness:0.4", "--rate", "32000", "--noise", "-60", "--seconds",
+                                                    "2", "--channels", "current,displacement", "--out", take()});
         REQUIRE(measured.code == 0);
         shorten();
         fit_ = runProgram(folder(), {"fit", take(), "--out", model(), "--json"});
@@ -45,7 +46,8 @@ private:
         auto header = nlohmann::json::parse(bytesOf(json));
         auto& plan = header.at("excitation");
         const auto realizations = plan.at("realizations").get<std::size_t>(), levels = plan.at("levels").size();
-        const auto block = plan.at("period").get<std::size_t>() * (plan.at("settlePeriods").get<std::size_t>() + plan.at("periods").get<std::size_t>());
+        const auto block = plan.at("period").get<std::size_t>()
+                           * (plan.at("settlePeriods").get<std::size_t>() + plan.at("periods").get<std::size_t>());
         auto wav = readWav(audio);
         for (auto& channel : wav.channels) {
             std::vector<double> kept;
@@ -76,7 +78,8 @@ inline nlohmann::json documentOf(const Outcome& outcome, const std::string& form
 }
 
 /// One sentence on stderr, nothing on stdout, nothing written.
-inline void refusedWith(int code, const std::vector<std::string>& arguments, const Scratch& scratch, const std::string& named)
+inline void refusedWith(int code, const std::vector<std::string>& arguments, const Scratch& scratch,
+                        const std::string& named)
 {
     std::string line;
     for (const auto& argument : arguments)
@@ -92,4 +95,4 @@ inline void refusedWith(int code, const std::vector<std::string>& arguments, con
     CHECK(contents(scratch.folder()) == before);
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

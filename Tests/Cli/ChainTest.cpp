@@ -28,7 +28,8 @@ TEST_CASE("compare tells the error by channel and level, for a person and for a 
     const auto told = runProgram(scratch.folder(), {"compare", chain.take(), "--model", chain.model(), "--json", file});
     CHECK(told.code == 0);
     CHECK(told.err.empty());
-    for (const auto* text : {"channel", "V rms", "current", "displacement", "noise dB", "odd dB", "octave Hz", "force over x"})
+    for (const auto* text :
+         {"channel", "V rms", "current", "displacement", "noise dB", "odd dB", "octave Hz", "force over x"})
         CHECK_THAT(told.out, Catch::Contains(text));
     const auto document = nlohmann::json::parse(bytesOf(file));
     CHECK(document.at("format") == "excursion-comparison");
@@ -49,7 +50,8 @@ TEST_CASE("diagnose names the hidden effect", "[cli]")
     const auto& first = document.at("ranking").at(0);
     CHECK(first.at("effect") == "stiffness");
     CHECK(first.at("confidence").get<double>() > 0.9);
-    CHECK(first.at("confirmedErrorDb").at("current").get<double>() < document.at("error").at("current").at("db").get<double>() - 10.0);
+    CHECK(first.at("confirmedErrorDb").at("current").get<double>()
+          < document.at("error").at("current").at("db").get<double>() - 10.0);
     CHECK_FALSE(first.at("reason").get<std::string>().empty());
 }
 
@@ -58,7 +60,8 @@ TEST_CASE("add puts an effect into the model; simulate plays it; the two agree",
     const auto& chain = Chain::get();
     const Scratch scratch;
     const auto model = (scratch / "better.json").string(), played = (scratch / "played").string();
-    const auto added = runProgram(scratch.folder(), {"add", chain.take(), "--model", chain.model(), "stiffness", "--out", model, "--json"});
+    const auto added = runProgram(
+        scratch.folder(), {"add", chain.take(), "--model", chain.model(), "stiffness", "--out", model, "--json"});
     REQUIRE(added.code == 0);
     const auto document = documentOf(added, "excursion-add");
     CHECK(document.at("effects") == nlohmann::json {"stiffness"});
@@ -80,13 +83,17 @@ TEST_CASE("whatif tells the distortion that was measured, and whose it is", "[cl
     const auto& chain = Chain::get();
     const Scratch scratch;
     const auto model = (scratch / "better.json").string();
-    REQUIRE(runProgram(scratch.folder(), {"add", chain.take(), "--model", chain.model(), "stiffness", "--out", model}).code == 0);
+    REQUIRE(
+        runProgram(scratch.folder(), {"add", chain.take(), "--model", chain.model(), "stiffness", "--out", model}).code
+        == 0);
     const auto told = runProgram(scratch.folder(), {"whatif", model, chain.take(), "--json"});
     REQUIRE(told.code == 0);
     const auto document = documentOf(told, "excursion-whatif");
-    const auto measured = documentOf(runProgram(scratch.folder(), {"bla", chain.take(), "--output", "current", "--json"}), "excursion-bla");
+    const auto measured = documentOf(
+        runProgram(scratch.folder(), {"bla", chain.take(), "--output", "current", "--json"}), "excursion-bla");
     for (const auto& channel : document.at("whole"))
-        if (channel.at("channel") == "current") {   // which holds little below the band, where detection lines do not reach
+        // which holds little below the band, where detection lines do not reach
+        if (channel.at("channel") == "current") {
             CHECK(channel.at("oddDb").get<double>() == Approx(measured.at("odd").at("db").get<double>()).margin(1.0));
             CHECK(channel.at("evenDb").get<double>() == Approx(measured.at("even").at("db").get<double>()).margin(1.0));
         }
@@ -96,7 +103,8 @@ TEST_CASE("whatif tells the distortion that was measured, and whose it is", "[cl
     CHECK_THAT(document.at("advice").get<std::string>(), Catch::Contains("All of it is made by: Stiffness K(x)"));
 
     const auto person = runProgram(scratch.folder(), {"whatif", model, chain.take()});
-    for (const auto* text : {"Stimulus: the loudest", "without stiffness", "compliance 1/K(x) falls to 75 %", "All of it"})
+    for (const auto* text :
+         {"Stimulus: the loudest", "without stiffness", "compliance 1/K(x) falls to 75 %", "All of it"})
         CHECK_THAT(person.out, Catch::Contains(text));
 }
 
@@ -105,12 +113,16 @@ TEST_CASE("simulate plays a WAV at a full scale", "[cli]")
     const auto& chain = Chain::get();
     const Scratch scratch;
     const auto plan = (scratch / "plan").string(), played = (scratch / "played").string();
-    REQUIRE(runProgram(scratch.folder(), {"excite", "--out", plan, "--period", "2048", "--rate", "16000", "--band", "30,5000", "--levels", "1"}).code == 0);
+    REQUIRE(runProgram(scratch.folder(), {"excite", "--out", plan, "--period", "2048", "--rate", "16000", "--band",
+                                          "30,5000", "--levels", "1"})
+                .code
+            == 0);
     const auto wav = plan + "/excitation.wav";
     const auto unscaled = runProgram(scratch.folder(), {"simulate", chain.model(), wav, "--out", played});
     CHECK(unscaled.code == 2);
     CHECK_THAT(unscaled.err, Catch::Contains("--full-scale"));
-    const auto told = runProgram(scratch.folder(), {"simulate", chain.model(), wav, "--full-scale", "4", "--out", played});
+    const auto told = runProgram(scratch.folder(),
+                                 {"simulate", chain.model(), wav, "--full-scale", "4", "--out", played});
     CHECK(told.code == 0);
     for (const auto* text : {"displacement", "pressure", "a sample", "Wrote the take"})
         CHECK_THAT(told.out, Catch::Contains(text));
@@ -124,10 +136,11 @@ TEST_CASE("improve shows the ladder while it grows, and keeps it", "[cli]")
     const auto folder = (scratch / "ladder").string();
     const auto told = runProgram(scratch.folder(), {"improve", chain.take(), "--out", folder}, "linear model");
     REQUIRE(told.code == 0);
-    CHECK(told.err.empty());   // no bar where stderr is no terminal
+    CHECK(told.err.empty());  // no bar where stderr is no terminal
     CHECK(told.spokeEarly);
     std::size_t at = 0;
-    for (const auto* text : {"noise floor", "0  linear model", "missing: stiffness", "1  + stiffness", "verdict  complete", "Wrote"}) {
+    for (const auto* text :
+         {"noise floor", "0  linear model", "missing: stiffness", "1  + stiffness", "verdict  complete", "Wrote"}) {
         INFO(text << " in\n" << told.out);
         at = told.out.find(text, at);
         REQUIRE(at != std::string::npos);
@@ -146,7 +159,7 @@ TEST_CASE("improve shows the ladder while it grows, and keeps it", "[cli]")
     const auto again = runProgram(scratch.folder(), {"report", folder, "--json"});
     CHECK(again.code == 0);
     CHECK(documentOf(again, "excursion-report").at("verdict") == "complete");
-    CHECK((bytesOf(page) == before));   // without printing both when not
+    CHECK((bytesOf(page) == before));  // without printing both when not
 }
 
 TEST_CASE("effects lists the catalogue, and help is a tour", "[cli]")
@@ -158,13 +171,15 @@ TEST_CASE("effects lists the catalogue, and help is a tour", "[cli]")
         CHECK_FALSE(effect.at("physics").get<std::string>().empty());
         CHECK_FALSE(effect.at("parameters").empty());
     }
-    CHECK_THAT(runProgram(scratch.folder(), {"effects", "stiffness"}).out, Catch::StartsWith("stiffness") && Catch::Contains("K(x) in N/m"));
+    CHECK_THAT(runProgram(scratch.folder(), {"effects", "stiffness"}).out,
+               Catch::StartsWith("stiffness") && Catch::Contains("K(x) in N/m"));
 
     const auto help = runProgram(scratch.folder(), {"--help"});
     CHECK(help.code == 0);
     std::size_t at = 0;
-    for (const auto* verb : {"\n  excite ", "\n  import ", "\n  virtual ", "\n  check ", "\n  bla ", "\n  fit ", "\n  compare ", "\n  diagnose ",
-                             "\n  add ", "\n  improve ", "\n  report ", "\n  effects ", "\n  simulate ", "\n  predistort "}) {
+    for (const auto* verb : {"\n  excite ", "\n  import ", "\n  virtual ", "\n  check ", "\n  bla ", "\n  fit ",
+                             "\n  compare ", "\n  diagnose ", "\n  add ", "\n  improve ", "\n  report ", "\n  effects ",
+                             "\n  simulate ", "\n  predistort "}) {
         INFO(verb);
         at = help.out.find(verb, at);
         REQUIRE(at != std::string::npos);
@@ -175,7 +190,8 @@ TEST_CASE("A take at fault is refused by name, and the answer is no", "[cli]")
 {
     const auto& chain = Chain::get();
     const Scratch scratch;
-    const auto take = (scratch / "dead").string(), out = (scratch / "model.json").string(), folder = (scratch / "ladder").string();
+    const auto take = (scratch / "dead").string(), out = (scratch / "model.json").string(),
+               folder = (scratch / "ladder").string();
     fs::copy(chain.take(), take, fs::copy_options::recursive);
     auto wav = excursion::readWav(take + "/take.wav");
     for (auto& sample : wav.channels[2])

@@ -40,7 +40,7 @@ private:
     Scratch scratch_;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("collect puts the ladders of a batch in one table", "[cli]")
 {

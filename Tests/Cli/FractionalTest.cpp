@@ -29,7 +29,7 @@ std::string impedanceText()
     return text.str();
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("identify --alpha fits a mixed-order impedance and models in s^alpha")
 {
@@ -76,11 +76,13 @@ TEST_CASE("reduce and stabilize read models in s^alpha, and write them again")
 {
     const Scratch scratch;
     const auto file = scratch.file("z.zma", impedanceText()).string(), model = (scratch / "model.json").string(),
-        bad = (scratch / "bad.json").string(),
-               out = (scratch / "out.json").string(), rest = (scratch / "rest.json").string();
+               bad = (scratch / "bad.json").string(), out = (scratch / "out.json").string(),
+               rest = (scratch / "rest.json").string();
     const auto run = [&](std::vector<std::string> arguments) { return runProgram(scratch.folder(), arguments); };
-    REQUIRE(run({"identify", file, "--output", "voltage", "--input", "current", "--alpha", "0.5", "--order", "8", "--quick", "--out",
-                 model}).code == 0);
+    REQUIRE(run({"identify", file, "--output", "voltage", "--input", "current", "--alpha", "0.5", "--order", "8",
+                 "--quick", "--out", model})
+                .code
+            == 0);
     const auto identified = nlohmann::json::parse(bytesOf(model));
 
     const auto reduced = run({"reduce", model, "--ripple", "3", "--band", "10,20000", "--out", out, "--json"});
@@ -106,8 +108,8 @@ TEST_CASE("reduce and stabilize read models in s^alpha, and write them again")
     CHECK(nlohmann::json::parse(pruned.out).at("errorDb").get<double>() < -30.0);
     CHECK(nlohmann::json::parse(pruned.out).at("stable") == true);
 
-    CHECK(run({"reduce", model, "--order", "4", "--out", out}).code == 2);    // no Gramians
-    CHECK(run({"reduce", model, "--ripple", "1", "--out", out}).code == 2);   // no band
+    CHECK(run({"reduce", model, "--order", "4", "--out", out}).code == 2);   // no Gramians
+    CHECK(run({"reduce", model, "--ripple", "1", "--out", out}).code == 2);  // no band
 
     // A pair at 30 degrees, within the sector of 45
     auto spoiled = identified;
@@ -127,7 +129,8 @@ TEST_CASE("reduce and stabilize read models in s^alpha, and write them again")
     form.at("order") = n + 2;
     scratch.file("bad.json", spoiled.dump());
     for (const std::string method : {"mirror", "project", "decompose"}) {
-        std::vector<std::string> arguments {"stabilize", bad, "--method", method, "--frf", file, "--out", out, "--json"};
+        std::vector<std::string> arguments {"stabilize", bad,     "--method", method,  "--frf",
+                                            file,        "--out", out,        "--json"};
         if (method == "decompose")
             arguments.insert(arguments.end(), {"--unstable", rest});
         const auto done = run(arguments);

@@ -9,7 +9,8 @@ TEST_CASE("identify chooses an order, keeps the model, and reads what bla wrote"
     const Scratch scratch;
     const auto& chain = Chain::get();
     const auto model = (scratch / "linear.json").string(), response = (scratch / "bla.json").string();
-    const auto told = runProgram(scratch.folder(), {"identify", chain.take(), "--order", "2,3,4", "--out", model, "--json"});
+    const auto told = runProgram(scratch.folder(),
+                                 {"identify", chain.take(), "--order", "2,3,4", "--out", model, "--json"});
     REQUIRE(told.code == 0);
     const auto document = nlohmann::json::parse(told.out);
     CHECK(document.at("format") == "excursion-identification");
@@ -37,7 +38,8 @@ TEST_CASE("reduce truncates a model within its bound, and prunes one by a respon
     const Scratch scratch;
     const auto& chain = Chain::get();
     const auto large = (scratch / "large.json").string(), small = (scratch / "small.json").string();
-    REQUIRE(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "7", "--quick", "--out", large}).code == 0);
+    REQUIRE(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "7", "--quick", "--out", large}).code
+            == 0);
     const auto truncated = runProgram(scratch.folder(), {"reduce", large, "--order", "3", "--out", small, "--json"});
     INFO(truncated.err);
     REQUIRE(truncated.code == 0);
@@ -46,7 +48,8 @@ TEST_CASE("reduce truncates a model within its bound, and prunes one by a respon
     CHECK(told.at("stable") == true);
     CHECK(told.at("bound").get<double>() > 0.0);
     CHECK(nlohmann::json::parse(bytesOf(small)) == told.at("model"));
-    const auto pruned = runProgram(scratch.folder(), {"reduce", large, "--order", "3", "--response", chain.take(), "--out", small, "--json"});
+    const auto pruned = runProgram(
+        scratch.folder(), {"reduce", large, "--order", "3", "--response", chain.take(), "--out", small, "--json"});
     REQUIRE(pruned.code == 0);
     CHECK(nlohmann::json::parse(pruned.out).at("order") == 3);
     CHECK(nlohmann::json::parse(pruned.out).at("steps").size() == 3);
@@ -63,8 +66,9 @@ TEST_CASE("identify --cone tells motor and cone apart, the sound's way taken off
         options.insert(options.begin(), {"identify", take, "--order", "3", "--quick"});
         return runProgram(scratch.folder(), options);
     };
-    REQUIRE(runProgram(scratch.folder(), {"virtual", "--seed", "5", "--driver", "midbass", "--hidden", "none", "--rate", "32000", "--noise", "-70", "--seconds",
-                                          "2", "--channels", "displacement,pressure", "--out", take})
+    REQUIRE(runProgram(scratch.folder(),
+                       {"virtual", "--seed", "5", "--driver", "midbass", "--hidden", "none", "--rate", "32000",
+                        "--noise", "-70", "--seconds", "2", "--channels", "displacement,pressure", "--out", take})
                 .code
             == 0);
     const auto told = run({"--cone", "0", "--out", kept, "--json"});
@@ -76,7 +80,8 @@ TEST_CASE("identify --cone tells motor and cone apart, the sound's way taken off
     const auto header = nlohmann::json::parse(bytesOf(take + "/measurement.json"));
     const double area = header.at("driver").at("coneArea"), distance = header.at("driver").at("microphoneDistance");
     CHECK(document.at("delay") == Approx(distance / 343.0));
-    CHECK(document.at("cone").at("D").at(0).at(0) == Approx(1.2 * area / (2.0 * 3.14159265358979 * distance)).epsilon(0.01));
+    CHECK(document.at("cone").at("D").at(0).at(0)
+          == Approx(1.2 * area / (2.0 * 3.14159265358979 * distance)).epsilon(0.01));
     CHECK(document.at("motor").at("outputs").size() == 3);
     CHECK(document.at("motor").at("order") == 3);
     CHECK(document.at("cascade").at("delay") == Approx(-distance / 343.0));
@@ -92,5 +97,6 @@ TEST_CASE("identify --cone tells motor and cone apart, the sound's way taken off
     CHECK(run({"--cone", "0", "--discrete"}).code == 2);
     CHECK(run({"--cone", "0", "--order", "4"}).code == 2);
     CHECK(run({"--delay", "0.001"}).code == 2);
-    CHECK(runProgram(scratch.folder(), {"identify", Chain::get().take(), "--order", "3", "--cone", "0"}).code == 2);   // without pressure
+    // without pressure
+    CHECK(runProgram(scratch.folder(), {"identify", Chain::get().take(), "--order", "3", "--cone", "0"}).code == 2);
 }

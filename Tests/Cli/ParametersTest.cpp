@@ -58,29 +58,26 @@ std::string modelFile(const Scratch& scratch, const Json& effects, bool alone = 
 
 Json everyLinearEffect()
 {
-    return {
-        effect("eddy-currents", {{"Ks", "ohm s^a", 0.012}, {"a", "1", 0.68}}),
-        effect("creep",
-               {{"S", "N/m", 300.0}, {"centre", "log10 Hz", 1.0}, {"width", "decades", 3.0}, {"tilt", "1", 0.1}}),
-        effect("vented-box",
-               {{"Kb", "N/m", 900.0},
-                {"fB", "Hz", 42.0},
-                {"1/QP", "1", 0.02},
-                {"1/QL", "1", 0.1},
-                {"1/QA", "1", 0.03},
-                {"Kp/Ka", "1", 0.2},
-                {"port", "1", 0.0}}),
-        effect("side-resonance",
-               {{"mu1", "kg", 4e-4},
-                {"f1", "Hz", 900.0},
-                {"1/Q1", "1", 0.2},
-                {"mu2", "kg", 2e-4},
-                {"f2", "Hz", 2500.0},
-                {"1/Q2", "1", 0.1},
-                {"mu3", "kg", 0.0},
-                {"f3", "Hz", 1000.0},
-                {"1/Q3", "1", 0.3}}),
-        effect("stiffness", {{"c1", "N/m", 0.0}, {"c2", "N/m", 550.0}})};
+    return {effect("eddy-currents", {{"Ks", "ohm s^a", 0.012}, {"a", "1", 0.68}}),
+            effect("creep",
+                   {{"S", "N/m", 300.0}, {"centre", "log10 Hz", 1.0}, {"width", "decades", 3.0}, {"tilt", "1", 0.1}}),
+            effect("vented-box", {{"Kb", "N/m", 900.0},
+                                  {"fB", "Hz", 42.0},
+                                  {"1/QP", "1", 0.02},
+                                  {"1/QL", "1", 0.1},
+                                  {"1/QA", "1", 0.03},
+                                  {"Kp/Ka", "1", 0.2},
+                                  {"port", "1", 0.0}}),
+            effect("side-resonance", {{"mu1", "kg", 4e-4},
+                                      {"f1", "Hz", 900.0},
+                                      {"1/Q1", "1", 0.2},
+                                      {"mu2", "kg", 2e-4},
+                                      {"f2", "Hz", 2500.0},
+                                      {"1/Q2", "1", 0.1},
+                                      {"mu3", "kg", 0.0},
+                                      {"f3", "Hz", 1000.0},
+                                      {"1/Q3", "1", 0.3}}),
+            effect("stiffness", {{"c1", "N/m", 0.0}, {"c2", "N/m", 550.0}})};
 }
 
 std::vector<std::vector<double>> rowsOf(const std::string& file)
@@ -106,7 +103,7 @@ const Json& figure(const Json& document, const std::string& symbol)
     throw std::out_of_range(symbol);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("parameters writes every file that it is asked for", "[cli]")
 {
@@ -155,7 +152,7 @@ TEST_CASE("ngspice plays the netlist with the engine's impedance", "[cli]")
                              "set wr_singlescale\nset numdgt=12\nlet zr=real(-1/i(v1))\nlet zi=imag(-1/i(v1))\nlet "
                              "vr=mag(v(cone))\nwrdata out.txt zr zi vr\nquit\n.endc\n.end\n");
     const auto command = "cd '" + scratch.folder().string() + "' && timeout 60 ngspice -b deck.cir >log.txt 2>&1";
-    std::system(command.c_str());   // its exit code does not tell whether it worked
+    std::system(command.c_str());  // its exit code does not tell whether it worked
     INFO(bytesOf(scratch / "log.txt"));
     const auto spice = rowsOf((scratch / "out.txt").string()), engine = rowsOf((scratch / "z.zma").string());
     REQUIRE(engine.size() == 481);
@@ -166,7 +163,7 @@ TEST_CASE("ngspice plays the netlist with the engine's impedance", "[cli]")
         REQUIRE(spice[k][0] == Approx(engine[k][0]).epsilon(1e-9));
         worstDb = std::max(worstDb, std::abs(20.0 * std::log10(std::abs(Z) / engine[k][1])));
         worstDegrees = std::max(worstDegrees, std::abs(std::arg(Z) * 180.0 / 3.14159265358979 - engine[k][2]));
-        CHECK(spice[k][3] > 0.0);   // the cone moves
+        CHECK(spice[k][3] > 0.0);  // the cone moves
     }
     INFO(worstDb << " dB, " << worstDegrees << " degrees");
     CHECK(worstDb < 1e-3);
@@ -177,8 +174,8 @@ TEST_CASE("parameters of an impedance alone say what they rest on", "[cli]")
 {
     const Scratch scratch;
     const auto model = modelFile(scratch, Json::array(), true);
-    const auto alone =
-        documentOf(runProgram(scratch.folder(), {"parameters", model, "--json"}), "excursion-parameters");
+    const auto alone = documentOf(runProgram(scratch.folder(), {"parameters", model, "--json"}),
+                                  "excursion-parameters");
     CHECK(figure(alone, "Mms").at("value").is_null());
     CHECK_THAT(figure(alone, "Mms").at("why").get<std::string>(), Catch::Contains("moving mass"));
     CHECK(figure(alone, "Qts").at("value").is_number());
@@ -200,8 +197,8 @@ TEST_CASE("parameters of a measured model, a ladder's folder, and of a take", "[
 {
     const Scratch scratch;
     const auto& chain = Chain::get();
-    const auto measured =
-        documentOf(runProgram(scratch.folder(), {"parameters", chain.model(), "--json"}), "excursion-parameters");
+    const auto measured = documentOf(runProgram(scratch.folder(), {"parameters", chain.model(), "--json"}),
+                                     "excursion-parameters");
     CHECK(figure(measured, "fs").at("standardError").get<double>() > 0.0);
     CHECK(figure(measured, "Mms").at("standardError").get<double>() > 0.0);
     CHECK(figure(measured, "Mms").at("value").get<double>() > 0.0);

@@ -19,18 +19,33 @@ constexpr int rate = 48000;
 std::string bentModel(const Scratch& scratch)
 {
     const auto parameter = [](const char* name, const char* unit, double value) {
-        return nlohmann::json {{"name", name}, {"unit", unit}, {"value", value}, {"standardError", nullptr}, {"free", true}};
+        return nlohmann::json {
+            {"name", name}, {"unit", unit}, {"value", value}, {"standardError", nullptr}, {"free", true}};
     };
     const nlohmann::json model {
-        {"format", "excursion-model"}, {"version", 1}, {"name", "bent"},
-        {"base", {{"id", "electrodynamic"},
-                  {"parameters", {parameter("Re", "ohm", 3.3), parameter("Le", "H", 266e-6), parameter("Bl", "N/A", 4.95),
-                                  parameter("m", "kg", 0.01435), parameter("Rms", "N s/m", 0.786), parameter("K", "N/m", 1852.0)}}}},
-        {"effects", {{{"id", "stiffness"},
-                      {"extent", {{"displacement", 4e-3}, {"velocity", 2.0}, {"current", 10.0}, {"lowFrequency", 15.0}, {"highFrequency", 8000.0}, {"degree", 2}, {"scale", 1852.0}}},
-                      {"parameters", {parameter("c1", "N/m", 0.0), parameter("c2", "N/m", 550.0)}}}}},
-        {"path", {{"parameters", {parameter("Sd", "m^2", 0.0132), parameter("tau", "s", 0.0)}}, {"microphoneDistance", 1.0}}},
-        {"covariance", nullptr}, {"laws", nlohmann::json::array()}};
+        {"format", "excursion-model"},
+        {"version", 1},
+        {"name", "bent"},
+        {"base",
+         {{"id", "electrodynamic"},
+          {"parameters",
+           {parameter("Re", "ohm", 3.3), parameter("Le", "H", 266e-6), parameter("Bl", "N/A", 4.95),
+            parameter("m", "kg", 0.01435), parameter("Rms", "N s/m", 0.786), parameter("K", "N/m", 1852.0)}}}},
+        {"effects",
+         {{{"id", "stiffness"},
+           {"extent",
+            {{"displacement", 4e-3},
+             {"velocity", 2.0},
+             {"current", 10.0},
+             {"lowFrequency", 15.0},
+             {"highFrequency", 8000.0},
+             {"degree", 2},
+             {"scale", 1852.0}}},
+           {"parameters", {parameter("c1", "N/m", 0.0), parameter("c2", "N/m", 550.0)}}}}},
+        {"path",
+         {{"parameters", {parameter("Sd", "m^2", 0.0132), parameter("tau", "s", 0.0)}}, {"microphoneDistance", 1.0}}},
+        {"covariance", nullptr},
+        {"laws", nlohmann::json::array()}};
     const auto file = (scratch / "bent.json").string();
     std::ofstream(file) << model.dump(2);
     return file;
@@ -62,12 +77,13 @@ double distance(const std::vector<double>& a, const std::vector<double>& b)
     return worst;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("predistort makes the simulated driver linear", "[cli]")
 {
     const Scratch scratch;
-    const auto model = bentModel(scratch), in = wavOf(scratch, {tone(0.25), tone(0.1)}), out = (scratch / "out.wav").string();
+    const auto model = bentModel(scratch), in = wavOf(scratch, {tone(0.25), tone(0.1)}),
+               out = (scratch / "out.wav").string();
     const auto told = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--json"});
     INFO(told.out);
     REQUIRE(told.code == 0);
@@ -92,7 +108,8 @@ TEST_CASE("predistort makes the simulated driver linear", "[cli]")
         writeWav(left, rate, std::vector<std::vector<double>>(1, samples), SampleFormat::float64);
         const auto played = (scratch / "played").string();
         std::filesystem::remove_all(played);
-        const auto said = runProgram(scratch.folder(), {"simulate", which, left, "--full-scale", "20", "--out", played});
+        const auto said = runProgram(scratch.folder(),
+                                     {"simulate", which, left, "--full-scale", "20", "--out", played});
         REQUIRE(said.code == 0);
         const auto header = nlohmann::json::parse(bytesOf(played + "/measurement.json"));
         const auto wav = readWav(played + "/take.wav");
@@ -110,7 +127,8 @@ TEST_CASE("predistort makes the simulated driver linear", "[cli]")
     CHECK(distance(motion(model, tone(0.25)), wanted) > 1e-4);
     CHECK(distance(motion(model, bent.channels[0]), wanted) < 1e-8);
 
-    const auto none = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--amount", "0", "--oversampling", "4", "--limit-x", "0.01"});
+    const auto none = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--amount", "0",
+                                                    "--oversampling", "4", "--limit-x", "0.01"});
     REQUIRE(none.code == 0);
     CHECK(distance(readWav(out).channels[0], tone(0.25)) < 1e-5);
 }
@@ -119,14 +137,16 @@ TEST_CASE("predistort says when a limit was reached", "[cli]")
 {
     const Scratch scratch;
     const auto model = bentModel(scratch), in = wavOf(scratch, {tone(0.9)}), out = (scratch / "out.wav").string();
-    const auto told = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--limit-x", "0.002", "--limit-u", "12"});
+    const auto told = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--limit-x",
+                                                    "0.002", "--limit-u", "12"});
     CHECK(told.code == 1);
     CHECK_THAT(told.out, Catch::Contains("A limit was reached (2 mm, 12 V)"));
     const auto bent = readWav(out);
     CHECK(*std::max_element(bent.channels[0].begin(), bent.channels[0].end()) <= 12.0 / 20.0 + 1e-6);
     CHECK_THAT(told.out, Catch::Contains("motion turned down"));
 
-    const auto warm = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--limit-x", "0.05", "--limit-p", "0.5", "--margin", "0.1", "--json"});
+    const auto warm = runProgram(scratch.folder(), {"predistort", model, in, out, "--full-scale", "20", "--limit-x",
+                                                    "0.05", "--limit-p", "0.5", "--margin", "0.1", "--json"});
     CHECK(warm.code == 1);
     const auto document = documentOf(warm, "excursion-predistort");
     CHECK(document.at("powerLimit") == 0.5);
@@ -142,14 +162,17 @@ TEST_CASE("predistort refuses what it cannot play", "[cli][bad-input]")
     refusedWith(2, {"predistort", model, in, out}, scratch, "--full-scale");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "0"}, scratch, "--full-scale");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--amount", "1.5"}, scratch, "--amount");
-    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--oversampling", "3"}, scratch, "--oversampling");
+    refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--oversampling", "3"}, scratch,
+                "--oversampling");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-x", "-1"}, scratch, "--limit-x");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-u", "nan"}, scratch, "--limit-u");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--limit-p", "0"}, scratch, "--limit-p");
     refusedWith(2, {"predistort", model, in, out, "--full-scale", "20", "--margin", "0.5"}, scratch, "--margin");
     refusedWith(2, {"predistort", model, in, in, "--full-scale", "20"}, scratch, "overwritten");
-    refusedWith(3, {"predistort", model, (scratch / "absent.wav").string(), out, "--full-scale", "20"}, scratch, "absent.wav");
-    refusedWith(3, {"predistort", (scratch / "absent.json").string(), in, out, "--full-scale", "20"}, scratch, "absent.json");
+    refusedWith(3, {"predistort", model, (scratch / "absent.wav").string(), out, "--full-scale", "20"}, scratch,
+                "absent.wav");
+    refusedWith(3, {"predistort", (scratch / "absent.json").string(), in, out, "--full-scale", "20"}, scratch,
+                "absent.json");
     refusedWith(3, {"predistort", in, in, out, "--full-scale", "20"}, scratch, "in.wav");
     refusedWith(3, {"predistort", model, model, out, "--full-scale", "20"}, scratch, "bent.json");
     auto poisoned = tone(0.4);

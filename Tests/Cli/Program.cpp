@@ -25,7 +25,7 @@ std::string takeAway(const fs::path& file)
     return text;
 }
 
-} // namespace
+}  // namespace
 
 Outcome runProgram(const fs::path& scratch, const std::vector<std::string>& arguments, const std::string& early)
 {
@@ -66,9 +66,10 @@ std::vector<std::string> contents(const fs::path& folder)
 {
     std::vector<std::string> list;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
-        list.push_back(entry.path().string() + (entry.is_regular_file() ? " " + std::to_string(entry.file_size()) : ""));
+        list.push_back(entry.path().string()
+                       + (entry.is_regular_file() ? " " + std::to_string(entry.file_size()) : ""));
     std::sort(list.begin(), list.end());
     return list;
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

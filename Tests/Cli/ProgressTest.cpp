@@ -14,13 +14,25 @@ namespace {
 
 Outcome measured(const Scratch& scratch, const std::vector<std::string>& options)
 {
-    std::vector<std::string> words {"virtual", "--seed", "1", "--hidden", "none", "--rate", "32000", "--seconds", "1",
-                                    "--channels", "current", "--out", (scratch / "take").string(), "--json"};
+    std::vector<std::string> words {"virtual",
+                                    "--seed",
+                                    "1",
+                                    "--hidden",
+                                    "none",
+                                    "--rate",
+                                    "32000",
+                                    "--seconds",
+                                    "1",
+                                    "--channels",
+                                    "current",
+                                    "--out",
+                                    (scratch / "take").string(),
+                                    "--json"};
     words.insert(words.end(), options.begin(), options.end());
     return runProgram(scratch.folder(), words);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("--progress tells the share that is done in lines, beside the document and with --quiet too", "[cli]")
 {

@@ -42,10 +42,12 @@ struct Session {
 
     std::vector<std::string> import(const std::vector<std::string>& quantities, const std::string& out = "take") const
     {
-        std::vector<std::string> words {"import", recording(), "--plan", (scratch / "plan").string(), "--out", (scratch / out).string(), "--json"};
+        std::vector<std::string> words {
+            "import", recording(), "--plan", (scratch / "plan").string(), "--out", (scratch / out).string(), "--json"};
         for (std::size_t c = 0; c < quantities.size(); ++c) {
             words.emplace_back("--map");
-            words.push_back(std::to_string(c + 1) + "=" + quantities[c] + ":" + std::to_string(quantities[c].front() == '-' ? -scales[c] : scales[c]));
+            words.push_back(std::to_string(c + 1) + "=" + quantities[c] + ":"
+                            + std::to_string(quantities[c].front() == '-' ? -scales[c] : scales[c]));
         }
         return words;
     }
@@ -59,7 +61,7 @@ struct Session {
     int rate = 0;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A recording and its plan become a verdict in two commands", "[cli][recording]")
 {
@@ -80,7 +82,7 @@ TEST_CASE("Exchanged and inverted channels are imported, and found by check", "[
 {
     const Session s;
     auto exchanged = s.import({"current", "voltage", "displacement"});
-    for (auto& word : exchanged)   // each with the scale of what it truly is
+    for (auto& word : exchanged)  // each with the scale of what it truly is
         if (word.starts_with("1=") || word.starts_with("2="))
             word = word.substr(0, word.find(':') + 1) + std::to_string(s.scales[word.front() == '1' ? 0u : 1u]);
     const auto imported = s.run(exchanged);
@@ -109,24 +111,34 @@ TEST_CASE("What is wrong with a recording or its options is told in one sentence
     refusedWith(2, {"import", rec, "--plan", plan, "--map", "1=voltage", "--out", out}, s.scratch, "--calibration");
     refusedWith(2, {"import", rec, "--plan", plan, "--map", "9=voltage:3", "--out", out}, s.scratch, "has 3 channels");
     refusedWith(2, {"import", rec, "--map", "1=voltage:3", "--rate", "44100", "--out", out}, s.scratch, "--rate");
-    refusedWith(2, {"import", rec, "--plan", plan, "--map", "1=voltage:3", "--from", "7", "--out", out}, s.scratch, "--from");
+    refusedWith(2, {"import", rec, "--plan", plan, "--map", "1=voltage:3", "--from", "7", "--out", out}, s.scratch,
+                "--from");
     refusedWith(2, {"import", Chain::get().take(), "--plan", plan, "--out", out}, s.scratch, "--plan");
-    refusedWith(3, {"import", rec, "--plan", (s.scratch / "nowhere").string(), "--map", "1=voltage:3", "--out", out}, s.scratch, "nowhere");
-    refusedWith(3, {"import", rec, "--plan", plan, "--map", "1=voltage", "--calibration", plan + "/plan.json", "--out", out}, s.scratch, "format");
-    refusedWith(3, {"import", s.scratch.file("text.wav", "no sound").string(), "--plan", plan, "--map", "1=voltage:3", "--out", out}, s.scratch, "text.wav");
+    refusedWith(3, {"import", rec, "--plan", (s.scratch / "nowhere").string(), "--map", "1=voltage:3", "--out", out},
+                s.scratch, "nowhere");
+    refusedWith(
+        3, {"import", rec, "--plan", plan, "--map", "1=voltage", "--calibration", plan + "/plan.json", "--out", out},
+        s.scratch, "format");
+    refusedWith(3,
+                {"import", s.scratch.file("text.wav", "no sound").string(), "--plan", plan, "--map", "1=voltage:3",
+                 "--out", out},
+                s.scratch, "text.wav");
 
     auto broken = s.channels;
     broken[1][99] = std::numeric_limits<double>::infinity();
     const auto bad = (s.scratch / "bad.wav").string();
     writeWav(bad, s.rate, broken, SampleFormat::float32);
-    refusedWith(3, {"import", bad, "--plan", plan, "--map", "1=voltage:3", "--map", "2=current:1", "--out", out}, s.scratch, "sample 99 of channel 2");
+    refusedWith(3, {"import", bad, "--plan", plan, "--map", "1=voltage:3", "--map", "2=current:1", "--out", out},
+                s.scratch, "sample 99 of channel 2");
     broken = s.channels;
     for (auto& channel : broken)
         channel.erase(channel.begin() + 50000, channel.begin() + 50128);
     writeWav(bad, s.rate, broken, SampleFormat::float32);
-    refusedWith(4, {"import", bad, "--plan", plan, "--map", "1=voltage:3", "--map", "2=current:1", "--out", out}, s.scratch, "lacks about 128 samples");
+    refusedWith(4, {"import", bad, "--plan", plan, "--map", "1=voltage:3", "--map", "2=current:1", "--out", out},
+                s.scratch, "lacks about 128 samples");
 
-    const auto asItIs = s.run({"import", rec, "--map", "1=voltage:3", "--map", "2=current:1", "--from", "100", "--to", "20100", "--out", out, "--json"});
+    const auto asItIs = s.run({"import", rec, "--map", "1=voltage:3", "--map", "2=current:1", "--from", "100", "--to",
+                               "20100", "--out", out, "--json"});
     CHECK(asItIs.code == 0);
     CHECK(documentOf(asItIs, "excursion-import").at("samples") == 20000);
 }
@@ -140,15 +152,21 @@ TEST_CASE("An input is calibrated by a tone, and import uses it", "[cli][recordi
     std::normal_distribution<double> noise(0.0, 1e-4);
     for (std::size_t n = 0; n < channels[0].size(); ++n)
         for (std::size_t c = 0; c < 3; ++c)
-            channels[c][n] = noise(random) + 0.25 * std::numbers::sqrt2 * std::sin(2 * std::numbers::pi * 1000 * static_cast<double>(n) / s.rate);
+            channels[c][n] = noise(random)
+                             + 0.25 * std::numbers::sqrt2
+                                   * std::sin(2 * std::numbers::pi * 1000 * static_cast<double>(n) / s.rate);
     writeWav(tone, s.rate, channels, SampleFormat::float32);
 
-    const auto first = s.run({"calibrate", tone, "--channel", "1", "--voltage", "1", "--quantity", "voltage", "--divider", "5", "--out", cal});
+    const auto first = s.run({"calibrate", tone, "--channel", "1", "--voltage", "1", "--quantity", "voltage",
+                              "--divider", "5", "--out", cal});
     INFO(first.err);
     REQUIRE(first.code == 0);
     CHECK_THAT(first.out, Catch::Contains("1000 Hz") || Catch::Contains("1000.00 Hz"));
     CHECK_THAT(first.out, Catch::Contains("= 20 V (voltage)"));
-    REQUIRE(s.run({"calibrate", tone, "--channel", "2", "--voltage", "1", "--quantity", "current", "--sense-resistor", "0.5", "--out", cal, "--quiet"}).code == 0);
+    REQUIRE(s.run({"calibrate", tone, "--channel", "2", "--voltage", "1", "--quantity", "current", "--sense-resistor",
+                   "0.5", "--out", cal, "--quiet"})
+                .code
+            == 0);
     const auto third = s.run({"calibrate", tone, "--channel", "3", "--spl", "94", "--out", cal, "--json"});
     const auto entry = documentOf(third, "excursion-calibrate").at("calibration").at("channels").at(2);
     CHECK(entry.at("quantity") == "pressure");
@@ -158,7 +176,8 @@ TEST_CASE("An input is calibrated by a tone, and import uses it", "[cli][recordi
     CHECK(known.at("channels").at(0).at("divider") == 5.0);
 
     const auto take = (s.scratch / "calibrated").string();
-    const auto imported = s.run({"import", s.recording(), "--plan", (s.scratch / "plan").string(), "--calibration", cal, "--out", take, "--json"});
+    const auto imported = s.run({"import", s.recording(), "--plan", (s.scratch / "plan").string(), "--calibration", cal,
+                                 "--out", take, "--json"});
     INFO(imported.err);
     REQUIRE(imported.code == 0);
     const auto channelsTold = documentOf(imported, "excursion-import").at("channels");
@@ -168,10 +187,13 @@ TEST_CASE("An input is calibrated by a tone, and import uses it", "[cli][recordi
     const auto before = bytesOf(cal);
     refusedWith(2, {"calibrate", tone, "--out", cal}, s.scratch, "--voltage");
     refusedWith(2, {"calibrate", tone, "--channel", "7", "--voltage", "1", "--out", cal}, s.scratch, "has 3 channels");
-    refusedWith(2, {"calibrate", tone, "--channel", "2", "--spl", "94", "--out", cal}, s.scratch, "--spl calibrates a pressure");
+    refusedWith(2, {"calibrate", tone, "--channel", "2", "--spl", "94", "--out", cal}, s.scratch,
+                "--spl calibrates a pressure");
     refusedWith(2, {"calibrate", tone, "--voltage", "-1", "--out", cal}, s.scratch, "--voltage");
-    refusedWith(3, {"calibrate", tone, "--channel", "2", "--voltage", "1", "--divider", "3", "--out", cal}, s.scratch, "divider");
-    refusedWith(3, {"calibrate", (s.scratch / "none.wav").string(), "--voltage", "1", "--out", cal}, s.scratch, "none.wav");
+    refusedWith(3, {"calibrate", tone, "--channel", "2", "--voltage", "1", "--divider", "3", "--out", cal}, s.scratch,
+                "divider");
+    refusedWith(3, {"calibrate", (s.scratch / "none.wav").string(), "--voltage", "1", "--out", cal}, s.scratch,
+                "none.wav");
     refusedWith(4, {"calibrate", s.recording(), "--voltage", "1", "--out", cal}, s.scratch, "tone on channel 1");
     CHECK(bytesOf(cal) == before);
 }

@@ -36,7 +36,7 @@ std::string driver(const Scratch& scratch)
     return scratch.file("driver.zma", impedanceText("* Freq(Hz)\tZ(Ohms)\tPhase(degrees)\n")).string();
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("identify and bla take an impedance for what it is, voltage over current", "[cli][response]")
 {
@@ -114,7 +114,7 @@ TEST_CASE("import says what a file lacks, and does with --as, --map or --minimum
     refusedWith(2, {"import", bare, "--as", "colour", "--out", csv}, scratch, "colour");
     REQUIRE(runProgram(scratch.folder(), {"import", bare, "--as", "impedance", "--out", csv}).code == 0);
     const auto shown = documentOf(runProgram(scratch.folder(), {"bla", csv, "--json"}),
-                                  "excursion-bla");   // the CSV needs no option, either
+                                  "excursion-bla");  // the CSV needs no option, either
     CHECK(shown.at("output") == "voltage");
     CHECK(shown.at("re").at(3).get<double>()
           == Approx(impedanceAt(shown.at("frequency").at(3).get<double>()).real()).epsilon(1e-6));

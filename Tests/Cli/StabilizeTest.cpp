@@ -28,20 +28,23 @@ nlohmann::json spoiled(nlohmann::json model, double r, double w)
     return model;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("stabilize brings an unstable model back, by each of its methods, and tells every step")
 {
     const Scratch scratch;
     const auto& chain = Chain::get();
-    const auto identified = (scratch / "identified.json").string(), bad = (scratch / "bad.json").string(), out = (scratch / "good.json").string();
-    const auto told = runProgram(scratch.folder(), {"identify", chain.take(), "--order", "3", "--out", identified, "--json"});
+    const auto identified = (scratch / "identified.json").string(), bad = (scratch / "bad.json").string(),
+               out = (scratch / "good.json").string();
+    const auto told = runProgram(scratch.folder(),
+                                 {"identify", chain.take(), "--order", "3", "--out", identified, "--json"});
     REQUIRE(told.code == 0);
     const double best = nlohmann::json::parse(told.out).at("orders").at(0).at("weightedErrorDb");
     scratch.file("bad.json", spoiled(nlohmann::json::parse(bytesOf(identified)), 200.0, 3000.0).dump());
 
     for (const std::string method : {"mirror", "project", "delay"}) {
-        const auto done = runProgram(scratch.folder(), {"stabilize", bad, "--method", method, "--frf", chain.take(), "--out", out, "--json"});
+        const auto done = runProgram(
+            scratch.folder(), {"stabilize", bad, "--method", method, "--frf", chain.take(), "--out", out, "--json"});
         INFO(method << ": " << done.err);
         REQUIRE(done.code == 0);
         const auto document = nlohmann::json::parse(done.out);
@@ -53,21 +56,24 @@ TEST_CASE("stabilize brings an unstable model back, by each of its methods, and 
         CHECK(steps.at(0).at("stable") == false);
         CHECK(steps.back().at("stable") == true);
         CHECK(steps.back().at("weightedErrorDb") < steps.at(0).at("weightedErrorDb"));
-        CHECK(steps.back().at("weightedErrorDb").get<double>() < best + 0.5);   // as well as the model that was never spoiled
+        // as well as the model that was never spoiled
+        CHECK(steps.back().at("weightedErrorDb").get<double>() < best + 0.5);
         CHECK(nlohmann::json::parse(bytesOf(out)) == document.at("model"));
         CHECK(document.at("model").at("order") == (method == "project" ? 3 : 5));
         CHECK(document.at("delayDeviation").is_number() == (method == "delay"));
         if (method != "delay")
             CHECK_FALSE(document.at("model").contains("delay"));
         // What is stable already is left alone.
-        const auto again = runProgram(scratch.folder(), {"stabilize", out, "--out", (scratch / "again.json").string(), "--json"});
+        const auto again = runProgram(scratch.folder(),
+                                      {"stabilize", out, "--out", (scratch / "again.json").string(), "--json"});
         REQUIRE(again.code == 0);
         CHECK(nlohmann::json::parse(again.out).at("steps").size() == 1);
         CHECK(nlohmann::json::parse(again.out).at("model") == document.at("model"));
     }
 
     // A delay that is asked for is the delay that is kept.
-    const auto given = runProgram(scratch.folder(), {"stabilize", bad, "--method", "delay", "--frf", chain.take(), "--seconds", "2e-5", "--out", out, "--json"});
+    const auto given = runProgram(scratch.folder(), {"stabilize", bad, "--method", "delay", "--frf", chain.take(),
+                                                     "--seconds", "2e-5", "--out", out, "--json"});
     REQUIRE(given.code == 0);
     CHECK(nlohmann::json::parse(given.out).at("delay") == 2e-5);
     CHECK(nlohmann::json::parse(bytesOf(out)).at("delay") == 2e-5);
@@ -77,13 +83,15 @@ TEST_CASE("stabilize decomposes a model into two that add up")
 {
     const Scratch scratch;
     const auto& chain = Chain::get();
-    const auto identified = (scratch / "identified.json").string(), bad = (scratch / "bad.json").string(), out = (scratch / "stable.json").string(),
-               rest = (scratch / "unstable.json").string();
-    REQUIRE(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "3", "--quick", "--out", identified}).code == 0);
+    const auto identified = (scratch / "identified.json").string(), bad = (scratch / "bad.json").string(),
+               out = (scratch / "stable.json").string(), rest = (scratch / "unstable.json").string();
+    REQUIRE(
+        runProgram(scratch.folder(), {"identify", chain.take(), "--order", "3", "--quick", "--out", identified}).code
+        == 0);
     const auto before = nlohmann::json::parse(bytesOf(identified));
     scratch.file("bad.json", spoiled(before, 200.0, 3000.0).dump());
-    const auto done
-        = runProgram(scratch.folder(), {"stabilize", bad, "--method", "decompose", "--frf", chain.take(), "--unstable", rest, "--out", out, "--json"});
+    const auto done = runProgram(scratch.folder(), {"stabilize", bad, "--method", "decompose", "--frf", chain.take(),
+                                                    "--unstable", rest, "--out", out, "--json"});
     INFO(done.err);
     REQUIRE(done.code == 0);
     const auto document = nlohmann::json::parse(done.out);
@@ -92,7 +100,8 @@ TEST_CASE("stabilize decomposes a model into two that add up")
     CHECK(document.at("unstable").at("order") == 2);
     CHECK(nlohmann::json::parse(bytesOf(rest)) == document.at("unstable"));
     // The resonance was put beside the model, so its loss leaves the response of that model.
-    const auto judged = runProgram(scratch.folder(), {"stabilize", identified, "--frf", chain.take(), "--out", (scratch / "same.json").string(), "--json"});
+    const auto judged = runProgram(scratch.folder(), {"stabilize", identified, "--frf", chain.take(), "--out",
+                                                      (scratch / "same.json").string(), "--json"});
     REQUIRE(judged.code == 0);
     CHECK(document.at("steps").at(1).at("errorDb").get<double>()
           == Approx(nlohmann::json::parse(judged.out).at("steps").at(0).at("errorDb").get<double>()).margin(1e-6));
@@ -109,8 +118,11 @@ TEST_CASE("reduce takes out poles and zeros within a ripple")
     const Scratch scratch;
     const auto& chain = Chain::get();
     const auto identified = (scratch / "identified.json").string(), small = (scratch / "small.json").string();
-    REQUIRE(runProgram(scratch.folder(), {"identify", chain.take(), "--order", "7", "--quick", "--out", identified}).code == 0);
-    const auto reduced = runProgram(scratch.folder(), {"reduce", identified, "--ripple", "6", "--band", "20,5000", "--out", small, "--json"});
+    REQUIRE(
+        runProgram(scratch.folder(), {"identify", chain.take(), "--order", "7", "--quick", "--out", identified}).code
+        == 0);
+    const auto reduced = runProgram(
+        scratch.folder(), {"reduce", identified, "--ripple", "6", "--band", "20,5000", "--out", small, "--json"});
     INFO(reduced.err);
     REQUIRE(reduced.code == 0);
     const auto told = nlohmann::json::parse(reduced.out);
@@ -123,6 +135,8 @@ TEST_CASE("reduce takes out poles and zeros within a ripple")
     CHECK(told.at("order").get<int>() == told.at("steps").back().at("order").get<int>());
     CHECK(told.at("order").get<int>() < 7);
     CHECK(nlohmann::json::parse(bytesOf(small)) == told.at("model"));
-    CHECK(runProgram(scratch.folder(), {"reduce", identified, "--ripple", "1", "--out", small}).code == 2);   // continuous time, and no band
-    CHECK(runProgram(scratch.folder(), {"reduce", identified, "--order", "3", "--band", "20,5000", "--out", small}).code == 2);
+    // continuous time, and no band
+    CHECK(runProgram(scratch.folder(), {"reduce", identified, "--ripple", "1", "--out", small}).code == 2);
+    CHECK(runProgram(scratch.folder(), {"reduce", identified, "--order", "3", "--band", "20,5000", "--out", small}).code
+          == 2);
 }

@@ -42,7 +42,7 @@ double parameter(const LossyForm& form, const std::string& name)
     throw std::out_of_range(name);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A semi-inductance is found where there is one", "[datasheet]")
 {

@@ -45,7 +45,7 @@ const LawTable& named(const std::vector<LawTable>& laws, const std::string& name
     throw std::out_of_range(name);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Laws are told over the range with their bands, and the compliance as the reciprocal", "[datasheet]")
 {
@@ -57,7 +57,7 @@ TEST_CASE("Laws are told over the range with their bands, and the compliance as 
     CHECK(K.at.back() == 3e-3);
     CHECK(K.at[5] == 0.0);
     CHECK(K.value[5] == 2000.0);
-    CHECK(K.value.back() == Approx(2000.0 + 2.0 * 400.0));   // K + 2 c2 (x/X)^2
+    CHECK(K.value.back() == Approx(2000.0 + 2.0 * 400.0));  // K + 2 c2 (x/X)^2
     CHECK(K.high95[5] - K.low95[5] == Approx(2.0 * 1.96 * 2.0).epsilon(1e-6));
     CHECK(C.value.back() == Approx(1.0 / 2800.0));
     CHECK(C.low95[5] == Approx(1.0 / K.high95[5]));
@@ -100,8 +100,8 @@ TEST_CASE("Curves of small signals", "[datasheet]")
     const auto Z = impedanceCurve(model, {1e-3}), sound = soundCurve(given, {20000.0});
     CHECK(Z.value[0].real() == Approx(6.0).epsilon(1e-6));
     // Far above all else p = rho Sd/(2 pi) a at 1 m with a = Bl u/(j w Le m): no flight, -90 degrees.
-    const double expected =
-        2.83 / 20e-6 * 1.2 * 0.0133 / (2.0 * std::numbers::pi) * 5.0 / (2.0 * std::numbers::pi * 20000.0 * 3e-4 * 0.01);
+    const double expected = 2.83 / 20e-6 * 1.2 * 0.0133 / (2.0 * std::numbers::pi) * 5.0
+                            / (2.0 * std::numbers::pi * 20000.0 * 3e-4 * 0.01);
     CHECK(std::abs(sound.value[0]) == Approx(expected).epsilon(0.05));
     CHECK(std::arg(sound.value[0]) == Approx(-0.5 * std::numbers::pi).margin(0.2));
     CHECK_THROWS_AS(soundCurve({model, true, false}, {100.0}), Error);
@@ -139,6 +139,6 @@ TEST_CASE("A netlist is plain ASCII and says what it leaves out", "[datasheet]")
             && Catch::Contains(
                 "Left out, as they are no linear part of coil and cone: stiffness, force-factor, inductance-current")
             && Catch::EndsWith(".ENDS d12____woofer\n"));
-    CHECK(text.find("\n.END\n") == std::string::npos);   // a name cannot end the deck
+    CHECK(text.find("\n.END\n") == std::string::npos);  // a name cannot end the deck
     CHECK_THAT(spiceNetlist(makeModel("mechanical"), ""), Catch::Contains(".SUBCKT driver cone\n"));
 }

@@ -65,7 +65,7 @@ double bisect(double low, double high, const std::function<double(double)>& f)
     return 0.5 * (low + high);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Thiele/Small parameters of the base are the closed forms", "[datasheet]")
 {
@@ -149,8 +149,8 @@ TEST_CASE("Standard errors follow the covariance", "[datasheet]")
     const double share[] = {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3, 7e-3, 0.0};
     for (Eigen::Index k = 0; k < theta.size(); ++k)
         model.covariance(k, k) = std::pow(share[k] * theta[k], 2);
-    model.covariance(2, 3) = model.covariance(3, 2) =
-        0.8 * share[2] * theta[2] * share[3] * theta[3];   // Bl and m err together
+    model.covariance(2, 3) = model.covariance(3, 2) = 0.8 * share[2] * theta[2] * share[3]
+                                                      * theta[3];  // Bl and m err together
     const auto figures = thieleSmall({model, false, false});
     const auto relative = [&](const char* symbol) {
         return figureNamed(figures, symbol).standardError / figureNamed(figures, symbol).value;
@@ -194,7 +194,7 @@ TEST_CASE("Where losses in the iron stand in for a part of Re, the coil's resist
 TEST_CASE("What the take does not show is not said", "[datasheet]")
 {
     auto model = midbass();
-    model.components.front().parameters[3].free = false;   // the mass is held by convention
+    model.components.front().parameters[3].free = false;  // the mass is held by convention
     model.path.parameters[0].value = 0.01;
     const auto known = [](const std::vector<DatasheetFigure>& figures) {
         std::string list;
@@ -233,9 +233,9 @@ TEST_CASE("What the take does not show is not said", "[datasheet]")
 
 TEST_CASE("Another motion is not seen by the coil", "[datasheet]")
 {
-    auto model =
-        withNumbers(withNumbers(withNumbers(midbass(), "stiffness", {120.0, 300.0}), "force-factor", {0.3, -0.6}),
-                    "creep", {300.0, 1.0, 2.0, 0.1});
+    auto model = withNumbers(
+        withNumbers(withNumbers(midbass(), "stiffness", {120.0, 300.0}), "force-factor", {0.3, -0.6}), "creep",
+        {300.0, 1.0, 2.0, 0.1});
     model = withNumbers(withNumbers(model, "friction", {0.2, 2e-4, 0.5}), "side-resonance", {0.001, 900.0, 0.2});
     model.path.parameters[0].free = true;
     const auto other = withMotion(model, 0.6);

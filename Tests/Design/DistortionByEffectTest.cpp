@@ -17,7 +17,7 @@ using namespace excursion;
 namespace {
 
 constexpr std::size_t N = 4096;
-constexpr double sampleRate = 4096.0;   // lines are Hz
+constexpr double sampleRate = 4096.0;  // lines are Hz
 constexpr double range = 2e-3;
 
 /// A cone on a spring K + c1 (x/X) + 2 c2 (x/X)^2, driven by a force.
@@ -69,7 +69,8 @@ Record forces(const std::vector<int>& lines, double amplitude)
         for (const int k : lines) {
             const double at = phase(random);
             for (std::size_t n = 0; n < N; ++n)
-                section.input[n] += (level + 1.0) * amplitude * std::cos(2.0 * std::numbers::pi * k * static_cast<double>(n) / N + at);
+                section.input[n] += (level + 1.0) * amplitude
+                                    * std::cos(2.0 * std::numbers::pi * k * static_cast<double>(n) / N + at);
         }
         section.measured.assign(1, std::vector<std::complex<double>>(N / 2 + 1));
         section.deviation.assign(1, std::vector<double>(N / 2 + 1, 1.0));
@@ -80,13 +81,13 @@ Record forces(const std::vector<int>& lines, double amplitude)
 
 const ChannelDistortion& displacement(const std::vector<ChannelDistortion>& channels) { return channels.front(); }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A tone on a bent spring has the harmonics that perturbation tells", "[design]")
 {
     const double f = 30.0, force = 0.05;
     const double x = force * std::abs(compliance(f));
-    const auto record = forces({30}, 0.5 * force);   // the louder section has the force
+    const auto record = forces({30}, 0.5 * force);  // the louder section has the force
     REQUIRE(loudestSections(record) == std::vector<std::size_t> {1});
 
     SECTION("on one side: the second harmonic, k1 X^2/2 |H(2w)|")
@@ -106,8 +107,9 @@ TEST_CASE("A tone on a bent spring has the harmonics that perturbation tells", "
         const double third = k2 * x * x * x / 4.0 * std::abs(compliance(3.0 * f));
         CHECK(displacement(told.whole).oddDb == Approx(20.0 * std::log10(third / x)).margin(0.05));
         CHECK(displacement(told.whole).evenDb == Approx(-120.0));
-        const double stiffer = 0.75 * k2 * x * x;   // describing function of k2 x^3
-        CHECK(displacement(told.whole).gainDb == Approx(-20.0 * std::log10(std::abs(1.0 + stiffer * compliance(f)))).margin(0.003));
+        const double stiffer = 0.75 * k2 * x * x;  // describing function of k2 x^3
+        CHECK(displacement(told.whole).gainDb
+              == Approx(-20.0 * std::log10(std::abs(1.0 + stiffer * compliance(f)))).margin(0.003));
     }
 }
 
@@ -125,7 +127,8 @@ TEST_CASE("Without its only effect a driver has no distortion, and alone that ef
 
 TEST_CASE("Distortion is told alike from lines left out and, where none are, beside a gain a band", "[design]")
 {
-    // The same density of power: one line in two carries what all of them do. Little damping would bend g within a band.
+    // The same density of power: one line in two carries what all of them do. Little damping would bend g within a
+    // band.
     auto model = spring(0.0, 25.0);
     model.baseParameter("Rms").value = 6.0;
     std::vector<int> some, all;
@@ -135,9 +138,11 @@ TEST_CASE("Distortion is told alike from lines left out and, where none are, bes
             some.push_back(k);
     }
     const auto share = static_cast<double>(all.size()) / static_cast<double>(some.size());
-    const auto left = distortionByEffect(model, forces(some, 0.012), {1}), none = distortionByEffect(model, forces(all, 0.012 / std::sqrt(share)), {1});
+    const auto left = distortionByEffect(model, forces(some, 0.012), {1}),
+               none = distortionByEffect(model, forces(all, 0.012 / std::sqrt(share)), {1});
     CHECK(displacement(left.whole).rms == Approx(displacement(none.whole).rms).epsilon(0.2));
-    CHECK(displacement(left.whole).oddDb == Approx(displacement(none.whole).oddDb).margin(3.0));   // of one draw of phases each
+    // of one draw of phases each
+    CHECK(displacement(left.whole).oddDb == Approx(displacement(none.whole).oddDb).margin(3.0));
 }
 
 TEST_CASE("What runs away without an effect says nothing", "[design]")

@@ -45,15 +45,16 @@ const StrokeLimit& named(const StrokeLimits& stroke, const std::string& words)
     throw std::out_of_range(words);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A parabolic force factor reaches 82 % where the parabola does, and is centred where its top is", "[design]")
 {
     auto model = with("force-factor", 0.0, 0.0);
     const double Bl = model.baseParameter("Bl").value, top = 0.5e-3;
-    const double c2 = -0.2 * Bl, c1 = -4.0 * c2 * top / visitedPeak;   // d/dx = 0 at the top
+    const double c2 = -0.2 * Bl, c1 = -4.0 * c2 * top / visitedPeak;  // d/dx = 0 at the top
     model = with("force-factor", c1, c2);
-    model.covariance = 1e-8 * Bl * Bl * Eigen::MatrixXd::Identity(parameterVector(model).size(), parameterVector(model).size());
+    model.covariance = 1e-8 * Bl * Bl
+                       * Eigen::MatrixXd::Identity(parameterVector(model).size(), parameterVector(model).size());
     const auto stroke = strokeLimits(model);
     CHECK(stroke.range == visitedPeak);
     const auto& limit = named(stroke, "Bl(x)");
@@ -110,15 +111,16 @@ TEST_CASE("At the Doppler limit a carried tone has 10 % in its two sidebands", "
     const auto& limit = named(stroke, "Doppler");
     REQUIRE(limit.outward);
     constexpr std::size_t N = 4096;
-    constexpr int low = 64, high = 544;   // 8.5 times
+    constexpr int low = 64, high = 544;  // 8.5 times
     std::vector<double> sound(N);
     for (std::size_t n = 0; n < N; ++n) {
         const double turn = 2.0 * std::numbers::pi * static_cast<double>(n) / N;
-        const double earlier = *limit.outward * std::sin(low * turn) / 343.0;   // s
+        const double earlier = *limit.outward * std::sin(low * turn) / 343.0;  // s
         sound[n] = std::cos(high * turn + 2.0 * std::numbers::pi * stroke.tone * earlier);
     }
     const auto P = fft(sound);
-    CHECK(std::sqrt(std::norm(P[high - low]) + std::norm(P[high + low])) / std::abs(P[high]) == Approx(0.1).epsilon(0.01));
+    CHECK(std::sqrt(std::norm(P[high - low]) + std::norm(P[high + low])) / std::abs(P[high])
+          == Approx(0.1).epsilon(0.01));
 }
 
 TEST_CASE("Words and document of what-if say the same numbers", "[design]")
@@ -128,11 +130,13 @@ TEST_CASE("Words and document of what-if say the same numbers", "[design]")
     auto better = sound, worse = sound;
     better.evenDb = -41.0;
     worse.evenDb = -18.0;
-    told.distortion = {2.0, {sound}, {{"stiffness", {better}, {sound}}, {"force-factor", {worse}, {}}, {"doppler", {}, {}}}};
+    told.distortion = {
+        2.0, {sound}, {{"stiffness", {better}, {sound}}, {"force-factor", {worse}, {}}, {"doppler", {}, {}}}};
     told.stroke = strokeLimits(with("force-factor", 0.0, -0.2 * makeModel("electrodynamic").baseParameter("Bl").value));
     const auto words = advice(told);
-    for (const char* part : {"-20.0 dB (10 %)", "mostly even", "Stiffness K(x), without which it would be 17.5 dB lower", "Force factor Bl(x) works against",
-                             "2.7 mm either way, where the force factor Bl(x) falls to 82 %"})
+    for (const char* part :
+         {"-20.0 dB (10 %)", "mostly even", "Stiffness K(x), without which it would be 17.5 dB lower",
+          "Force factor Bl(x) works against", "2.7 mm either way, where the force factor Bl(x) falls to 82 %"})
         CHECK_THAT(words, Catch::Contains(part));
     CHECK(std::isnan(fallWithout(told.distortion, told.distortion.effects[2], Quantity::pressure)));
 

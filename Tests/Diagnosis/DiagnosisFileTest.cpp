@@ -24,22 +24,25 @@ TEST_CASE("A ladder's responses are those of the periods, also where the take do
     const auto told = test::duffingTake(0.1, -60.0, 3);
     auto untold = told;
     untold.excitation.reset();
-    const auto with = makeLadderFile(test::syntheticLadder().ladder, told, "take"), without = makeLadderFile(test::syntheticLadder().ladder, untold, "take");
+    const auto with = makeLadderFile(test::syntheticLadder().ladder, told, "take"),
+               without = makeLadderFile(test::syntheticLadder().ladder, untold, "take");
     CHECK(without.take.levels.size() == with.take.levels.size());
     CHECK(without.take.periods > 0);
     REQUIRE(without.responses.size() == with.responses.size());
     for (std::size_t c = 0; c < with.responses.size(); ++c) {
         REQUIRE(without.responses[c].frequency.size() == with.responses[c].frequency.size());
         for (std::size_t k = 0; k < with.responses[c].value.size(); ++k)
-            CHECK(std::abs(without.responses[c].value[k] - with.responses[c].value[k]) < 1e-2 * std::abs(with.responses[c].value[k]));
+            CHECK(std::abs(without.responses[c].value[k] - with.responses[c].value[k])
+                  < 1e-2 * std::abs(with.responses[c].value[k]));
     }
 }
 
 TEST_CASE("A diagnosis has the fields that scripts read", "[files]")
 {
     auto diagnosis = test::syntheticLadder().ladder.rungs[1].diagnosis;
-    diagnosis.problems = {{"channel-delay", Quantity::current, 3.4, "samples", true, "The current is late by 3.4 samples."},
-                          {"dropout", std::nullopt, 2.0, "1", false, "Samples are missing."}};
+    diagnosis.problems = {
+        {"channel-delay", Quantity::current, 3.4, "samples", true, "The current is late by 3.4 samples."},
+        {"dropout", std::nullopt, 2.0, "1", false, "Samples are missing."}};
     diagnosis.error[Quantity::current].noiseFloorDb.reset();
     const auto document = toJson(diagnosis);
     CHECK(document["format"] == "excursion-diagnosis");
@@ -87,7 +90,8 @@ TEST_CASE("A ladder that cannot be is refused with file and field", "[files]")
         }
     };
     using Catch::Contains;
-    CHECK_THAT(refusal("/verdict", "perhaps"), Contains("ladder.json") && Contains("'verdict'") && Contains("missing-effect"));
+    CHECK_THAT(refusal("/verdict", "perhaps"),
+               Contains("ladder.json") && Contains("'verdict'") && Contains("missing-effect"));
     CHECK_THAT(refusal("/rungs/1/model/version", 7), Contains("rungs[1].model.version"));
     CHECK_THAT(refusal("/rungs/0/comparison/channels/0/levels/0/spectrum/model", nlohmann::json::array({1.0})),
                Contains("as many numbers"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ladders of impedances in closed form: what hides behind something else is found with it, and what is not there is not.
+// Ladders of impedances in closed form: what hides behind something else is found with it, and what is not there is
+// not.
 #include "Engine/Diagnosis/Improve.h"
 
 #include <catch2/catch.hpp>
@@ -18,7 +19,8 @@ using Complex = std::complex<double>;
 /// Several impedances that share a voltage, or mechanical ones that share a force.
 Complex parallel(Complex a, Complex b) { return a * b / (a + b); }
 
-/// A woofer as its parts are: a coil with a chain of resistors beside inductors, a cone on a suspension, and what its motion feels besides.
+/// A woofer as its parts are: a coil with a chain of resistors beside inductors, a cone on a suspension, and what its
+/// motion feels besides.
 struct Woofer {
     bool port = false, part = false;
 
@@ -30,11 +32,12 @@ struct Woofer {
             coil += parallel(R, s * L);
         const double Bl = 7.2, m = 0.018, K = 1100.0;
         Complex mechanical = 1.4 + s * m + K / s;
-        if (port) {   // air whose pressure moves the mass in a port of 33 Hz and leaks
+        if (port) {  // air whose pressure moves the mass in a port of 33 Hz and leaks
             const double stiffness = 2400.0, mass = stiffness / std::pow(2.0 * std::numbers::pi * 33.0, 2);
-            mechanical += parallel(stiffness / s, parallel(s * mass + 0.04 * std::sqrt(stiffness * mass), 12.0 * std::sqrt(stiffness * mass)));
+            mechanical += parallel(stiffness / s, parallel(s * mass + 0.04 * std::sqrt(stiffness * mass),
+                                                           12.0 * std::sqrt(stiffness * mass)));
         }
-        if (part) {   // a surround of 0.9 g that swings at 640 Hz
+        if (part) {  // a surround of 0.9 g that swings at 640 Hz
             const double mass = 9e-4, w = 2.0 * std::numbers::pi * 640.0;
             mechanical += parallel(s * mass, mass * w * w / s + mass * w / 5.0);
         }
@@ -48,16 +51,18 @@ struct Woofer {
         for (double f = 10.0; f < 20000.0; f *= std::exp2(1.0 / 24.0)) {
             spectra.frequency.push_back(f);
             const auto n = static_cast<double>(ohms.size());
-            ohms.push_back(impedance(f) * (1.0 + std::polar(3e-3, 2.4 * n * n)));   // as rough as measured curves are
+            // as rough as measured curves are
+            ohms.push_back(impedance(f) * (1.0 + std::polar(3e-3, 2.4 * n * n)));
         }
-        spectra.channels = {{Quantity::voltage, "V", ohms}, {Quantity::current, "A", std::vector<Complex>(ohms.size(), 1.0)}};
+        spectra.channels = {{Quantity::voltage, "V", ohms},
+                            {Quantity::current, "A", std::vector<Complex>(ohms.size(), 1.0)}};
         return spectra;
     }
 };
 
 double errorDb(const Rung& rung) { return rung.comparison.channels.front().total.db; }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A port and a part that swings are found together, and neither where it is not", "[improve][responses]")
 {
@@ -73,7 +78,8 @@ TEST_CASE("A port and a part that swings are found together, and neither where i
         CHECK((!woofer.port || box - effects.begin() < 2));
         CHECK(ladder.model().has("side-resonance") == woofer.part);
         CHECK_FALSE(ladder.model().has("creep"));
-        for (std::size_t k = 1; k < ladder.rungs.size(); ++k)   // each rung is what the one before asked for, and lowers the error
+        // each rung is what the one before asked for, and lowers the error
+        for (std::size_t k = 1; k < ladder.rungs.size(); ++k)
             CHECK(errorDb(ladder.rungs[k]) < errorDb(ladder.rungs[k - 1]) - 1.0);
         for (std::size_t k = 0; k + 1 < ladder.rungs.size(); ++k)
             CHECK(ladder.rungs[k].diagnosis.ranking.front().effect == ladder.rungs[k + 1].added);

@@ -35,7 +35,7 @@ void requireAtTheNoise(const Comparison& comparison)
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Nothing is added to a driver without effects, and its parameters are found", "[improve]")
 {
@@ -82,7 +82,8 @@ TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is ca
         error += std::pow(waves[1].measured[n] - waves[1].model[n], 2);
         power += std::pow(waves[1].measured[n], 2);
     }
-    CHECK(10.0 * std::log10(error / power) == Approx(work.ladder().rungs[1].comparison.channels[1].byLevel[2].db).margin(0.5));
+    CHECK(10.0 * std::log10(error / power)
+          == Approx(work.ladder().rungs[1].comparison.channels[1].byLevel[2].db).margin(0.5));
     work.undo();
     work.undo();
     REQUIRE(work.ladder().rungs.size() == 1);
@@ -92,8 +93,9 @@ TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is ca
 
 TEST_CASE("One hidden effect is named, added, and the error falls to the noise", "[improve][slow]")
 {
-    const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness", "inductance-position", "inductance-current", "eddy-currents", "creep",
-                             "damping-velocity", "friction", "coil-heating", "vented-box");
+    const auto id = GENERATE(as<std::string> {}, "force-factor", "stiffness", "inductance-position",
+                             "inductance-current", "eddy-currents", "creep", "damping-velocity", "friction",
+                             "coil-heating", "vented-box");
     INFO(id);
     const auto ladder = improve(seedTake({{id, 0.25}}));
     CHECK(added(ladder) == std::vector {id});
@@ -189,15 +191,18 @@ TEST_CASE("A suspension that is bent and creeps is both, in series", "[improve][
 
 TEST_CASE("What is known is named beside what is not", "[improve][slow]")
 {
-    const auto ladder = improve(withBentLaser(seedTake({{"force-factor", 0.4}}, {Quantity::current, Quantity::displacement}), 2));
+    const auto ladder = improve(
+        withBentLaser(seedTake({{"force-factor", 0.4}}, {Quantity::current, Quantity::displacement}), 2));
     CHECK(ladder.verdict == Verdict::unknownEffect);
     CHECK(added(ladder) == std::vector<std::string> {"force-factor"});
 }
 
 TEST_CASE("Four effects at once are all named", "[improve][slow]")
 {
-    const auto ladder = improve(seedTake({{"force-factor", 0.3}, {"stiffness", 0.3}, {"inductance-position", 0.25}, {"friction", 0.2}}));
-    CHECK_THAT(added(ladder), Catch::UnorderedEquals(std::vector<std::string> {"force-factor", "stiffness", "inductance-position", "friction"}));
+    const auto ladder = improve(
+        seedTake({{"force-factor", 0.3}, {"stiffness", 0.3}, {"inductance-position", 0.25}, {"friction", 0.2}}));
+    CHECK_THAT(added(ladder), Catch::UnorderedEquals(std::vector<std::string> {"force-factor", "stiffness",
+                                                                               "inductance-position", "friction"}));
     for (const auto& rung : ladder.rungs)
         for (const auto& channel : rung.comparison.channels)
             UNSCOPED_INFO(rung.added << " " << name(channel.quantity) << " " << channel.total.db << " dB");

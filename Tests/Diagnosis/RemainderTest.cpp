@@ -58,7 +58,7 @@ ResidualCurve curveOf(const char* residual, const char* against, double db, cons
     return curve;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("What is left is told by channel, band, kind and growth", "[remainder]")
 {
@@ -67,14 +67,16 @@ TEST_CASE("What is left is told by channel, band, kind and growth", "[remainder]
     const auto& part = remainder.channels.front();
     CHECK(part.db == -40.0);
     CHECK(part.aboveNoiseDb.value() == Approx(20.0));
-    CHECK(part.repeats.value() == Approx(0.99));   // all but the hundredth that is noise
+    CHECK(part.repeats.value() == Approx(0.99));  // all but the hundredth that is noise
     CHECK((part.low > 40.0 && part.low < 50.0));
     CHECK((part.high > 65.0 && part.high < 80.0));
     CHECK(part.growth.value() == Approx(6.0 / (20.0 * std::log10(4.0))));
-    REQUIRE(remainder.looksLike.size() == 1);   // a narrow band of the excited lines
+    REQUIRE(remainder.looksLike.size() == 1);  // a narrow band of the excited lines
     CHECK_THAT(remainder.looksLike.front(), Catch::StartsWith("another resonance near"));
-    CHECK_THAT(inWords(remainder), Catch::StartsWith("current error at -40.0 dB") && Catch::EndsWith(remainder.looksLike.front()));
-    CHECK(inFewWords(remainder) == "current error at -40.0 dB over noise at -60.0 dB; it looks like " + remainder.looksLike.front());
+    CHECK_THAT(inWords(remainder),
+               Catch::StartsWith("current error at -40.0 dB") && Catch::EndsWith(remainder.looksLike.front()));
+    CHECK(inFewWords(remainder)
+          == "current error at -40.0 dB over noise at -60.0 dB; it looks like " + remainder.looksLike.front());
     CHECK_THAT(inWords(remainder), Catch::Contains("current error at -40.0 dB over noise at -60.0 dB"));
 }
 
@@ -87,20 +89,27 @@ TEST_CASE("The shape of the missing force says what it looks like", "[remainder]
         return remainderOf(comparison).looksLike;
     };
     const auto touches = [](double x) { return x > 0.7 ? -(x - 0.7) : 0.0; };
-    auto words = likeness({curveOf("force", "x", -20.0, touches, 0.02), curveOf("force", "v", -20.0, [](double) { return 0.0; }, 0.1)});
+    auto words = likeness(
+        {curveOf("force", "x", -20.0, touches, 0.02), curveOf(
+                                                          "force", "v", -20.0, [](double) { return 0.0; }, 0.1)});
     REQUIRE(words.size() == 1);
     CHECK_THAT(words.front(), Catch::Contains("contact on one side") && Catch::Contains("+2 mm"));
 
-    words = likeness({curveOf("force", "v", -20.0, [](double v) { return v * std::abs(v); }, 0.05)});
+    words = likeness({curveOf(
+        "force", "v", -20.0, [](double v) { return v * std::abs(v); }, 0.05)});
     REQUIRE(words.size() == 1);
     CHECK_THAT(words.front(), Catch::Contains("a force that depends on v"));
 
-    words = likeness({curveOf("force", "x", -20.0, [](double) { return 0.01; }, 0.5)});
+    words = likeness({curveOf(
+        "force", "x", -20.0, [](double) { return 0.01; }, 0.5)});
     REQUIRE(words.size() == 1);
     CHECK_THAT(words.front(), Catch::Contains("a force with a memory"));
 
     // A clear curve of a voltage that is far smaller is a symptom.
-    words = likeness({curveOf("force", "x", -20.0, [](double) { return 0.01; }, 0.5), curveOf("voltage", "i", -50.0, [](double i) { return i; }, 0.0)});
+    words = likeness({curveOf(
+                          "force", "x", -20.0, [](double) { return 0.01; }, 0.5),
+                      curveOf(
+                          "voltage", "i", -50.0, [](double i) { return i; }, 0.0)});
     REQUIRE(words.size() == 1);
     CHECK_THAT(words.front(), Catch::Contains("a force with a memory"));
 }
@@ -108,7 +117,8 @@ TEST_CASE("The shape of the missing force says what it looks like", "[remainder]
 TEST_CASE("What is left survives its document, and older files have none", "[remainder]")
 {
     auto comparison = oneChannel();
-    comparison.residuals = {curveOf("force", "x", -20.0, [](double x) { return x * x * x; }, 0.05)};
+    comparison.residuals = {curveOf(
+        "force", "x", -20.0, [](double x) { return x * x * x; }, 0.05)};
     comparison.channels.front().wanderDb = -55.0;
     const auto document = toJson(remainderOf(comparison));
     const nlohmann::json parsed = nlohmann::json::parse(document.dump());
@@ -151,7 +161,9 @@ TEST_CASE("Noise that is as large as each level is no wandering", "[remainder]")
     for (auto& channel : take.channels)
         for (std::size_t n = 0; n < channel.samples.size(); ++n) {
             const double level = e.levels[std::min(n / perLevel, e.levels.size() - 1)];
-            channel.samples[n] += level * std::normal_distribution<double>(0.0, channel.quantity == Quantity::force ? 1e-4 : 1e-3)(random);
+            channel.samples[n] += level
+                                  * std::normal_distribution<double>(
+                                      0.0, channel.quantity == Quantity::force ? 1e-4 : 1e-3)(random);
         }
     CHECK_FALSE(wanderDb(take, *take.find(Quantity::displacement)));
 }

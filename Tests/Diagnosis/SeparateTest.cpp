@@ -19,12 +19,9 @@ namespace {
 Model seedModel(double mass = 1.0, double motor = 1.0)
 {
     auto model = makeModel("electrodynamic");
-    const std::pair<const char*, double> base[] {{"Re", 3.3},
-                                                 {"Le", 266e-6},
-                                                 {"Bl", 4.95 * std::sqrt(mass) * motor},
-                                                 {"m", 14.35e-3 * mass},
-                                                 {"Rms", 0.786 * mass},
-                                                 {"K", 1852.0 * mass}};
+    const std::pair<const char*, double> base[] {
+        {"Re", 3.3},           {"Le", 266e-6},      {"Bl", 4.95 * std::sqrt(mass) * motor}, {"m", 14.35e-3 * mass},
+        {"Rms", 0.786 * mass}, {"K", 1852.0 * mass}};
     for (const auto& [name, value] : base)
         model.baseParameter(name).value = value;
     return model;
@@ -45,21 +42,25 @@ Model hardening(double motor = 1.0)
 Record recordOf(std::initializer_list<Quantity> kept)
 {
     auto take = seedTake({});
-    std::erase_if(take.channels, [&](const Channel& c) { return std::find(kept.begin(), kept.end(), c.quantity) == kept.end(); });
+    std::erase_if(take.channels,
+                  [&](const Channel& c) { return std::find(kept.begin(), kept.end(), c.quantity) == kept.end(); });
     return makeRecord(take);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A hardening suspension shows in the displacement, or in what is played louder", "[diagnose]")
 {
     // The current knows little of a cone that a weak motor moves.
     constexpr double weak = 0.3;
-    const auto unseen = whatParts(seedModel(1.0, weak), hardening(weak), recordOf({Quantity::voltage, Quantity::current}));
+    const auto unseen = whatParts(seedModel(1.0, weak), hardening(weak),
+                                  recordOf({Quantity::voltage, Quantity::current}));
     INFO(unseen);
     CHECK_THAT(unseen, Catch::Contains("easure the displacement, too"));
     // The odd part of the error grows by 12 dB.
-    const auto seen = whatParts(seedModel(), hardening(), recordOf({Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure}));
+    const auto seen = whatParts(
+        seedModel(), hardening(),
+        recordOf({Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure}));
     INFO(seen);
     CHECK_THAT(seen, Catch::Contains("6 dB louder"));
     CHECK_THAT(seen, !Catch::Contains("too ("));

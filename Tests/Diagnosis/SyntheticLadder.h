@@ -65,7 +65,9 @@ inline Comparison syntheticComparison(std::size_t rung)
             ErrorSpectrum s;
             for (double f = 16.0; f < 8000.0; f *= 1.03) {
                 const double resonance = 1.0 / std::hypot(1.0 - f * f / 3025.0, f / 120.0);
-                const double shape = quantity == Quantity::pressure ? resonance * f * f / 3025.0 / (1.0 + f / 3000.0) : quantity == Quantity::current ? 1.0 / (1.0 + resonance) : resonance;
+                const double shape = quantity == Quantity::pressure  ? resonance * f * f / 3025.0 / (1.0 + f / 3000.0)
+                                     : quantity == Quantity::current ? 1.0 / (1.0 + resonance)
+                                                                     : resonance;
                 const double measured = size * gain * shape * (1.0 + 0.1 * std::sin(f / 37.0)) / std::sqrt(f);
                 s.frequency.push_back(f);
                 s.measured.push_back(measured);
@@ -87,8 +89,9 @@ inline Comparison syntheticComparison(std::size_t rung)
     const struct {
         const char *residual, *unit, *against, *againstUnit;
         double range, size;
-    } curves[] = {{"force", "N", "x", "m", 6e-3, 2.0},  {"force", "N", "v", "m/s", 1.1, 0.4},  {"force", "N", "i", "A", 2.0, 0.5},
-                  {"voltage", "V", "x", "m", 6e-3, 0.3}, {"voltage", "V", "v", "m/s", 1.1, 0.6}, {"voltage", "V", "i", "A", 2.0, 0.2}};
+    } curves[] = {{"force", "N", "x", "m", 6e-3, 2.0},    {"force", "N", "v", "m/s", 1.1, 0.4},
+                  {"force", "N", "i", "A", 2.0, 0.5},     {"voltage", "V", "x", "m", 6e-3, 0.3},
+                  {"voltage", "V", "v", "m/s", 1.1, 0.6}, {"voltage", "V", "i", "A", 2.0, 0.2}};
     for (const auto& k : curves) {
         ResidualCurve r {k.residual, k.unit, k.against, k.againstUnit, {}, {}, {}, k.size > 1.0 ? -20.0 : -40.0};
         for (int n = -20; n <= 20; ++n) {
@@ -106,12 +109,19 @@ inline Comparison syntheticComparison(std::size_t rung)
 inline LadderFile syntheticLadder()
 {
     LadderFile file;
-    file.take = {"takes/mid \u00b5 <b>&", "Midbass <script>alert(1)</script>", 48000.0, 12.3,
-                 {"voltage", "current", "displacement", "pressure"}, {0.44, 1.7, 4.4}, 4, 3};
+    file.take = {"takes/mid \u00b5 <b>&",
+                 "Midbass <script>alert(1)</script>",
+                 48000.0,
+                 12.3,
+                 {"voltage", "current", "displacement", "pressure"},
+                 {0.44, 1.7, 4.4},
+                 4,
+                 3};
     auto& ladder = file.ladder;
     ladder.verdict = Verdict::complete;
     ladder.sentence = "The model is complete: what it leaves is at the noise of the take.";
-    ladder.problems = {{"hum", Quantity::pressure, -48.2, "dB", false, "The pressure channel holds hum of 50 Hz, 48 dB below its signal."}};
+    ladder.problems = {{"hum", Quantity::pressure, -48.2, "dB", false,
+                        "The pressure channel holds hum of 50 Hz, 48 dB below its signal."}};
     ladder.withdrawn = {catalogue().back()->id()};
     for (std::size_t k = 0; k < 4; ++k) {
         Rung rung;
@@ -139,7 +149,8 @@ inline LadderFile syntheticLadder()
                     ranked.confirmedErrorDb[quantity] = error.db - 17.5 / static_cast<double>(1 + j - k);
             }
             ranked.significant = j == k && k < 3;
-            ranked.reason = "The residual bends like a cube at all levels; odd detection lines stand at -23 dB, even ones at the noise.";
+            ranked.reason = "The residual bends like a cube at all levels; odd detection lines stand at -23 dB, even "
+                            "ones at the noise.";
             rung.diagnosis.ranking.push_back(std::move(ranked));
         }
         if (k == 1) {
@@ -159,4 +170,4 @@ inline LadderFile syntheticLadder()
     return file;
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

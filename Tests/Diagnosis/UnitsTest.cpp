@@ -76,8 +76,8 @@ Measurement benchTake(const std::string& effect, std::vector<Quantity> channels)
 
 /// What must not depend on units.
 struct Outcome {
-    std::string steps;        ///< verdict, effects, those taken back
-    std::vector<double> dB;   ///< by rung and channel
+    std::string steps;       ///< verdict, effects, those taken back
+    std::vector<double> dB;  ///< by rung and channel
 };
 
 Outcome outcomeOf(const Take& take)
@@ -112,7 +112,7 @@ double apart(const Outcome& a, const Outcome& b)
     return worst;
 }
 
-constexpr double tolerated = 0.01;   // dB: what rounding may do
+constexpr double tolerated = 0.01;  // dB: what rounding may do
 
 template <class AnyTake>
 void requireSameLadder(const AnyTake& take, const Outcome& plain, const Factors& factors)
@@ -123,7 +123,7 @@ void requireSameLadder(const AnyTake& take, const Outcome& plain, const Factors&
     CHECK(apart(other, plain) < tolerated);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A circuit read as force and displacement climbs the same ladder in any unit", "[units]")
 {
@@ -131,7 +131,8 @@ TEST_CASE("A circuit read as force and displacement climbs the same ladder in an
     const auto plain = outcomeOf(take);
     CAPTURE(plain.dB);
     REQUIRE(plain.steps == "complete  stiffness");
-    for (const auto& [force, displacement] : {std::pair {1e-6, 1e6}, {1e6, 1e-6}, {1e6, 1e6}, {1e-6, 1e-6}, {3.4e-3, 3.4e-3}})
+    for (const auto& [force, displacement] :
+         {std::pair {1e-6, 1e6}, {1e6, 1e-6}, {1e6, 1e6}, {1e-6, 1e-6}, {3.4e-3, 3.4e-3}})
         requireSameLadder(take, plain, {{Quantity::force, force}, {Quantity::displacement, displacement}});
 }
 
@@ -155,7 +156,7 @@ TEST_CASE("A frequency response climbs the same ladder in any unit", "[units]")
     for (double f = 15.0; f < 8000.0; f *= 1.05)
         spectra.frequency.push_back(f);
     auto responses = respond(truth, {current, displacement}, spectra.frequency);
-    for (auto& response : responses)   // as rough as measured curves are
+    for (auto& response : responses)  // as rough as measured curves are
         for (std::size_t k = 0; k < response.value.size(); ++k)
             response.value[k] *= 1.0 + std::polar(3e-3, 2.4 * static_cast<double>(k * k));
     spectra.channels = {{voltage, "V", std::vector<std::complex<double>>(spectra.frequency.size(), 1.0)},
@@ -163,7 +164,8 @@ TEST_CASE("A frequency response climbs the same ladder in any unit", "[units]")
                         {displacement, "m", responses[1].value}};
     const auto plain = outcomeOf(spectra);
     CAPTURE(plain.dB);
-    REQUIRE(plain.steps == "unknown-effect  eddy-currents");   // what is left of a response is never known to be noise
+    // what is left of a response is never known to be noise
+    REQUIRE(plain.steps == "unknown-effect  eddy-currents");
     for (const auto& [u, i, x] : {std::tuple {1e-6, 1e6, 1e6}, {1e6, 2e-6, 1e-6}, {3.4, 5e3, 1e-3}})
         requireSameLadder(spectra, plain, {{voltage, u}, {current, i}, {displacement, x}});
 }
@@ -173,7 +175,7 @@ int countSame(const std::string& what, const Measurement& take, int draws, std::
 {
     const auto plain = outcomeOf(take);
     std::printf("%s: %s, %.2f dB\n", what.c_str(), plain.steps.c_str(), plain.dB.empty() ? 0.0 : plain.dB.back());
-    REQUIRE_FALSE(plain.dB.empty());   // two failures are no ladders
+    REQUIRE_FALSE(plain.dB.empty());  // two failures are no ladders
     int same = 0;
     for (int draw = 0; draw < draws; ++draw) {
         const auto factors = drawFactors(take, seed + static_cast<std::uint64_t>(draw));

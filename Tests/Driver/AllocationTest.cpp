@@ -38,7 +38,7 @@ int allocationsIn(const Work& work)
     return allocations;
 }
 
-} // namespace
+}  // namespace
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
@@ -65,7 +65,8 @@ TEST_CASE("No effect allocates when it is asked", "[effects]")
     CHECK(allocationsIn([&] {
               for (int n = 0; n < 100; ++n)
                   dynamics.rates(state.data(), 1.0, rates.data());
-          }) == 0);
+          })
+          == 0);
     CHECK(rates[0] != 0.0);
 }
 

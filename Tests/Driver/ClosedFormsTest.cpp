@@ -66,8 +66,8 @@ std::vector<double> tones(double sampleRate, double seconds)
     for (std::size_t n = 0; n < u.size(); ++n) {
         const double t = static_cast<double>(n) / sampleRate, bell = (t - 0.5 * seconds) / (0.15 * seconds);
         u[n] = 6.0 * std::exp(-0.5 * bell * bell)
-             * (std::sin(2.0 * std::numbers::pi * 40.0 * t) + 0.5 * std::sin(2.0 * std::numbers::pi * 170.0 * t)
-                + 0.3 * std::sin(2.0 * std::numbers::pi * 910.0 * t));
+               * (std::sin(2.0 * std::numbers::pi * 40.0 * t) + 0.5 * std::sin(2.0 * std::numbers::pi * 170.0 * t)
+                  + 0.3 * std::sin(2.0 * std::numbers::pi * 910.0 * t));
     }
     return u;
 }
@@ -76,14 +76,14 @@ std::vector<double> tones(double sampleRate, double seconds)
 Model modelOf(const bench::Loudspeaker& speaker)
 {
     auto model = makeModel("electrodynamic");
-    const std::pair<const char*, double> base[] {{"Re", speaker.Re}, {"Le", speaker.Le}, {"Bl", speaker.Bl},
-                                                 {"m", speaker.m}, {"Rms", speaker.Rms}, {"K", speaker.K}};
+    const std::pair<const char*, double> base[] {{"Re", speaker.Re}, {"Le", speaker.Le},   {"Bl", speaker.Bl},
+                                                 {"m", speaker.m},   {"Rms", speaker.Rms}, {"K", speaker.K}};
     for (const auto& [name, value] : base)
         model.baseParameter(name).value = value;
     return model;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A cycle of friction loses the area of its loop, 4 Fc (X - r tanh(X/r)), at any frequency", "[effects]")
 {
@@ -91,7 +91,8 @@ TEST_CASE("A cycle of friction loses the area of its loop, 4 Fc (X - r tanh(X/r)
         for (const double frequency : {15.0, 300.0}) {
             INFO(X << " m, " << frequency << " Hz");
             const double limit = 0.7, reach = 3e-4;
-            CHECK(lossOfFriction(frequency, X, limit, reach) == Approx(4.0 * limit * (X - reach * std::tanh(X / reach))).epsilon(2e-3));
+            CHECK(lossOfFriction(frequency, X, limit, reach)
+                  == Approx(4.0 * limit * (X - reach * std::tanh(X / reach))).epsilon(2e-3));
         }
 }
 
@@ -111,13 +112,15 @@ TEST_CASE("A steady current heats the coil by its thermal resistance times its p
         CHECK(std::abs(r) < 1e-9 * power);
 }
 
-TEST_CASE("The voltage sees the slope of the flux: at a bias d(Le(i) i)/di, which goes on beyond the visited currents", "[effects]")
+TEST_CASE("The voltage sees the slope of the flux: at a bias d(Le(i) i)/di, which goes on beyond the visited currents",
+          "[effects]")
 {
     const Alone alone(effectNamed("inductance-current"));
     const double I = alone.extent.current, d = 1e-5 * I;
     const auto flux = [&](double i) { return i * alone.effect.lawAt(alone.extent, alone.parameters.data(), i); };
     for (const double bias : {-1.7, -0.6, 0.2, 0.95, 1.4})
-        CHECK(alone.at(bias * I, 0.0, 0.0).inductance == Approx((flux(bias * I + d) - flux(bias * I - d)) / (2.0 * d)).epsilon(1e-6));
+        CHECK(alone.at(bias * I, 0.0, 0.0).inductance
+              == Approx((flux(bias * I + d) - flux(bias * I - d)) / (2.0 * d)).epsilon(1e-6));
     CHECK(alone.at(1.4 * I, 0.0, 0.0).inductance == Approx(alone.at(I, 0.0, 0.0).inductance).epsilon(1e-12));
 }
 
@@ -150,11 +153,15 @@ TEST_CASE("Friction and heat move the model as they move the virtual bench's lou
         heat.magnetResistance = 8.0;
         heat.magnetCapacity = 0.8 / heat.magnetResistance;
         speaker.coilHeating = heat;
-        // The ladder's partial fractions: with a = 1/(Rc Cc), b = 1/(Rc Cm), c = 1/(Rm Cm) its poles solve s^2 + (a + b + c) s + a c = 0.
-        const double a = 1.0 / (heat.coilResistance * heat.coilCapacity), b = 1.0 / (heat.coilResistance * heat.magnetCapacity),
+        // The ladder's partial fractions: with a = 1/(Rc Cc), b = 1/(Rc Cm), c = 1/(Rm Cm) its poles solve s^2 + (a + b
+        // + c) s + a c = 0.
+        const double a = 1.0 / (heat.coilResistance * heat.coilCapacity),
+                     b = 1.0 / (heat.coilResistance * heat.magnetCapacity),
                      c = 1.0 / (heat.magnetResistance * heat.magnetCapacity);
-        const double half = 0.5 * (a + b + c), root = std::sqrt(half * half - a * c), fast = half + root, slow = half - root;
-        const auto weight = [&](double p, double q) { return (b + c - p) / (q - p) / heat.coilCapacity / p; };   // K/W of the pole
+        const double half = 0.5 * (a + b + c), root = std::sqrt(half * half - a * c), fast = half + root,
+                     slow = half - root;
+        // K/W of the pole
+        const auto weight = [&](double p, double q) { return (b + c - p) / (q - p) / heat.coilCapacity / p; };
         const double perKelvin = heat.alpha * speaker.Re, rise = perKelvin * weight(fast, slow);
         extent.duration = 1.0;
         model = withEffect(model, effectNamed("coil-heating"), extent);
@@ -181,7 +188,7 @@ TEST_CASE("A slow memory starts each section where the sections before have left
     constexpr double sampleRate = 1000.0, Re = 4.0, i = 1.5;
     Record record;
     record.sampleRate = sampleRate;
-    for (const int n : {1, 0, 2}) {   // in any order
+    for (const int n : {1, 0, 2}) {  // in any order
         Section section;
         section.periodic = true;
         section.window = 100;
@@ -194,7 +201,8 @@ TEST_CASE("A slow memory starts each section where the sections before have left
     extent.duration = 3.0;
     const double P = Re * i * i;
     auto heat = component("coil-heating", extent, {0.0, std::log10(0.8), 0.3, std::log10(5.0)});
-    const std::vector<PeriodicMotion> motions(3, {std::vector<double>(100, i), std::vector<double>(100, 0.0), std::vector<double>(100, 0.0)});
+    const std::vector<PeriodicMotion> motions(
+        3, {std::vector<double>(100, i), std::vector<double>(100, 0.0), std::vector<double>(100, 0.0)});
     const auto starts = historyOf(heat, record, motions, {0.75, 0.75, 0.25}, false);
     const double times[] {1.0, 0.0, 2.5};
     for (std::size_t n = 0; n < 3; ++n) {
@@ -230,8 +238,9 @@ TEST_CASE("Hysteresis starts where a motion that has always gone on has brought 
     }
     auto extent = someExtent(1800.0);
     extent.velocity = w * X;
-    for (const double size : {1.0, 4.0}) {   // also where one period forgets little
-        const auto start = settledMemory(component("friction", extent, {1.0, reach * size, 0.0}), motion, 0, sampleRate);
+    for (const double size : {1.0, 4.0}) {  // also where one period forgets little
+        const auto start = settledMemory(component("friction", extent, {1.0, reach * size, 0.0}), motion, 0,
+                                         sampleRate);
         for (Eigen::Index k = 0; k < start.value.size(); ++k)
             CHECK(start.value[k] == Approx(std::tanh(X / (reach * size))).epsilon(2e-3));
     }

@@ -16,7 +16,7 @@ using namespace excursion;
 namespace {
 
 struct Mode {
-    double frequency, quality, gain;   // Hz, 1, change of the pressure at the resonance
+    double frequency, quality, gain;  // Hz, 1, change of the pressure at the resonance
 };
 
 Model midbass()
@@ -47,7 +47,8 @@ std::vector<ResponseTarget> measured(const std::vector<Mode>& modes, double nois
             if (quantity == Quantity::pressure)
                 for (const auto& mode : modes)
                     factor += mode.gain / mode.quality * f * f
-                              / std::complex<double>(mode.frequency * mode.frequency - f * f, f * mode.frequency / mode.quality);
+                              / std::complex<double>(mode.frequency * mode.frequency - f * f,
+                                                     f * mode.frequency / mode.quality);
             target.deviation.push_back(noise * std::abs(target.value[k]));
             target.value[k] *= factor + std::complex<double>(normal(random), normal(random));
         }
@@ -79,7 +80,7 @@ Model found(const std::vector<ResponseTarget>& targets)
     return model;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Narrow modes of the cone are found in the responses, wherever they lie", "[breakup]")
 {

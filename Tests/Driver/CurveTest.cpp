@@ -29,7 +29,7 @@ curve::ValueAndSlope<double> evaluate(int n, const std::vector<double>& c, doubl
 
 constexpr double range = 3.7e-3;
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A law's basis is zero at rest", "[curve]")
 {
@@ -46,7 +46,7 @@ TEST_CASE("A law's basis is the cosine form of the Chebyshev polynomials, less t
             const double truth = std::cos(k * std::acos(s)) - std::cos(0.5 * k * std::numbers::pi);
             worst = std::max(worst, std::abs(curve::valueAt(k, unit(k, k).data(), s * range, range) - truth));
         }
-        CHECK(worst < 1e-9);   // the monomials of degree 18 cancel to about seven digits fewer than a double has
+        CHECK(worst < 1e-9);  // the monomials of degree 18 cancel to about seven digits fewer than a double has
     }
 }
 
@@ -97,9 +97,11 @@ TEST_CASE("The band of a law is that of all its coefficients, also where it is n
         };
         for (std::size_t k = 0; k < component.parameters.size(); ++k) {
             INFO(effect->id() << ", " << component.parameters[k].name);
-            const double deviation = 1e-3 * std::max(std::abs(component.parameters[k].value), 1e-2 * component.extent.scale);
+            const double deviation = 1e-3
+                                     * std::max(std::abs(component.parameters[k].value), 1e-2 * component.extent.scale);
             model.covariance = Eigen::MatrixXd::Zero(count, count);
-            model.covariance(first + static_cast<Eigen::Index>(k), first + static_cast<Eigen::Index>(k)) = deviation * deviation;
+            model.covariance(first + static_cast<Eigen::Index>(k), first + static_cast<Eigen::Index>(k)) = deviation
+                                                                                                           * deviation;
             for (const auto& curve : laws(model, 11)) {
                 const double largest = *std::max_element(curve.halfWidth.begin(), curve.halfWidth.end());
                 for (std::size_t n = 0; n < curve.argument.size(); ++n) {

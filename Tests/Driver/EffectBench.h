@@ -21,7 +21,7 @@ inline Extent someExtent(double scale)
     extent.lowFrequency = 15.0;
     extent.highFrequency = 8000.0;
     extent.scale = scale;
-    extent.duration = 0.1;   // slow memories have settled within a second
+    extent.duration = 0.1;  // slow memories have settled within a second
     return extent;
 }
 
@@ -31,7 +31,12 @@ inline double someScale(const Effect& effect)
     const auto base = effect.sizedBy();
     if (base.empty())
         return effect.electrical() || !effect.felt() ? 0.02 : 1800.0;
-    return base == "Re" ? 3.3 : base == "Bl" ? 5.0 : base == "K" ? 1800.0 : base == "Le" ? 3e-4 : base == "m" ? 0.014 : 0.8;
+    return base == "Re"   ? 3.3
+           : base == "Bl" ? 5.0
+           : base == "K"  ? 1800.0
+           : base == "Le" ? 3e-4
+           : base == "m"  ? 0.014
+                          : 0.8;
 }
 
 /// What makes a strength strong: a share of what is plausible, where the effect says what that is, else of its scale.
@@ -58,15 +63,20 @@ struct Alone {
         effect.prepare(extent, parameters.data(), coefficients.data());
     }
 
-    std::vector<double> rest() const { return std::vector<double>(static_cast<std::size_t>(effect.memorySize(extent)), 0.0); }
+    std::vector<double> rest() const
+    {
+        return std::vector<double>(static_cast<std::size_t>(effect.memorySize(extent)), 0.0);
+    }
 
     /// @param rate  the memory's rates; may be null
-    Balance<double> at(double i, double x, double v, const std::vector<double>& memory, std::vector<double>* rate = nullptr) const
+    Balance<double> at(double i, double x, double v, const std::vector<double>& memory,
+                       std::vector<double>* rate = nullptr) const
     {
         thread_local std::vector<double> unused;
         unused.resize(memory.size());
         Balance<double> sum;
-        effect.contribute(extent, coefficients.data(), {i, x, v}, memory.data(), rate ? rate->data() : unused.data(), sum);
+        effect.contribute(extent, coefficients.data(), {i, x, v}, memory.data(), rate ? rate->data() : unused.data(),
+                          sum);
         return sum;
     }
     Balance<double> at(double i, double x, double v) const { return at(i, x, v, rest()); }
@@ -87,4 +97,4 @@ inline std::vector<std::array<double, 3>> somePoints(const Extent& e)
     return points;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -81,7 +81,8 @@ TEST_CASE("The coil's flux is a potential: d(inductance)/dx is d(fluxSlope)/di",
         const Alone alone(*effect);
         const double dx = 1e-4 * alone.extent.displacement, di = 1e-4 * alone.extent.current;
         for (const auto& [i, x, v] : somePoints(alone.extent)) {
-            const double byPosition = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance) / (2.0 * dx);
+            const double byPosition = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance)
+                                      / (2.0 * dx);
             const double byCurrent = (alone.at(i + di, x, v).fluxSlope - alone.at(i - di, x, v).fluxSlope) / (2.0 * di);
             CHECK(byPosition == Approx(byCurrent).epsilon(1e-5).margin(1e-9));
         }
@@ -98,7 +99,7 @@ TEST_CASE("The force of the current is the motion voltage's twin plus the slope 
         for (const auto& [i, x, v] : somePoints(alone.extent)) {
             const double dv = 1e-3 * alone.extent.velocity;
             const double motionVoltage = (alone.at(i, x, v + dv).drop - alone.at(i, x, v - dv).drop) / (2.0 * dv);
-            double coenergySlope = 0.0;   // Simpson's rule, exact for a flux up to third order in i
+            double coenergySlope = 0.0;  // Simpson's rule, exact for a flux up to third order in i
             constexpr int steps = 40;
             for (int n = 0; n <= steps; ++n) {
                 const double weight = n == 0 || n == steps ? 1.0 : n % 2 ? 4.0 : 2.0;
@@ -136,7 +137,8 @@ namespace {
 double fluxPerCurrent(const Alone& alone, double i, double x)
 {
     constexpr double node[] {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
-    constexpr double weight[] {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    constexpr double weight[] {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                               0.2369268850561891};
     double sum = 0.0;
     for (int part = 0; part < 8; ++part)
         for (int n = 0; n < 5; ++n)
@@ -144,7 +146,7 @@ double fluxPerCurrent(const Alone& alone, double i, double x)
     return sum;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A law is what the effect adds to the base parameter of that name", "[effects]")
 {
@@ -156,7 +158,10 @@ TEST_CASE("A law is what the effect adds to the base parameter of that name", "[
         const Alone alone(*effect);
         CHECK(std::abs(effect->lawAt(alone.extent, alone.parameters.data(), 0.0)) < 1e-14 * alone.extent.scale);
         for (const auto& [i, x, v] : somePoints(alone.extent)) {
-            const double difference = effect->lawAt(alone.extent, alone.parameters.data(), law->argument == "v" ? v : law->argument == "i" ? i : x);
+            const double difference = effect->lawAt(alone.extent, alone.parameters.data(),
+                                                    law->argument == "v"   ? v
+                                                    : law->argument == "i" ? i
+                                                                           : x);
             const auto sum = alone.at(i, x, v);
             const double added = law->base == "Bl"   ? sum.drop / v
                                  : law->base == "Le" ? fluxPerCurrent(alone, i, x)
@@ -183,24 +188,32 @@ TEST_CASE("Jets carry the derivatives that finite differences show, by every par
                     Alone moved = alone;
                     std::array<double, 3> motion {i, x, v};
                     auto state = memory;
-                    (which < P ? moved.parameters[which] : which < P + 3 ? motion[which - P] : state[which - P - 3]) += by;
+                    (which < P       ? moved.parameters[which]
+                     : which < P + 3 ? motion[which - P]
+                                     : state[which - P - 3]) += by;
                     moved.prepare();
                     std::vector<double> result(M);
                     const auto sum = moved.at(motion[0], motion[1], motion[2], state, &result);
                     result.insert(result.end(), {sum.inductance, sum.fluxSlope, sum.drop, sum.force, sum.mass});
                     return result;
                 };
-                const double size = which < P ? (alone.parameters[which] != 0.0 ? std::abs(alone.parameters[which]) : 1e-3 * alone.extent.scale)
+                const double size = which < P    ? (alone.parameters[which] != 0.0 ? std::abs(alone.parameters[which])
+                                                                                   : 1e-3 * alone.extent.scale)
                                     : which == P ? alone.extent.current
                                     : which == P + 1 ? alone.extent.displacement
-                                    : which == P + 2 ? alone.extent.velocity : 1e-3;
+                                    : which == P + 2 ? alone.extent.velocity
+                                                     : 1e-3;
                 const double step = 1e-5 * size;
                 const auto above = evaluate(step), below = evaluate(-step), here = evaluate(0.0);
 
-                std::vector<Jet> parameters(alone.parameters.begin(), alone.parameters.end()), state(memory.begin(), memory.end()), rate(M);
+                std::vector<Jet> parameters(alone.parameters.begin(), alone.parameters.end()),
+                    state(memory.begin(), memory.end()), rate(M);
                 Motion<Jet> motion {Jet(i), Jet(x), Jet(v)};
-                Jet& moved = which < P ? parameters[which] : which == P ? motion.i : which == P + 1 ? motion.x
-                             : which == P + 2 ? motion.v : state[which - P - 3];
+                Jet& moved = which < P        ? parameters[which]
+                             : which == P     ? motion.i
+                             : which == P + 1 ? motion.x
+                             : which == P + 2 ? motion.v
+                                              : state[which - P - 3];
                 moved.v[5] = 1.0;
                 std::vector<Jet> coefficients(alone.coefficients.size());
                 effect->prepare(alone.extent, parameters.data(), coefficients.data());
@@ -219,24 +232,27 @@ TEST_CASE("Jets carry the derivatives that finite differences show, by every par
 namespace {
 
 struct Cycle {
-    double absorbed = 0.0;    ///< J that the effect takes in over one cycle of a prescribed motion and current
-    double exchanged = 0.0;   ///< J that go back and forth
+    double absorbed = 0.0;   ///< J that the effect takes in over one cycle of a prescribed motion and current
+    double exchanged = 0.0;  ///< J that go back and forth
 };
 
-/// i = I cos wt, x = X cos(wt + shift), many cycles for the memory, then one that counts. Power taken from the circuit is
-/// i (drop + d(phi)/dt), from the cone -F v.
+/// i = I cos wt, x = X cos(wt + shift), many cycles for the memory, then one that counts. Power taken from the circuit
+/// is i (drop + d(phi)/dt), from the cone -F v.
 Cycle cycle(const Alone& alone, double frequency, double shift)
 {
     constexpr int steps = 200;
-    constexpr double settling = 1.0, fastest = 6e-6;   // s: the slowest cells of the memory, and a step that the quickest take
+    // s: the slowest cells of the memory, and a step that the quickest take
+    constexpr double settling = 1.0, fastest = 6e-6;
     auto memory = alone.rest();
     const int cycles = memory.empty() ? 1 : 1 + static_cast<int>(std::ceil(settling * frequency));
     const double w = 2.0 * std::numbers::pi * frequency, h = 1.0 / (frequency * steps);
     const int inner = static_cast<int>(std::ceil(h / fastest));
-    const double I = 0.8 * alone.extent.current, X = std::min(0.9 * alone.extent.displacement, 0.9 * alone.extent.velocity / w);
+    const double I = 0.8 * alone.extent.current,
+                 X = std::min(0.9 * alone.extent.displacement, 0.9 * alone.extent.velocity / w);
     std::vector<double> k1(memory.size()), k2 = k1, k3 = k1, k4 = k1, stage = k1;
     const auto rates = [&](double t, const std::vector<double>& state, std::vector<double>& rate) {
-        return alone.at(I * std::cos(w * t), X * std::cos(w * t + shift), -w * X * std::sin(w * t + shift), state, &rate);
+        return alone.at(I * std::cos(w * t), X * std::cos(w * t + shift), -w * X * std::sin(w * t + shift), state,
+                        &rate);
     };
     const auto moved = [&](const std::vector<double>& rate, double by) -> const std::vector<double>& {
         for (std::size_t k = 0; k < memory.size(); ++k)
@@ -249,7 +265,8 @@ Cycle cycle(const Alone& alone, double frequency, double shift)
         if (n >= (cycles - 1) * steps) {
             const auto sum = rates(t, memory, k1);
             const double i = I * std::cos(w * t), v = -w * X * std::sin(w * t + shift), di = -w * I * std::sin(w * t);
-            const double electrical = i * (sum.drop + sum.inductance * di + sum.fluxSlope * v), mechanical = -sum.force * v;
+            const double electrical = i * (sum.drop + sum.inductance * di + sum.fluxSlope * v),
+                         mechanical = -sum.force * v;
             result.absorbed += h * (electrical + mechanical);
             result.exchanged += h * (std::abs(electrical) + std::abs(mechanical));
         }
@@ -268,7 +285,7 @@ Cycle cycle(const Alone& alone, double frequency, double shift)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Laws of position and current store energy and give all of it back over a cycle", "[effects]")
 {
@@ -292,7 +309,7 @@ TEST_CASE("Whatever is no law of position or current takes energy in over a cycl
         if (law && law->argument != "v")
             continue;
         Alone alone(*effect);
-        if (law) {   // a resistance that grows
+        if (law) {  // a resistance that grows
             std::fill(alone.parameters.begin(), alone.parameters.end(), 0.0);
             alone.parameters.front() = 0.3 * alone.extent.scale;
             alone.prepare();
@@ -301,7 +318,8 @@ TEST_CASE("Whatever is no law of position or current takes energy in over a cycl
             for (const double shift : {0.0, -1.6}) {
                 INFO(effect->id() << ", " << frequency << " Hz, shift " << shift);
                 const auto energy = cycle(alone, frequency, shift);
-                const double least = effect->parts(alone.extent).empty() ? 1e-3 : 0.0;   // resonators take in next to nothing away from where they ring
+                // resonators take in next to nothing away from where they ring
+                const double least = effect->parts(alone.extent).empty() ? 1e-3 : 0.0;
                 if (effect->felt())
                     CHECK(energy.absorbed > least * energy.exchanged);
                 else

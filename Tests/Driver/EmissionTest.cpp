@@ -24,7 +24,7 @@ double leaving(double t, double depth, double w)
     return s;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A tone from a moving source arrives phase-modulated, as the root of its time of flight says", "[emission]")
 {
@@ -41,7 +41,9 @@ TEST_CASE("A tone from a moving source arrives phase-modulated, as the root of i
     const auto heard = arrival.heard(tone);
     double worst = 0.0;
     for (std::size_t n = 0; n < N; ++n)
-        worst = std::max(worst, std::abs(heard[n] - std::cos(turn * high * leaving(static_cast<double>(n) / rate, depth, turn * low))));
+        worst = std::max(
+            worst,
+            std::abs(heard[n] - std::cos(turn * high * leaving(static_cast<double>(n) / rate, depth, turn * low))));
     CHECK(worst < 2e-6);
     CHECK_FALSE(Arrival(std::vector<double>(N, 0.0), rate).varies());
 }
@@ -68,9 +70,13 @@ TEST_CASE("The phase of a tone heard under a moving cone swings by w x / c", "[e
     const auto line = [&](double f) { return std::abs(P[static_cast<std::size_t>(std::lround(f * N / rate))]); };
     // Sidebands of a phase modulated by beta sin: J_n(beta), each side alike but for the Mach number.
     const double beta = turn * high * x / 343.0;
-    CHECK(std::abs(line(high) / std::abs(std::cyl_bessel_j(0, beta)) / (line(high + low) / std::cyl_bessel_j(1, beta)) - 1.0) < 0.02);
+    CHECK(std::abs(line(high) / std::abs(std::cyl_bessel_j(0, beta)) / (line(high + low) / std::cyl_bessel_j(1, beta))
+                   - 1.0)
+          < 0.02);
     CHECK(std::abs(line(high - low) / line(high + low) - 1.0) < 0.05);
-    CHECK(std::abs(line(high + 2.0 * low) / line(high + low) / (std::cyl_bessel_j(2, beta) / std::cyl_bessel_j(1, beta)) - 1.0) < 0.02);
+    CHECK(std::abs(line(high + 2.0 * low) / line(high + low) / (std::cyl_bessel_j(2, beta) / std::cyl_bessel_j(1, beta))
+                   - 1.0)
+          < 0.02);
 }
 
 TEST_CASE("Modes of the cone are heard and seen, and not felt by the coil", "[emission]")
@@ -78,17 +84,18 @@ TEST_CASE("Modes of the cone are heard and seen, and not felt by the coil", "[em
     auto model = withEffect(makeModel("electrodynamic"), effectNamed("cone-breakup"), someExtent(1.0));
     const auto plain = withoutEffect(model, "cone-breakup");
     auto& p = model.components.back().parameters;
-    p[2].value = 0.3;    // g1
-    p[3].value = -0.2;   // h1
+    p[2].value = 0.3;   // g1
+    p[3].value = -0.2;  // h1
     const double w0 = turn * 8000.0 * std::exp2(0.75 * -3.5);
     std::vector<double> frequency;
     for (double f = 20.0; f < 12000.0; f *= 1.13)
         frequency.push_back(f);
-    const std::vector<Quantity> all {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration, Quantity::pressure};
+    const std::vector<Quantity> all {Quantity::current, Quantity::displacement, Quantity::velocity,
+                                     Quantity::acceleration, Quantity::pressure};
     const auto with = respond(model, all, frequency), without = respond(plain, all, frequency);
     for (std::size_t f = 0; f < frequency.size(); ++f) {
         const std::complex<double> s(0.0, turn * frequency[f]);
-        const auto r = -s * s / (s * s + s * w0 / 5.0 + w0 * w0);   // per displacement of the coil
+        const auto r = -s * s / (s * s + s * w0 / 5.0 + w0 * w0);  // per displacement of the coil
         const auto near = [&](std::size_t q, std::complex<double> factor) {
             return std::abs(with[q].value[f] / without[q].value[f] - factor) < 1e-8;
         };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws that are fed the motion that a take shows: against simulations, against differences, and on takes of the virtual bench.
+// Laws that are fed the motion that a take shows: against simulations, against differences, and on takes of the virtual
+// bench.
 #include "SeedDriver.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/FeedbackError.h"
@@ -16,13 +17,16 @@ namespace {
 
 struct Ready {
     Record record;
-    Model model;   ///< linear, fitted
+    Model model;  ///< linear, fitted
     std::vector<std::size_t> sections;
 };
 
 Ready ready(std::vector<bench::HiddenEffect> hidden)
 {
-    Ready result {makeRecord(seedTake(std::move(hidden), {Quantity::current, Quantity::displacement, Quantity::pressure})), {}, {}};
+    Ready result {
+        makeRecord(seedTake(std::move(hidden), {Quantity::current, Quantity::displacement, Quantity::pressure})),
+        {},
+        {}};
     result.model = startModel(result.record);
     adapt(result.record, result.model);
     result.sections = estimationSections(result.record);
@@ -39,7 +43,8 @@ NormalEquations sumOfFinite(const std::vector<SectionFit>& fits)
     return *sum;
 }
 
-/// All laws of the catalogue that a small cone has, and Doppler, at some strength. Slow ones and friction have their memories from before.
+/// All laws of the catalogue that a small cone has, and Doppler, at some strength. Slow ones and friction have their
+/// memories from before.
 Model bent(Model model, const Record& record, const std::string& only = "")
 {
     const auto extent = visitedExtent(model, record, 3);
@@ -51,21 +56,23 @@ Model bent(Model model, const Record& record, const std::string& only = "")
         auto& component = model.components.back();
         for (auto& p : component.parameters)
             if (p.strength)
-                p.value = std::isfinite(p.prior) ? 0.05 * p.prior * (p.lower < 0.0 ? (sign *= -1.0) : 1.0) : 1.0 / 343.0;
+                p.value = std::isfinite(p.prior) ? 0.05 * p.prior * (p.lower < 0.0 ? (sign *= -1.0) : 1.0)
+                                                 : 1.0 / 343.0;
             else if (std::isfinite(p.prior) && p.lower == 0.0)
                 p.value = 0.3;
     }
     return model;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Without laws to feed the error is that of the simulation", "[fed]")
 {
     const auto [record, model, sections] = ready({{"stiffness", 0.3}});
     const auto active = freeParameters(model);
     const auto simulated = sumOfFinite(outputError(model, record, sections, active, {}));
-    const auto fed = sumOfFinite(feedbackError(model, record, sections, settledMotions(model, record, sections), active, {}));
+    const auto fed = sumOfFinite(
+        feedbackError(model, record, sections, settledMotions(model, record, sections), active, {}));
     CHECK(fed.rows == simulated.rows);
     CHECK(fed.cost == Approx(simulated.cost).epsilon(1e-4));
     // Of the columns the simulation tells less than of the error, as its derivatives may be coarse.
@@ -87,16 +94,18 @@ TEST_CASE("A model is true to the motion that it makes itself", "[fed]")
         std::vector<std::size_t> every;
         for (std::size_t s = 0; s < record.sections.size(); ++s)
             every.push_back(s);
-        for (int pass = 0; pass < 2; ++pass) {   // the history of a slow memory is that of the current that was measured
+        // the history of a slow memory is that of the current that was measured
+        for (int pass = 0; pass < 2; ++pass) {
             const auto made = outputError(model, record, every, {}, run);
             for (const auto s : every)
                 record.sections[s].measured = made[s].predicted;
         }
         const auto motions = shownMotions(model, record, every, settledMotions(model, record, every));
         const auto own = sumOfFinite(feedbackError(model, record, every, motions, {}, run));
-        const auto others = sumOfFinite(feedbackError(linear, record, every, settledMotions(linear, record, every), {}, run)).cost;
+        const auto others =
+            sumOfFinite(feedbackError(linear, record, every, settledMotions(linear, record, every), {}, run)).cost;
         INFO(law->id() << " leaves " << own.cost / own.rows << " of the noise, without it " << others / own.rows);
-        CHECK(others > (law->slow() ? 5e3 : 1e5) * own.cost);   // the history of a slow one is a mean
+        CHECK(others > (law->slow() ? 5e3 : 1e5) * own.cost);  // the history of a slow one is a mean
     }
 }
 
@@ -158,10 +167,12 @@ TEST_CASE("The memories that no parameter moves are just those that say so", "[f
             for (const auto& p : parameters)
                 values.emplace_back(p.value != 0.0 ? p.value : 0.3);
             values[k].v[0] = 1.0;
-            std::vector<Jet> coefficients(static_cast<std::size_t>(law->coefficientCount(extent))), memory(size, Jet(0.1)), rate(size);
+            std::vector<Jet> coefficients(static_cast<std::size_t>(law->coefficientCount(extent))),
+                memory(size, Jet(0.1)), rate(size);
             law->prepare(extent, values.data(), coefficients.data());
             Balance<Jet> sum;
-            law->contribute(extent, coefficients.data(), {Jet(0.5), Jet(3e-4), Jet(0.2)}, memory.data(), rate.data(), sum);
+            law->contribute(extent, coefficients.data(), {Jet(0.5), Jet(3e-4), Jet(0.2)}, memory.data(), rate.data(),
+                            sum);
             for (const auto& r : rate)
                 moved = moved || r.v[0] != 0.0;
         }
@@ -173,7 +184,7 @@ TEST_CASE("The memories that no parameter moves are just those that say so", "[f
 TEST_CASE("Less what the laws add, a take shows the responses of its linear part", "[fed]")
 {
     auto [record, model, sections] = ready({{"force-factor", 0.3}, {"stiffness", 0.3}});
-    CHECK(withoutLaws(model, record).sections.front().measured == record.sections.front().measured);   // no law yet
+    CHECK(withoutLaws(model, record).sections.front().measured == record.sections.front().measured);  // no law yet
     const auto extent = visitedExtent(model, record, 10);
     for (const auto* id : {"force-factor", "stiffness"})
         model = withEffect(model, effectNamed(id), extent);

@@ -45,12 +45,12 @@ Fitted fitLinear(const Measurement& take)
     result.model = startModel(record);
     adapt(record, result.model);
     FitOptions options;
-    options.simulationTolerance = 1e-6;   // the errors of the parameters are far below the noise of a sample
+    options.simulationTolerance = 1e-6;  // the errors of the parameters are far below the noise of a sample
     result.summary = fit(result.model, record, estimationSections(record), options);
     return result;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The driver's parameters come back within their errors from a noisy take", "[fit]")
 {
@@ -72,7 +72,8 @@ TEST_CASE("The driver's parameters come back within their errors from a noisy ta
     REQUIRE(model.covariance.rows() == static_cast<Eigen::Index>(all.size()));
     for (std::size_t k = 0; k < all.size(); ++k)
         if (all[k]->free)
-            CHECK(std::sqrt(model.covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k))) == Approx(all[k]->standardError));
+            CHECK(std::sqrt(model.covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)))
+                  == Approx(all[k]->standardError));
 }
 
 TEST_CASE("The standard errors are those of repeated takes", "[fit][slow]")
@@ -90,7 +91,7 @@ TEST_CASE("The standard errors are those of repeated takes", "[fit][slow]")
     }
     for (const auto& [name, sum] : square) {
         INFO(name);
-        CHECK(sum < 18.2);   // 99.7 % of chi-square with five degrees of freedom
+        CHECK(sum < 18.2);  // 99.7 % of chi-square with five degrees of freedom
     }
 }
 
@@ -189,7 +190,8 @@ TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][s
     auto model = startModel(record);
     adapt(record, model);
     const auto extent = visitedExtent(model, record, 4);
-    model = withEffect(withEffect(model, effectNamed("eddy-currents"), extent, 1), effectNamed("inductance-position"), extent);
+    model = withEffect(withEffect(model, effectNamed("eddy-currents"), extent, 1), effectNamed("inductance-position"),
+                       extent);
     const auto with = fit(model, record, estimationSections(record));
     INFO(with.reason);
     auto fixed = model;
@@ -200,7 +202,8 @@ TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][s
         }
     const auto without = fit(fixed, record, estimationSections(record));
     INFO("with loops that move " << with.costPerResidual << ", with loops that stay " << without.costPerResidual);
-    // On the bench the loops see k(x) i, in the model c(x) multiplies what they make of i: alike where the cone is slow against them.
+    // On the bench the loops see k(x) i, in the model c(x) multiplies what they make of i: alike where the cone is slow
+    // against them.
     CHECK(without.costPerResidual > 50.0 * with.costPerResidual);
 }
 
@@ -245,7 +248,8 @@ TEST_CASE("The power of an error is judged channel by channel, over all sections
         return fit;
     };
     // 16 times the noise in one section, none in the other: 8.5 times in all.
-    CHECK(worstPower({section({16.0, 100.0, 1.0}, {1.0, 100.0, 1.0}), section({1.0, 100.0, 1.0}, {1.0, 100.0, 1.0})}) == Approx(8.5));
+    CHECK(worstPower({section({16.0, 100.0, 1.0}, {1.0, 100.0, 1.0}), section({1.0, 100.0, 1.0}, {1.0, 100.0, 1.0})})
+          == Approx(8.5));
     CHECK(worstPower({section({1.0, 100.0, 1.0}, {0.5, 100.0, 1.0})}) == Approx(1.0));
     CHECK(std::isinf(worstPower({section({1.0, 100.0, 0.0}, {0.5, 100.0, 1.0})})));
 }

@@ -14,9 +14,12 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// NIST Statistical Reference Datasets, nonlinear regression, Misra1a: y = b1 (1 - exp(-b2 x)).
 namespace misra {
-constexpr double x[] = {77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0};
-constexpr double y[] = {10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78};
-constexpr double b1 = 2.3894212918e+02, b2 = 5.5015643181e-04, deviation1 = 2.7070075241e+00, deviation2 = 7.2668688436e-06;
+constexpr double x[] = {77.6,  114.9, 141.1, 190.8, 239.9, 289.0, 332.8,
+                        378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0};
+constexpr double y[] = {10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02,
+                        44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78};
+constexpr double b1 = 2.3894212918e+02, b2 = 5.5015643181e-04, deviation1 = 2.7070075241e+00,
+                 deviation2 = 7.2668688436e-06;
 constexpr double sumOfSquares = 1.2455138894e-01;
 
 bool evaluate(const Eigen::VectorXd& b, bool gradient, NormalEquations& sum)
@@ -37,7 +40,7 @@ bool evaluate(const Eigen::VectorXd& b, bool gradient, NormalEquations& sum)
     }
     return true;
 }
-} // namespace misra
+}  // namespace misra
 
 Eigen::VectorXd two(double a, double b) { return Eigen::Vector2d(a, b); }
 
@@ -49,7 +52,7 @@ LeastSquaresOptions exact()
     return options;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The search finds NIST's certified values from both of their starts", "[least-squares]")
 {
@@ -103,7 +106,7 @@ TEST_CASE("Where the model cannot be evaluated the search shortens its step", "[
     auto b = two(250.0, 5e-4);
     int refused = 0;
     const auto evaluate = [&refused](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
-        if (at[0] < 239.5 && at[0] > 239.0) {   // a hole on the way
+        if (at[0] < 239.5 && at[0] > 239.0) {  // a hole on the way
             ++refused;
             return false;
         }
@@ -137,7 +140,8 @@ TEST_CASE("A step of Gauss and Newton solves a linear problem at once", "[least-
     normal.g = -J.transpose() * y;
     const auto step = gaussNewtonStep(normal, {0, 1, 3});
     const double meanX = x.mean(), meanY = y.mean();
-    const double slope = (x.array() - meanX).matrix().dot((y.array() - meanY).matrix()) / (x.array() - meanX).matrix().squaredNorm();
+    const double slope = (x.array() - meanX).matrix().dot((y.array() - meanY).matrix())
+                         / (x.array() - meanX).matrix().squaredNorm();
     CHECK(step[1] == Approx(slope).epsilon(1e-10));
     CHECK(step[0] == Approx(meanY - slope * meanX).epsilon(1e-10));
     CHECK(step[2] == 0.0);
@@ -171,7 +175,8 @@ TEST_CASE("Search options that make no sense carry a reason", "[least-squares]")
 
 TEST_CASE("What is noise for sure neither stops a search early nor changes what it finds", "[least-squares]")
 {
-    // Beside a million residuals that are nothing but noise the misfit of fourteen is too little for a tolerance of the whole.
+    // Beside a million residuals that are nothing but noise the misfit of fourteen is too little for a tolerance of the
+    // whole.
     constexpr double noise = 1e6;
     const auto beside = [](double sure) {
         return [sure](const Eigen::VectorXd& b, bool gradient, NormalEquations& sum) {

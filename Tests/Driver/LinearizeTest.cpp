@@ -44,8 +44,9 @@ Model allAtWork()
         double sign = 1.0;
         for (auto& p : component.parameters)
             if (p.strength)
-                p.value = effect->law() ? 0.1 * (sign *= -1.0) * component.extent.scale
-                          : std::isfinite(p.prior) ? strengthOf(*effect, p, component.extent, 0.3) : someScale(*effect);
+                p.value = effect->law()            ? 0.1 * (sign *= -1.0) * component.extent.scale
+                          : std::isfinite(p.prior) ? strengthOf(*effect, p, component.extent, 0.3)
+                                                   : someScale(*effect);
     }
     return model;
 }
@@ -60,7 +61,7 @@ std::vector<double> someFrequencies()
 
 double relative(Complex value, Complex truth) { return std::abs(value - truth) / std::abs(truth); }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The responses of the electrodynamic driver are their closed forms", "[linearize]")
 {
@@ -77,7 +78,9 @@ TEST_CASE("The responses of the electrodynamic driver are their closed forms", "
         CHECK(relative(response[1].value[n], x) < 1e-10);
         CHECK(relative(response[2].value[n], s * x) < 1e-10);
         CHECK(relative(response[3].value[n], s * s * x) < 1e-10);
-        CHECK(relative(response[4].value[n], 1.2 * area / (2.0 * std::numbers::pi * distance) * s * s * x * std::exp(-s * tau)) < 1e-10);
+        CHECK(relative(response[4].value[n],
+                       1.2 * area / (2.0 * std::numbers::pi * distance) * s * s * x * std::exp(-s * tau))
+              < 1e-10);
         CHECK(response[0].gradient.size() == 0);
     }
 }
@@ -136,7 +139,8 @@ TEST_CASE("An effect of no strength changes no response, whatever it stands besi
             const auto beside = respond(withEffect(model, *other, someExtent(1.0)), quantities, frequency);
             for (std::size_t q = 0; q < quantities.size(); ++q)
                 for (std::size_t n = 0; n < frequency.size(); ++n) {
-                    INFO(atWork->id() << " beside " << other->id() << ", " << name(quantities[q]) << ", " << frequency[n] << " Hz");
+                    INFO(atWork->id() << " beside " << other->id() << ", " << name(quantities[q]) << ", "
+                                      << frequency[n] << " Hz");
                     CHECK(relative(beside[q].value[n], alone[q].value[n]) < 1e-9);
                 }
         }
@@ -176,7 +180,8 @@ TEST_CASE("Gradients of the responses are what finite differences show, by every
         const auto above = moved(step), below = moved(-step);
         for (std::size_t q = 0; q < quantities.size(); ++q)
             for (std::size_t n = 0; n < frequency.size(); ++n) {
-                INFO(parametersOf(model)[static_cast<std::size_t>(k)]->name << ", " << name(quantities[q]) << ", " << frequency[n] << " Hz");
+                INFO(parametersOf(model)[static_cast<std::size_t>(k)]->name << ", " << name(quantities[q]) << ", "
+                                                                            << frequency[n] << " Hz");
                 const Complex slope = (above[q].value[n] - below[q].value[n]) / (2.0 * step);
                 const Complex gradient = response[q].gradient(static_cast<Eigen::Index>(n), k);
                 const double rounding = 1e-9 * std::abs(response[q].value[n]) / step;
@@ -199,7 +204,7 @@ TEST_CASE("The ladder of the eddy currents is K s^a within its accuracy over its
             auto extent = someExtent(1.0);
             extent.highFrequency = high;
             auto model = withEffect(midbass(), effectNamed("eddy-currents"), extent);
-            model.baseParameter("Bl").value = 0.0;   // a blocked coil
+            model.baseParameter("Bl").value = 0.0;  // a blocked coil
             model.components.back().parameters[0].value = strength;
             model.components.back().parameters[1].value = a;
             std::vector<double> frequency;
@@ -218,7 +223,8 @@ TEST_CASE("The ladder of the eddy currents is K s^a within its accuracy over its
 
 TEST_CASE("The eddy currents follow a chain of few resistors and inductors that is far from a power law", "[effects]")
 {
-    // Cells well inside the band, off any power law by 40 %; the ladder finds them from the impedance of the blocked coil.
+    // Cells well inside the band, off any power law by 40 %; the ladder finds them from the impedance of the blocked
+    // coil.
     struct Cell {
         double resistance, inductance;
     };
@@ -246,7 +252,7 @@ TEST_CASE("The eddy currents follow a chain of few resistors and inductors that 
     CHECK(responseErrorDb(model, target) < -65.0);
     const auto figures = figuresOf(model, 1);
     REQUIRE(figures.size() == 3);
-    CHECK(figures[2].value > 5.0);   // percent off a power law
+    CHECK(figures[2].value > 5.0);  // percent off a power law
     for (const auto& figure : figures)
         CHECK(figure.standardError < 0.1 * figure.value);
 }
@@ -269,7 +275,8 @@ TEST_CASE("Creep is a sum of relaxing springs, stiffer the faster it is stretche
 {
     constexpr double S = 900.0, centre = 0.7, width = 2.0;
     auto model = makeModel("mechanical");
-    const double m = model.baseParameter("m").value, r = model.baseParameter("Rms").value, k = model.baseParameter("K").value;
+    const double m = model.baseParameter("m").value, r = model.baseParameter("Rms").value,
+                 k = model.baseParameter("K").value;
     model = withEffect(model, effectNamed("creep"), someExtent(1.0));
     const double values[] = {S, centre, width};
     for (std::size_t n = 0; n < 3; ++n)
@@ -292,7 +299,8 @@ TEST_CASE("Creep is a sum of relaxing springs, stiffer the faster it is stretche
         const double rounding = 1e-12 * std::abs(1.0 / receptance[n] + m * s * s);
         CHECK(std::abs(stiffness - truth) < 1e-11 * std::abs(truth) + 4.0 * rounding);
         // The same with infinitely many springs over the band: a logarithm.
-        const double low = 2.0 * std::numbers::pi * std::pow(10.0, centre - width / 2.0), high = 2.0 * std::numbers::pi * std::pow(10.0, centre + width / 2.0);
+        const double low = 2.0 * std::numbers::pi * std::pow(10.0, centre - width / 2.0),
+                     high = 2.0 * std::numbers::pi * std::pow(10.0, centre + width / 2.0);
         const Complex many = k + S / std::log(high / low) * (std::log(high / (s + high)) - std::log(low / (s + low)));
         CHECK(std::abs(truth - many) < 0.02 * S);
         CHECK(truth.imag() > 0.0);

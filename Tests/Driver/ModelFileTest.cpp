@@ -53,7 +53,7 @@ std::string refusal(const nlohmann::json& document)
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A model saved, read and saved again is the same, byte for byte", "[model]")
 {
@@ -71,7 +71,7 @@ TEST_CASE("A model saved, read and saved again is the same, byte for byte", "[mo
     CHECK(read.covariance(1, 2) == -0.1);
     CHECK(read.find(catalogue().front()->id())->extent.displacement == 0.0051 / 3.0);
     const auto readParameters = parametersOf(read), parameters = parametersOf(model);
-    for (std::size_t k = 0; k < parameters.size(); ++k) {   // the limits of what is plausible are the model's, too
+    for (std::size_t k = 0; k < parameters.size(); ++k) {  // the limits of what is plausible are the model's, too
         CHECK(readParameters[k]->prior == parameters[k]->prior);
         CHECK(readParameters[k]->lower == parameters[k]->lower);
         CHECK(readParameters[k]->upper == parameters[k]->upper);
@@ -90,10 +90,12 @@ TEST_CASE("A model file that cannot be is refused in one sentence that names fil
         return refusal(document);
     };
     using Catch::Contains;
-    CHECK_THAT(changed("/format", "excursion-ladder"), Contains("some.json") && Contains("'format'") && Contains("excursion-model"));
+    CHECK_THAT(changed("/format", "excursion-ladder"),
+               Contains("some.json") && Contains("'format'") && Contains("excursion-model"));
     CHECK_THAT(changed("/version", 2), Contains("'version' is 2") && Contains("expected 1"));
     CHECK_THAT(changed("/base/id", "pneumatic"), Contains("base.id") && Contains("electrodynamic or mechanical"));
-    CHECK_THAT(changed("/effects/0/id", "ghosts"), Contains("effects[0].id") && Contains("ghosts") && Contains(catalogue().back()->id()));
+    CHECK_THAT(changed("/effects/0/id", "ghosts"),
+               Contains("effects[0].id") && Contains("ghosts") && Contains(catalogue().back()->id()));
     CHECK_THAT(changed("/effects/1/id", good["effects"][0]["id"]), Contains("only once"));
     CHECK_THAT(changed("/base/parameters/3/value", -0.01), Contains("base.parameters[3].value") && Contains("-0.01"));
     CHECK_THAT(changed("/base/parameters/3/value", 0.0), Contains("a mass above 0 kg"));

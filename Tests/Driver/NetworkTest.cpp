@@ -101,14 +101,14 @@ void requireSameImpedance(const Model& model)
     const auto current = respond(model, {Quantity::current}, frequency).front();
     for (std::size_t k = 0; k < frequency.size(); ++k) {
         const Complex s(0.0, 2.0 * std::numbers::pi * frequency[k]);
-        const auto Z =
-            coilImpedance(network, s) + network.forceFactor * network.forceFactor / mechanicalImpedance(network, s);
+        const auto Z = coilImpedance(network, s)
+                       + network.forceFactor * network.forceFactor / mechanicalImpedance(network, s);
         INFO(frequency[k] << " Hz");
         CHECK(std::abs(Z * current.value[k] - 1.0) < 1e-9);
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The network of every linear effect that is felt has the impedance of its equations", "[network]")
 {

@@ -29,11 +29,14 @@ Model bent()
         auto& component = model.components.back();
         double sign = 1.0;
         if (effect->id() == "friction")
-            component.parameters[1].value = 2e-5;   // m, so that what it remembers of the start is forgotten in the lead-in
+            // m, so that what it remembers of the start is forgotten in the lead-in
+            component.parameters[1].value = 2e-5;
         for (auto& p : component.parameters)
             if (p.strength)
                 p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.extent.scale
-                          : std::isfinite(p.prior) || std::isfinite(p.upper) ? strengthOf(*effect, p, component.extent, 0.05) : someScale(*effect) / 5.0;
+                          : std::isfinite(p.prior) || std::isfinite(p.upper)
+                              ? strengthOf(*effect, p, component.extent, 0.05)
+                              : someScale(*effect) / 5.0;
     }
     for (auto* p : parametersOf(model))
         p->free = true;
@@ -88,7 +91,7 @@ OutputErrorOptions plain()
     return options;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Normal equations are those from finite differences, by every parameter", "[output-error]")
 {
@@ -105,7 +108,8 @@ TEST_CASE("Normal equations are those from finite differences, by every paramete
 
     const auto theta = parameterVector(model);
     const auto P = theta.size();
-    std::vector<std::vector<std::vector<Complex>>> slope(static_cast<std::size_t>(P));   // [parameter][channel][line]
+    // [parameter][channel][line]
+    std::vector<std::vector<std::vector<Complex>>> slope(static_cast<std::size_t>(P));
     for (Eigen::Index k = 0; k < P; ++k) {
         const double step = theta[k] != 0.0 ? 2e-5 * std::max(std::abs(theta[k]), 1e-4) : 2e-5;
         const auto moved = [&](double by) {
@@ -126,7 +130,9 @@ TEST_CASE("Normal equations are those from finite differences, by every paramete
     const auto [first, last] = record.lineRange(section);
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         INFO(name(record.channels[c]));
-        const auto weighted = [&](std::size_t parameter, std::size_t k) { return slope[parameter][c][k] / section.deviation[c][k]; };
+        const auto weighted = [&](std::size_t parameter, std::size_t k) {
+            return slope[parameter][c][k] / section.deviation[c][k];
+        };
         Eigen::MatrixXd N2 = Eigen::MatrixXd::Zero(P, P);
         Eigen::VectorXd g = Eigen::VectorXd::Zero(P);
         double cost = 0.0;
@@ -170,7 +176,8 @@ TEST_CASE("A linear model's prediction is its response times the input", "[outpu
             const Complex p(0.0, 2.0 * std::numbers::pi * record.frequency(record.sections[s], k));
             const Complex mechanical = 1e-2 * p * p + 1.0 * p + 2e3;
             const Complex I = U[k] / (6.0 + p * 3e-4 + 25.0 * p / mechanical), X = 5.0 * I / mechanical;
-            const Complex truth[] = {I, X, p * X, 1.2 * 0.01 / (2.0 * std::numbers::pi) * p * p * X * std::exp(-p * 3e-4)};
+            const Complex truth[] = {I, X, p * X,
+                                     1.2 * 0.01 / (2.0 * std::numbers::pi) * p * p * X * std::exp(-p * 3e-4)};
             for (std::size_t c = 0; c < 4; ++c)
                 CHECK(std::abs(fits[s].predicted[c][k] - truth[c]) < 1e-4 * std::abs(truth[c]));
         }

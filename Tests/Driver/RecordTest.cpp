@@ -42,22 +42,25 @@ Measurement take(int faint, double noise, int last = 401)
     for (int r = 0; r < realizations; ++r) {
         std::vector<std::complex<double>> spectrum(N / 2 + 1, 0.0);
         for (const int k : e.lines)
-            spectrum[static_cast<std::size_t>(k)] = std::polar((r == faint ? 0.7 : 1.0) * N / 20.0, std::uniform_real_distribution<>(0.0, 6.28)(random));
+            spectrum[static_cast<std::size_t>(k)] = std::polar((r == faint ? 0.7 : 1.0) * N / 20.0,
+                                                               std::uniform_real_distribution<>(0.0, 6.28)(random));
         multisines.push_back(inverseFft(spectrum, N));
     }
     Channel voltage {Quantity::voltage, "V", 100.0, {}}, current {Quantity::current, "A", 100.0, {}};
     for (const double level : e.levels)
         for (const auto& period : multisines)
             for (int n = 0; n < e.samplesPerRealization(); ++n) {
-                voltage.samples.push_back(level * period[static_cast<std::size_t>(n % N)] + 0.1 * noise * normal(random));
-                current.samples.push_back(0.25 * level * period[static_cast<std::size_t>((n + N - 2) % N)] + noise * normal(random));
+                voltage.samples.push_back(level * period[static_cast<std::size_t>(n % N)]
+                                          + 0.1 * noise * normal(random));
+                current.samples.push_back(0.25 * level * period[static_cast<std::size_t>((n + N - 2) % N)]
+                                          + noise * normal(random));
             }
     result.channels = {voltage, current};
     result.excitation = e;
     return result;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A periodic take becomes one averaged period a level and realization", "[record]")
 {
@@ -108,7 +111,8 @@ TEST_CASE("Samples that no compared line needs are left out", "[record]")
     REQUIRE(section.window == N / 2);
     CHECK(record.frequency(section, 61) == Approx(whole.frequency(full, 61)));
     for (std::size_t n = 0; n < section.window; ++n)
-        CHECK(section.input[n] == Approx(full.input[2 * n]).margin(1e-4));   // but for the noise that was played above the band
+        // but for the noise that was played above the band
+        CHECK(section.input[n] == Approx(full.input[2 * n]).margin(1e-4));
     for (std::size_t k = 1; k < 120; ++k) {
         CHECK(std::abs(2.0 * section.measured[0][k] - full.measured[0][k]) < 1e-10);
         CHECK(2.0 * section.deviation[0][k] == Approx(full.deviation[0][k]));
@@ -144,7 +148,8 @@ TEST_CASE("The noise of a record is the noise that was added", "[record]")
         CHECK(mean == Approx(truth).epsilon(0.08));
         CHECK(meanInput == Approx(0.01 * truth).epsilon(0.08));
         // Smoothing leaves no line that is believed to be far better than it is.
-        CHECK(*std::min_element(section.deviation[0].begin() + 5, section.deviation[0].end() - 5) > 0.6 * std::sqrt(truth));
+        CHECK(*std::min_element(section.deviation[0].begin() + 5, section.deviation[0].end() - 5)
+              > 0.6 * std::sqrt(truth));
         // Where nothing was played the input is silent, not noisy.
         const auto U = fft(section.input);
         double even = 0.0, odd = 0.0;
@@ -164,7 +169,9 @@ TEST_CASE("The realization that goes least far is held out, at all levels", "[re
             CHECK(section.validation == (section.realization == faint));
         CHECK(estimationSections(record).size() == 4);
         const auto held = validationSections(record);
-        CHECK(held == std::vector<std::size_t> {static_cast<std::size_t>(faint), static_cast<std::size_t>(faint + realizations)});
+        CHECK(held
+              == std::vector<std::size_t> {static_cast<std::size_t>(faint),
+                                           static_cast<std::size_t>(faint + realizations)});
     }
     RecordOptions options;
     options.holdOut = false;
@@ -207,7 +214,8 @@ TEST_CASE("A record without periods is cut into windows whose last third is held
         for (std::size_t n = 0; n < section.input.size(); ++n)
             REQUIRE(section.input[n] == measured.channels[0].samples[s * window + n]);
         CHECK(section.measured[0] == fft(std::span(measured.channels[1].samples).subspan(lead + s * window, window)));
-        CHECK(std::adjacent_find(section.deviation[0].begin(), section.deviation[0].end(), std::not_equal_to<>()) == section.deviation[0].end());
+        CHECK(std::adjacent_find(section.deviation[0].begin(), section.deviation[0].end(), std::not_equal_to<>())
+              == section.deviation[0].end());
     }
 }
 

@@ -33,13 +33,18 @@ ResponseTarget impedanceOf(const bench::Loudspeaker& speaker)
     return target;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Parts on the cone are those of the independent bench", "[effects]")
 {
     const auto speaker = with({{0.002, 300.0, 8.0}, {0.0005, 900.0, 4.0}});
     auto model = makeModel("electrodynamic");
-    for (const auto& [name, value] : {std::pair {"Re", speaker.Re}, {"Le", speaker.Le}, {"Bl", speaker.Bl}, {"m", speaker.m}, {"Rms", speaker.Rms}, {"K", speaker.K}})
+    for (const auto& [name, value] : {std::pair {"Re", speaker.Re},
+                                      {"Le", speaker.Le},
+                                      {"Bl", speaker.Bl},
+                                      {"m", speaker.m},
+                                      {"Rms", speaker.Rms},
+                                      {"K", speaker.K}})
         model.baseParameter(name).value = value;
     model = withEffect(model, effectNamed("side-resonance"), Extent {});
     auto& p = model.components.back().parameters;
@@ -56,7 +61,8 @@ TEST_CASE("Parts on the cone are those of the independent bench", "[effects]")
 
 TEST_CASE("As many parts are found in an impedance as there are", "[effects]")
 {
-    for (const auto& parts : {std::vector<bench::HungPart> {{0.0015, 420.0, 8.0}}, {{0.0015, 250.0, 6.0}, {0.001, 800.0, 10.0}}}) {
+    for (const auto& parts :
+         {std::vector<bench::HungPart> {{0.0015, 420.0, 8.0}}, {{0.0015, 250.0, 6.0}, {0.001, 800.0, 10.0}}}) {
         INFO(parts.size() << " parts");
         const std::vector targets {impedanceOf(with(parts))};
         auto model = startModel(targets, true, {});

@@ -29,10 +29,12 @@ std::vector<double> values(const Model& model)
 Model bent()
 {
     auto model = makeModel("electrodynamic");
-    const std::pair<const char*, std::vector<double>> laws[] = {
-        {"force-factor", {0.02, -0.12, 0.0, 0.02}}, {"stiffness", {-0.1, 0.25, 0.0, 0.05}}, {"inductance-position", {-0.15, 0.02}}, {"damping-velocity", {0.03, 0.2}}};
+    const std::pair<const char*, std::vector<double>> laws[] = {{"force-factor", {0.02, -0.12, 0.0, 0.02}},
+                                                                {"stiffness", {-0.1, 0.25, 0.0, 0.05}},
+                                                                {"inductance-position", {-0.15, 0.02}},
+                                                                {"damping-velocity", {0.03, 0.2}}};
     auto extent = someExtent(1.0);
-    extent.displacement = 6e-3;   // laws have corners at the ends of what is visited; the bursts stay within
+    extent.displacement = 6e-3;  // laws have corners at the ends of what is visited; the bursts stay within
     extent.velocity = 3.0;
     for (const auto& [id, shares] : laws) {
         model = withEffect(model, effectNamed(id), extent);
@@ -49,7 +51,8 @@ std::vector<double> burst(double sampleRate, double seconds, double amplitude, d
     std::vector<double> u(static_cast<std::size_t>(seconds * sampleRate));
     for (std::size_t n = 0; n < u.size(); ++n) {
         const double t = static_cast<double>(n) / sampleRate, bell = (t - 0.4 * seconds) / (0.06 * seconds);
-        u[n] = amplitude * std::exp(-0.5 * bell * bell) * (std::sin(2.0 * std::numbers::pi * 70.0 * t) + 0.4 * std::sin(2.0 * std::numbers::pi * high * t));
+        u[n] = amplitude * std::exp(-0.5 * bell * bell)
+               * (std::sin(2.0 * std::numbers::pi * 70.0 * t) + 0.4 * std::sin(2.0 * std::numbers::pi * high * t));
     }
     return u;
 }
@@ -64,7 +67,7 @@ double largest(const std::vector<double>& a, const std::vector<double>& b)
 
 double peakIn(const std::vector<double>& a) { return largest(a, std::vector<double>(a.size(), 0.0)); }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A linear driver's steady state is its closed-form response", "[simulate]")
 {
@@ -93,11 +96,15 @@ TEST_CASE("A linear driver's steady state is its closed-form response", "[simula
     CHECK(take.sampleRate == sampleRate);
     CHECK(take.find(Quantity::voltage)->samples == u);
 
-    const auto spectrum = [&](Quantity q) { return fft(std::span(take.find(q)->samples).subspan((periods - 2) * N, N)); };
+    const auto spectrum = [&](Quantity q) {
+        return fft(std::span(take.find(q)->samples).subspan((periods - 2) * N, N));
+    };
     const auto U = fft(std::span(u).first(N));
     const auto i = spectrum(Quantity::current), x = spectrum(Quantity::displacement), v = spectrum(Quantity::velocity),
                a = spectrum(Quantity::acceleration), p = spectrum(Quantity::pressure);
-    const auto close = [](Complex value, Complex truth, double tolerance) { CHECK(std::abs(value - truth) < tolerance * std::abs(truth)); };
+    const auto close = [](Complex value, Complex truth, double tolerance) {
+        CHECK(std::abs(value - truth) < tolerance * std::abs(truth));
+    };
     for (const auto line : lines) {
         INFO("line " << line);
         const Complex s(0.0, 2.0 * std::numbers::pi * sampleRate * static_cast<double>(line) / N);
@@ -115,7 +122,8 @@ TEST_CASE("A linear driver's steady state is its closed-form response", "[simula
 TEST_CASE("Halving the step divides the error by sixteen", "[simulate]")
 {
     constexpr double sampleRate = 6000.0;
-    auto model = withoutEffect(bent(), "damping-velocity");   // its law bends within a fiftieth of the visited range
+    // its law bends within a fiftieth of the visited range
+    auto model = withoutEffect(bent(), "damping-velocity");
     for (auto& component : model.components)
         component.extent.highFrequency = 1300.0;
     const auto u = burst(sampleRate, 0.25, 6.0, 1300.0);
@@ -123,7 +131,8 @@ TEST_CASE("Halving the step divides the error by sixteen", "[simulate]")
     for (std::size_t n = 0; n < 3; ++n)
         REQUIRE(integrate(model, Drive(u, sampleRate, 1 << n), 0, runs[n]));
     for (const auto channel : {&Trajectory::current, &Trajectory::velocity, &Trajectory::acceleration}) {
-        const double first = largest(runs[0].*channel, runs[1].*channel), second = largest(runs[1].*channel, runs[2].*channel);
+        const double first = largest(runs[0].*channel, runs[1].*channel),
+                     second = largest(runs[1].*channel, runs[2].*channel);
         INFO("changes " << first << " and " << second);
         CHECK(first / second > 12.0);
         CHECK(first / second < 21.0);
@@ -152,7 +161,8 @@ TEST_CASE("The simulation is that of the classical Runge-Kutta method at a fine 
     };
     const double h = drive.step();
     for (std::size_t half = 0; half < 32 * u.size(); half += 2) {
-        const State k1 = rates(z, half), k2 = rates(z + 0.5 * h * k1, half + 1), k3 = rates(z + 0.5 * h * k2, half + 1), k4 = rates(z + h * k3, half + 2);
+        const State k1 = rates(z, half), k2 = rates(z + 0.5 * h * k1, half + 1), k3 = rates(z + 0.5 * h * k2, half + 1),
+                    k4 = rates(z + h * k3, half + 2);
         if (half % 32 == 0) {
             displacement.push_back(z[1]);
             acceleration.push_back(k1[2]);
@@ -178,7 +188,7 @@ TEST_CASE("Energy in is energy lost and energy stored, at any time", "[simulate]
             c.push_back(p.value);
         return model.baseParameter(base).value + component.effect->lawAt(component.extent, c.data(), q);
     };
-    const auto potential = [&](double x) {   // Simpson's rule for int K(x) x dx
+    const auto potential = [&](double x) {  // Simpson's rule for int K(x) x dx
         double sum = 0.0;
         constexpr int steps = 40;
         for (int n = 0; n <= steps; ++n) {
@@ -200,7 +210,7 @@ TEST_CASE("Energy in is energy lost and energy stored, at any time", "[simulate]
         storedMost = std::max(storedMost, stored);
         worst = std::max(worst, std::abs(balance - stored));
     }
-    CHECK(*std::max_element(run.displacement.begin(), run.displacement.end()) > 1.5e-3);   // the laws are felt
+    CHECK(*std::max_element(run.displacement.begin(), run.displacement.end()) > 1.5e-3);  // the laws are felt
     CHECK(storedMost > 1e-3 * delivered);
     CHECK(worst < 1e-4 * storedMost);
 }
@@ -229,7 +239,8 @@ TEST_CASE("The steps a sample are enough, and no more than allowed", "[simulate]
 TEST_CASE("A model that runs away is told, not simulated", "[simulate]")
 {
     auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someExtent(1.0));
-    model.components.back().parameters[1].value = -3.0 * model.baseParameter("K").value;   // a spring that pushes outward
+    // a spring that pushes outward
+    model.components.back().parameters[1].value = -3.0 * model.baseParameter("K").value;
     const auto u = burst(12000.0, 0.05, 40.0);
     CHECK_THROWS_AS(simulate(model, u, 12000.0, {}), Error);
 }

@@ -53,7 +53,7 @@ Record someRecord(std::size_t leadIn)
     return record;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A linear section starts in the state that it would reach after a long time", "[output-error]")
 {
@@ -80,7 +80,7 @@ TEST_CASE("A linear section starts in the state that it would reach after a long
         power += std::pow(settled.displacement[n], 2);
     }
     CHECK(10.0 * std::log10(difference / power) < -80.0);
-    CHECK(difference < 1e-3 * fromRest);   // what it is good for
+    CHECK(difference < 1e-3 * fromRest);  // what it is good for
 }
 
 TEST_CASE("The derivative of the start state is that of finite differences", "[output-error]")

@@ -42,7 +42,7 @@ std::vector<double> push(double force, double sampleRate)
 
 const std::vector<std::pair<double, double>> units {{1e-6, 1e6}, {1e6, 1e-6}, {1e6, 1e6}, {3.4e-5, 2.2e-6}};
 
-} // namespace
+}  // namespace
 
 TEST_CASE("An exponential and its poles keep their digits in any unit", "[units]")
 {
@@ -53,7 +53,7 @@ TEST_CASE("An exponential and its poles keep their digits in any unit", "[units]
         model.components.back().parameters.front().value = someScale(effectNamed(effect));
     }
     if (GENERATE(false, true))
-        model.components.back().parameters.front().value = 0.0;   // relaxations that move nothing
+        model.components.back().parameters.front().value = 0.0;  // relaxations that move nothing
     const auto linear = linearize(model);
     const auto n = linear.A.rows();
     Eigen::VectorXd sizes(n);
@@ -65,11 +65,13 @@ TEST_CASE("An exponential and its poles keep their digits in any unit", "[units]
     const Eigen::VectorXd own = stateUnits(linear.A), back = own.cwiseQuotient(sizes);
     const Eigen::MatrixXd decay = inUnits(plain.decay, own), otherDecay = inUnits(other.decay, back);
     CHECK((otherDecay - decay).cwiseAbs().maxCoeff() < 1e-12 * decay.cwiseAbs().maxCoeff());
-    const Eigen::MatrixXd phi = own.cwiseInverse().asDiagonal() * plain.phi, otherPhi = back.cwiseInverse().asDiagonal() * other.phi;
+    const Eigen::MatrixXd phi = own.cwiseInverse().asDiagonal() * plain.phi,
+                          otherPhi = back.cwiseInverse().asDiagonal() * other.phi;
     CHECK((otherPhi - phi).cwiseAbs().maxCoeff() < 1e-12 * phi.cwiseAbs().maxCoeff());
 
     const auto sorted = [](Eigen::VectorXcd values) {
-        std::sort(values.begin(), values.end(), [](auto a, auto b) { return std::pair(a.real(), a.imag()) < std::pair(b.real(), b.imag()); });
+        std::sort(values.begin(), values.end(),
+                  [](auto a, auto b) { return std::pair(a.real(), a.imag()) < std::pair(b.real(), b.imag()); });
         return values;
     };
     Linearization scaled;
@@ -85,7 +87,7 @@ TEST_CASE("A driver moves alike in any unit, and one that runs away is told", "[
     Trajectory plain, other;
     REQUIRE(integrate(bentSpring(1.0, 1.0, 0.4), Drive(push(1.0, rate), rate, 2), 0, plain));
     const double peak = *std::max_element(plain.displacement.begin(), plain.displacement.end());
-    CHECK(peak > 2e-3);   // far enough to bend the spring
+    CHECK(peak > 2e-3);  // far enough to bend the spring
     for (const auto& [force, displacement] : units) {
         INFO(force << " " << displacement);
         REQUIRE(integrate(bentSpring(force, displacement, 0.4), Drive(push(force, rate), rate, 2), 0, other));
@@ -93,16 +95,17 @@ TEST_CASE("A driver moves alike in any unit, and one that runs away is told", "[
         for (std::size_t n = 0; n < plain.displacement.size(); ++n)
             worst = std::max(worst, std::abs(other.displacement[n] / displacement - plain.displacement[n]));
         CHECK(worst < 1e-10 * peak);
-        CHECK_FALSE(integrate(bentSpring(force, displacement, -3.0), Drive(push(force, rate), rate, 2), 0, other));   // pushes outward
+        // pushes outward
+        CHECK_FALSE(integrate(bentSpring(force, displacement, -3.0), Drive(push(force, rate), rate, 2), 0, other));
         const auto linear = linearize(bentSpring(force, displacement, 0.4));
-        CHECK(-linear.A(2, 1) == Approx(2e5).epsilon(1e-8));   // K/m at rest
+        CHECK(-linear.A(2, 1) == Approx(2e5).epsilon(1e-8));  // K/m at rest
     }
 }
 
 TEST_CASE("A motion and a pressure of any size have a start", "[units]")
 {
     auto truth = makeModel("electrodynamic");
-    truth.path.parameters[1].value = 2.9e-3;   // the flight over a metre
+    truth.path.parameters[1].value = 2.9e-3;  // the flight over a metre
     std::vector<double> frequency;
     for (double f = 15.0; f < 5000.0; f *= 1.1)
         frequency.push_back(f);
@@ -111,7 +114,8 @@ TEST_CASE("A motion and a pressure of any size have a start", "[units]")
     const bool motion = GENERATE(true, false), area = GENERATE(true, false);
     for (const double size : {1.0, 1e-6, 1e6, 3e-4})
         for (const double heard : {1.0, 2e-5, 1e6}) {
-            INFO("displacement " << size << " pressure " << heard << (motion ? "" : ", no motion") << (area ? "" : ", no area"));
+            INFO("displacement " << size << " pressure " << heard << (motion ? "" : ", no motion")
+                                 << (area ? "" : ", no area"));
             std::vector<ResponseTarget> targets;
             for (std::size_t q = 0; q < quantities.size(); ++q) {
                 if (!motion && quantities[q] == Quantity::displacement)
@@ -121,7 +125,9 @@ TEST_CASE("A motion and a pressure of any size have a start", "[units]")
                 target.frequency = frequency;
                 target.value = responses[q].value;
                 for (auto& value : target.value) {
-                    value *= quantities[q] == Quantity::displacement ? size : quantities[q] == Quantity::pressure ? heard : 1.0;
+                    value *= quantities[q] == Quantity::displacement ? size
+                             : quantities[q] == Quantity::pressure   ? heard
+                                                                     : 1.0;
                     target.deviation.push_back(0.01 * std::abs(value));
                 }
                 targets.push_back(std::move(target));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A loudspeaker as a client of JACK: what is played to its input "terminals" comes back as voltage (16 V at full scale), current (4 A) and
-// displacement (8 mm). It runs until it is killed.
+// A loudspeaker as a client of JACK: what is played to its input "terminals" comes back as voltage (16 V at full
+// scale), current (4 A) and displacement (8 mm). It runs until it is killed.
 #include "Plugin/SampledSpeaker.h"
 
 #include <jack/jack.h>
@@ -34,7 +34,7 @@ int process(jack_nframes_t count, void* data)
     return 0;
 }
 
-} // namespace
+}  // namespace
 
 int main()
 {

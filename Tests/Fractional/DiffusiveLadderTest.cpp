@@ -18,20 +18,23 @@ double worstError(const DiffusiveLadder& ladder, double low, double high)
     for (int k = 0; k <= 2000; ++k) {
         const std::complex<double> s(0.0, 2.0 * std::numbers::pi * low * std::pow(high / low, k / 2000.0));
         const auto power = std::pow(s, ladder.exponent), integral = std::pow(s, ladder.exponent - 1.0);
-        worst = std::max({worst, std::abs(ladder.power(s) - power) / std::abs(power), std::abs(ladder.integral(s) - integral) / std::abs(integral)});
+        worst = std::max({worst, std::abs(ladder.power(s) - power) / std::abs(power),
+                          std::abs(ladder.integral(s) - integral) / std::abs(integral)});
     }
     return worst;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A ladder is as accurate on its band as is said, and no better")
 {
-    const std::pair<double, double> stated[] = {{1.0, 2.8e-2}, {1.5, 3.3e-3}, {2.0, 3.8e-4}, {3.0, 5.3e-6}, {4.0, 7.3e-8}, {5.0, 1.0e-9}};
+    const std::pair<double, double> stated[] = {{1.0, 2.8e-2}, {1.5, 3.3e-3}, {2.0, 3.8e-4},
+                                                {3.0, 5.3e-6}, {4.0, 7.3e-8}, {5.0, 1.0e-9}};
     for (const auto& [cells, error] : stated) {
         INFO(cells << " cells a decade");
         for (const double a : {0.05, 0.2, 0.3, 0.5, 0.7, 0.8, 0.95})
-            CHECK(worstError(ladderFor(a, {10.0, 20000.0, cells}), 10.0, 20000.0) < error * std::max(std::sin(std::numbers::pi * a), 0.16));
+            CHECK(worstError(ladderFor(a, {10.0, 20000.0, cells}), 10.0, 20000.0)
+                  < error * std::max(std::sin(std::numbers::pi * a), 0.16));
         CHECK(worstError(ladderFor(0.5, {10.0, 20000.0, cells}), 10.0, 20000.0) > 0.8 * error);
         CHECK(worstError(ladderFor(0.5, {0.01, 1e5, cells}), 0.01, 1e5) < error);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fractional models against closed forms: the circuit and the loudspeaker of seed chapter 5, Matignon's sector against the theorems' matrices.
+// Fractional models against closed forms: the circuit and the loudspeaker of seed chapter 5, Matignon's sector against
+// the theorems' matrices.
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
 #include "Engine/Fractional/TimeResponse.h"
 #include "Engine/Linear/LinearHold.h"
@@ -32,16 +33,18 @@ FractionalStateSpace circuit(double alpha)
 }
 
 constexpr double mass = 14.35e-3, drag = 0.786, stiffness = 1852.0, force = 4.95, resistance = 3.3;
-constexpr double semiInductance = 0.1197;   // ohm s^1/2. The seed prints 0.1197 microhenry: 450 times the 266 microhenry of its chapter 2
+// ohm s^1/2. The seed prints 0.1197 microhenry: 450 times the 266 microhenry of its chapter 2
+constexpr double semiInductance = 0.1197;
 
-/// The admittance of seed 5.2, states x, D^1/2 x, D x, D^3/2 x, i. The seed's A (5.39) prints the drag r/m in the column of D^1/2 x; the force is -r D x.
+/// The admittance of seed 5.2, states x, D^1/2 x, D x, D^3/2 x, i. The seed's A (5.39) prints the drag r/m in the
+/// column of D^1/2 x; the force is -r D x.
 FractionalStateSpace loudspeaker()
 {
     FractionalStateSpace model;
     model.alpha = 0.5;
     model.form.A = Eigen::MatrixXd::Zero(5, 5);
-    model.form.A << 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, -stiffness / mass, 0, -drag / mass, 0, force / mass, 0, 0, -force / semiInductance,
-        0, -resistance / semiInductance;
+    model.form.A << 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, -stiffness / mass, 0, -drag / mass, 0, force / mass, 0,
+        0, -force / semiInductance, 0, -resistance / semiInductance;
     model.form.B = Eigen::MatrixXd::Zero(5, 1);
     model.form.B(4, 0) = 1.0 / semiInductance;
     model.form.C = Eigen::MatrixXd::Zero(1, 5);
@@ -52,7 +55,7 @@ FractionalStateSpace loudspeaker()
 
 Eigen::MatrixXd step(Eigen::Index samples) { return Eigen::MatrixXd::Ones(samples, 1); }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The seed's circuit answers as 1/(1 + RC s^alpha)")
 {
@@ -65,7 +68,8 @@ TEST_CASE("The seed's circuit answers as 1/(1 + RC s^alpha)")
             const Complex truth = 1.0 / (1.0 + std::pow(Complex(0.0, f / 1000.0), alpha));
             CHECK(std::abs(respond(model, {f})[0](0, 0) - truth) < 1e-14 * std::abs(truth));
         }
-        // At the cut-off 1/(1 + j^alpha): |H| = 1/sqrt(2 + 2 cos(alpha pi/2)), arg = -alpha pi/4 (the seed prints cos(alpha pi) and -alpha pi/2).
+        // At the cut-off 1/(1 + j^alpha): |H| = 1/sqrt(2 + 2 cos(alpha pi/2)), arg = -alpha pi/4 (the seed prints
+        // cos(alpha pi) and -alpha pi/2).
         const Complex cut = respond(model, {1000.0})[0](0, 0);
         CHECK(std::abs(cut) == Approx(1.0 / std::sqrt(2.0 + 2.0 * std::cos(0.5 * alpha * pi))).epsilon(1e-13));
         CHECK(std::arg(cut) == Approx(-0.25 * alpha * pi).epsilon(1e-12));
@@ -76,7 +80,8 @@ TEST_CASE("The seed's circuit answers as 1/(1 + RC s^alpha)")
 TEST_CASE("The step of the seed's circuit is that of erfc, by Mittag-Leffler, ladder and difference")
 {
     const auto model = circuit(0.5);
-    const auto truth = [](double t) { return 1.0 - std::exp(2000.0 * pi * t) * std::erfc(std::sqrt(2000.0 * pi * t)); };   // seed 5.32
+    // seed 5.32
+    const auto truth = [](double t) { return 1.0 - std::exp(2000.0 * pi * t) * std::erfc(std::sqrt(2000.0 * pi * t)); };
     const double fs = 1e6;
     std::vector<double> times;
     for (int n = 0; n <= 1000; ++n)
@@ -85,7 +90,8 @@ TEST_CASE("The step of the seed's circuit is that of erfc, by Mittag-Leffler, la
     for (std::size_t n = 0; n < times.size(); n += 50)
         CHECK(exact[n](0, 0) == Approx(truth(times[n])).epsilon(1e-12).margin(1e-300));
     const auto ladder = simulateByLadder(model, step(1001), fs, {30.0, 1e6, 4.0});
-    const auto coarse = simulateByDifference(model, step(501), 0.5 * fs), fine = simulateByDifference(model, step(1001), fs);
+    const auto coarse = simulateByDifference(model, step(501), 0.5 * fs),
+               fine = simulateByDifference(model, step(1001), fs);
     for (Eigen::Index n = 100; n <= 1000; n += 100) {
         const double y = exact[static_cast<std::size_t>(n)](0, 0);
         CHECK(std::abs(ladder(n, 0) - y) < 3e-6);
@@ -104,7 +110,8 @@ TEST_CASE("The seed's loudspeaker has the impedance R + L s^1/2 + Bl^2 s/(m s^2 
     CHECK(isStable(model));
     for (const double f : {5.0, 57.2, 400.0, 20000.0}) {
         const Complex s(0.0, 2.0 * pi * f);
-        const Complex Z = resistance + semiInductance * std::sqrt(s) + force * force * s / (mass * s * s + drag * s + stiffness);
+        const Complex Z = resistance + semiInductance * std::sqrt(s)
+                          + force * force * s / (mass * s * s + drag * s + stiffness);
         CHECK(std::abs(respond(model, {f})[0](0, 0) * Z - 1.0) < 1e-12);
     }
 }
@@ -113,10 +120,8 @@ TEST_CASE("The step of the seed's loudspeaker agrees with the inverted Laplace t
 {
     // mpmath 1.3, invertlaplace by Talbot's method with 40 digits
     const double references[][3] = {
-        {1e-4, 0.0748284345361912659, 290.200143080931503},
-        {1e-3, 0.139477199472198469, 8.08463666664997112},
-        {5e-3, 0.117581991149642893, 9.21282300984193766},
-        {2e-2, 0.2488214895837221, 1.15593514687575515},
+        {1e-4, 0.0748284345361912659, 290.200143080931503}, {1e-3, 0.139477199472198469, 8.08463666664997112},
+        {5e-3, 0.117581991149642893, 9.21282300984193766},  {2e-2, 0.2488214895837221, 1.15593514687575515},
         {0.1, 0.282713598740550985, 0.109138076819688563},
     };
     const auto model = loudspeaker();
@@ -127,7 +132,7 @@ TEST_CASE("The step of the seed's loudspeaker agrees with the inverted Laplace t
     const double fs = 20000.0;
     const auto ladder = simulateByLadder(model, step(2001), fs, {0.3, 1e5, 3.0});
     const auto difference = simulateByDifference(model, step(2001), fs);
-    const double largest = 0.28;   // A
+    const double largest = 0.28;  // A
     for (const auto& [t, y, h] : references) {
         const auto n = static_cast<Eigen::Index>(std::lround(t * fs));
         CHECK(std::abs(ladder(n, 0) - y) < 1e-5 * largest);
@@ -142,7 +147,8 @@ TEST_CASE("Beyond order 1 responses oscillate, and ladders follow")
     model.form.A(0, 0) = -50.0;
     model.form.B(0, 0) = 1.0;
     // 1/(s (s^1.5 + 50)), mpmath as above
-    for (const auto& [t, y] : {std::pair {0.01, 0.00074396703364485174}, std::pair {0.1, 0.01680500820516637}, std::pair {0.5, 0.0194858079842693954}})
+    for (const auto& [t, y] : {std::pair {0.01, 0.00074396703364485174}, std::pair {0.1, 0.01680500820516637},
+                               std::pair {0.5, 0.0194858079842693954}})
         CHECK(stepResponse(model, {t})[0](0, 0) == Approx(y).epsilon(1e-11).margin(0.0));
     const auto ladder = simulateByLadder(model, step(501), 1000.0, {0.05, 5000.0, 4.0});
     const auto difference = simulateByDifference(model, step(501), 1000.0);
@@ -163,7 +169,8 @@ TEST_CASE("The expanded model has the response of the fractional one, for any in
         const Complex s(0.0, 2.0 * pi * f);
         Eigen::MatrixXcd resolvent = -wide.A.cast<Complex>();
         resolvent.diagonal().array() += s;
-        const Complex found = (wide.C.cast<Complex>() * resolvent.lu().solve(wide.B.cast<Complex>()))(0, 0) + wide.D(0, 0);
+        const Complex found = (wide.C.cast<Complex>() * resolvent.lu().solve(wide.B.cast<Complex>()))(0, 0)
+                              + wide.D(0, 0);
         // Four times the 7.3e-8 of s^1/2 in s^2, against a damping of 1/6.6 at resonance
         CHECK(std::abs(found - truth) < 2e-6 * std::abs(truth));
         // To rounding it is the model at the ladder's lambda.
@@ -202,11 +209,13 @@ TEST_CASE("Matignon's sector agrees with the matrices of the seed's theorems 3 a
         model.form.C = Eigen::MatrixXd::Ones(1, n);
         const double s = std::sin(0.5 * pi * model.alpha), c = std::cos(0.5 * pi * model.alpha);
         Eigen::MatrixXd extended(2 * n, 2 * n);
-        if (model.alpha >= 1.0) {   // theorem 3: stable exactly when the eigenvalues of this have negative real parts
+        // theorem 3: stable exactly when the eigenvalues of this have negative real parts
+        if (model.alpha >= 1.0) {
             extended << A * s, A * c, -A * c, A * s;
             const double largest = extended.eigenvalues().real().maxCoeff();
             CHECK(isStable(model) == (largest < 0.0));
-        } else {   // theorem 4: all eigenvalues of A within the sector exactly when those of this have negative real parts
+            // theorem 4: all eigenvalues of A within the sector exactly when those of this have negative real parts
+        } else {
             extended << -A * s, A * c, -A * c, -A * s;
             const auto values = A.eigenvalues();
             bool all = true;
@@ -227,12 +236,15 @@ TEST_CASE("Matignon's sector agrees with the matrices of the seed's theorems 3 a
         for (const double side : {-0.03, 0.03}) {
             FractionalStateSpace model = circuit(alpha);
             const double angle = 0.5 * pi * alpha + side;
-            model.form.A = (Eigen::MatrixXd(2, 2) << std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle)).finished();
+            model.form.A = (Eigen::MatrixXd(2, 2) << std::cos(angle), std::sin(angle), -std::sin(angle),
+                            std::cos(angle))
+                               .finished();
             model.form.B = Eigen::MatrixXd::Ones(2, 1);
             model.form.C = Eigen::MatrixXd::Ones(1, 2);
             CHECK(isStable(model) == (side > 0.0));
             CHECK(sectorMargin(model) == Approx(side).margin(1e-12));
-            const double late = std::abs(impulseResponse(model, {400.0})[0](0, 0)), early = std::abs(impulseResponse(model, {4.0})[0](0, 0));
+            const double late = std::abs(impulseResponse(model, {400.0})[0](0, 0)),
+                         early = std::abs(impulseResponse(model, {4.0})[0](0, 0));
             CHECK((late < early) == (side > 0.0));
         }
     FractionalStateSpace integrator = circuit(0.5);

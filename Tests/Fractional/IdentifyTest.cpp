@@ -49,7 +49,7 @@ Complex known(double f, double alpha)
 
 const MixedImpedance driver {3.3, 0.02, 0.6, 1700.0, 57.0, 6.5};
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Sections know Matignon's sector")
 {
@@ -63,7 +63,9 @@ TEST_CASE("Sections know Matignon's sector")
             const auto moved = mirrored(sections);
             CHECK(isStable(moved));
             const double found = std::abs(std::arg(poles(moved)[0]));
-            CHECK(found == Approx(angle > border ? angle : std::min(2.0 * border - angle, 0.5 * (border + pi))).epsilon(1e-9));
+            CHECK(
+                found
+                == Approx(angle > border ? angle : std::min(2.0 * border - angle, 0.5 * (border + pi))).epsilon(1e-9));
             CHECK(std::abs(poles(moved)[0]) == Approx(7.0));
         }
         CHECK(isStable(sectionsOf({-1.0, -50.0, -3.0}, 0.0, 1.0, alpha)));
@@ -78,7 +80,8 @@ TEST_CASE("An exact response of fractional order is met to rounding, below and a
 {
     for (const double alpha : {0.3, 0.5, 0.8, 1.3}) {
         INFO("alpha " << alpha);
-        const auto data = responseOf(logarithmicLines(1.0, 20000.0, 150), [alpha](double f) { return known(f, alpha); });
+        const auto data = responseOf(logarithmicLines(1.0, 20000.0, 150),
+                                     [alpha](double f) { return known(f, alpha); });
         FractionalOptions options;
         options.order = 5;
         options.alpha = alpha;
@@ -118,7 +121,7 @@ TEST_CASE("The standard error of alpha is the spread of its estimates", "[slow]"
         CHECK(found.alphaDeviation < 1e-2);
         sum += std::pow((found.model.alpha - 0.6) / found.alphaDeviation, 2);
     }
-    CHECK(sum > 10.0);   // 0.5 and 99.9 % of chi^2
+    CHECK(sum > 10.0);  // 0.5 and 99.9 % of chi^2
     CHECK(sum < 51.0);
     // Without known deviations the noise is estimated from what is left.
     auto data = responseOf(lines, [](double f) { return 1.0 / (1.0 + std::pow(Complex(0.0, f / 300.0), 0.6)); });
@@ -147,7 +150,7 @@ TEST_CASE("The standard errors of a mixed-order impedance are the spread of its 
             square[j] += std::pow((fit.model.values()[j] - driver.values()[j]) / fit.deviation.values()[j], 2) / draws;
     }
     for (const double s : square)
-        CHECK(s == Approx(1.0).margin(0.35));   // 3.5 standard deviations of chi^2 over 200
+        CHECK(s == Approx(1.0).margin(0.35));  // 3.5 standard deviations of chi^2 over 200
 }
 
 TEST_CASE("A mixed-order impedance is met exactly, with alpha free or given")
@@ -182,11 +185,11 @@ TEST_CASE("The fixed problem: an impedance with R + L s^1/2, at the noise")
 
     const auto mixed = fitMixedImpedance(data);
     CHECK(mixed.converged);
-    CHECK(mixed.errorDb < -39.6);   // the noise floor
+    CHECK(mixed.errorDb < -39.6);  // the noise floor
     CHECK(mixed.likelihood == Approx(400.0).margin(60.0));
     CHECK(std::abs(mixed.model.alpha - 0.5) < 2.0 * mixed.deviation.alpha);
     CHECK(mixed.deviation.alpha < 2e-3);
-    CHECK(2.0 * distanceToTruth([&](double f) { return mixed.model.at(f); }) < 22.5);   // 99.9 % of chi^2 of 6
+    CHECK(2.0 * distanceToTruth([&](double f) { return mixed.model.at(f); }) < 22.5);  // 99.9 % of chi^2 of 6
 
     FractionalOptions options;
     options.order = 5;
@@ -194,7 +197,7 @@ TEST_CASE("The fixed problem: an impedance with R + L s^1/2, at the noise")
     const auto fixed = identifyFractional(data, options);
     CHECK(fixed.errorDb < -39.6);
     CHECK(fixed.stable);
-    CHECK(2.0 * distanceToTruth([&](double f) { return respond(fixed.model, {f})[0](0, 0); }) < 31.3);   // of 11
+    CHECK(2.0 * distanceToTruth([&](double f) { return respond(fixed.model, {f})[0](0, 0); }) < 31.3);  // of 11
 }
 
 TEST_CASE("With alpha free the fixed problem tells 1/2 at order 5, and that order 6 does not care", "[slow]")

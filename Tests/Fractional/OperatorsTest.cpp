@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fractional integrals and derivatives of monomials against D^alpha t^p = Gamma(p + 1)/Gamma(p + 1 - alpha) t^(p - alpha).
+// Fractional integrals and derivatives of monomials against D^alpha t^p = Gamma(p + 1)/Gamma(p + 1 - alpha) t^(p -
+// alpha).
 #include "Engine/Fractional/Operators.h"
 #include "Measurement/Scratch.h"
 
@@ -21,7 +22,9 @@ double errorOf(const Operator& apply, double p, double alpha, int samples)
     for (int n = 0; n < samples; ++n)
         f.push_back(std::pow(n * T, p));
     const auto found = apply(f, T);
-    const auto truth = [&](double t) { return std::tgamma(p + 1.0) / std::tgamma(p + 1.0 - alpha) * std::pow(t, p - alpha); };
+    const auto truth = [&](double t) {
+        return std::tgamma(p + 1.0) / std::tgamma(p + 1.0 - alpha) * std::pow(t, p - alpha);
+    };
     double worst = 0.0;
     for (int n = samples / 2; n < samples; ++n)
         worst = std::max(worst, std::abs(found[static_cast<std::size_t>(n)] - truth(n * T)));
@@ -34,17 +37,17 @@ double orderOf(const Operator& apply, double p, double alpha)
     return std::log2(errorOf(apply, p, alpha, 1001) / errorOf(apply, p, alpha, 2001));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The weights of Gruenwald and Letnikov are binomial coefficients")
 {
-    const auto third = gruenwaldWeights(3.0, 6);   // 1 -3 3 -1 0 0
+    const auto third = gruenwaldWeights(3.0, 6);  // 1 -3 3 -1 0 0
     for (std::size_t j = 0; j < 6; ++j)
         CHECK(third[j] == std::vector<double> {1, -3, 3, -1, 0, 0}[j]);
     const auto sum = gruenwaldWeights(-1.0, 6);
     for (const double w : sum)
         CHECK(w == 1.0);
-    const auto half = gruenwaldWeights(0.5, 5);   // 1 - x/2 - x^2/8 - x^3/16 - 5 x^4/128
+    const auto half = gruenwaldWeights(0.5, 5);  // 1 - x/2 - x^2/8 - x^3/16 - 5 x^4/128
     CHECK(half[4] == Approx(-5.0 / 128.0).epsilon(1e-15));
 }
 
@@ -55,7 +58,7 @@ TEST_CASE("Gruenwald and Letnikov's difference converges with order 1")
         INFO("alpha " << alpha);
         for (const double p : {1.0, 1.5, 3.0}) {
             if (p == 1.0 && alpha > 1.0)
-                continue;   // t^(1 - alpha) is singular at 0
+                continue;  // t^(1 - alpha) is singular at 0
             CHECK(errorOf(apply, p, alpha, 2001) < 5e-3);
             CHECK(orderOf(apply, p, alpha) == Approx(1.0).margin(0.1));
         }
@@ -98,7 +101,8 @@ TEST_CASE("Caputo's and Riemann and Liouville's derivatives converge with order 
         line.push_back(3.0 + 2.0 * 0.01 * n);
     CHECK(std::abs(caputoDerivative(line, 1.3, 0.01)[80]) < 1e-9);
     CHECK(riemannLiouvilleDerivative(line, 1.3, 0.01)[80]
-          == Approx(3.0 * std::pow(0.8, -1.3) / std::tgamma(-0.3) + 2.0 * std::pow(0.8, -0.3) / std::tgamma(0.7)).epsilon(1e-9));
+          == Approx(3.0 * std::pow(0.8, -1.3) / std::tgamma(-0.3) + 2.0 * std::pow(0.8, -0.3) / std::tgamma(0.7))
+                 .epsilon(1e-9));
 }
 
 TEST_CASE("Two half integrals of a long record make a whole one")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smaller and stable models of fractional order, against responses that are written out here by poles, zeros and partial fractions.
+// Smaller and stable models of fractional order, against responses that are written out here by poles, zeros and
+// partial fractions.
 #include "Engine/Fractional/FractionalIdentify.h"
 #include "Engine/Fractional/FractionalReduction.h"
 #include "Engine/Fractional/FractionalStabilization.h"
@@ -16,7 +17,10 @@ using std::numbers::pi;
 
 namespace {
 
-double drawn(Normal& normal, double low, double high) { return low + (high - low) * 0.5 * std::erfc(-normal() / std::numbers::sqrt2); }
+double drawn(Normal& normal, double low, double high)
+{
+    return low + (high - low) * 0.5 * std::erfc(-normal() / std::numbers::sqrt2);
+}
 
 Complex onRay(double f, double alpha) { return std::pow(Complex(0.0, 2.0 * pi * f), alpha); }
 
@@ -37,16 +41,18 @@ Complex byRoots(const PoleZeroGain& g, Complex lambda)
     return value;
 }
 
-/// Stable poles within the band of 10 Hz to 1 kHz, on the imaginary axis and on either side of it as alpha allows; some remote, some with
-/// a zero close by.
+/// Stable poles within the band of 10 Hz to 1 kHz, on the imaginary axis and on either side of it as alpha allows; some
+/// remote, some with a zero close by.
 PoleZeroGain randomFractional(double alpha, Normal& normal)
 {
     PoleZeroGain g;
     g.gain = 3.0;
-    const double least = std::pow(2.0 * pi * 10.0, alpha), most = std::pow(2.0 * pi * 1000.0, alpha), border = 0.5 * pi * alpha;
+    const double least = std::pow(2.0 * pi * 10.0, alpha), most = std::pow(2.0 * pi * 1000.0, alpha),
+                 border = 0.5 * pi * alpha;
     for (int k = 0; k < 5; ++k) {
         const bool far = k == 4;
-        const double size = far ? most * drawn(normal, 30.0, 80.0) : least * std::pow(most / least, drawn(normal, 0.0, 1.0));
+        const double size = far ? most * drawn(normal, 30.0, 80.0)
+                                : least * std::pow(most / least, drawn(normal, 0.0, 1.0));
         const double angle = k == 0 && alpha < 0.9 ? 0.5 * pi : drawn(normal, border + 0.1 * (pi - border), 0.95 * pi);
         const auto pole = k == 1 ? Complex(-size, 0.0) : std::polar(size, angle);
         addBoth(g.poles, pole);
@@ -57,13 +63,14 @@ PoleZeroGain randomFractional(double alpha, Normal& normal)
     return g;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The distance of a root to the rays of a band is that to their points")
 {
     Normal normal(3);
     for (int trial = 0; trial < 200; ++trial) {
-        const double alpha = drawn(normal, 0.2, 1.8), low = drawn(normal, 0.0, 100.0), high = low + drawn(normal, 10.0, 1000.0);
+        const double alpha = drawn(normal, 0.2, 1.8), low = drawn(normal, 0.0, 100.0),
+                     high = low + drawn(normal, 10.0, 1000.0);
         const auto root = std::polar(std::pow(2.0 * pi * drawn(normal, 1.0, 1500.0), alpha), drawn(normal, -pi, pi));
         double least = 1e300, most = 0.0;
         const int count = 20000;
@@ -78,11 +85,13 @@ TEST_CASE("The distance of a root to the rays of a band is that to their points"
         INFO("alpha " << alpha << ", band " << low << " to " << high << ", root " << root);
         CHECK(found.most == Approx(most));
         CHECK(found.least <= least * (1.0 + 1e-9));
-        CHECK(found.least >= least - 2.0 * std::abs(onRay(high, alpha) - onRay(high - (high - low) / count, alpha)) - 1e-3 * most);
+        CHECK(found.least
+              >= least - 2.0 * std::abs(onRay(high, alpha) - onRay(high - (high - low) / count, alpha)) - 1e-3 * most);
     }
 }
 
-TEST_CASE("Remote roots and pairs that cancel are taken out of fractional models within the bound, measured along the rays")
+TEST_CASE(
+    "Remote roots and pairs that cancel are taken out of fractional models within the bound, measured along the rays")
 {
     Normal normal(7);
     int taken = 0;
@@ -115,10 +124,11 @@ TEST_CASE("Remote roots and pairs that cancel are taken out of fractional models
             CHECK(isStable(found.model));
             CHECK(last.order == found.model.form.order());
         }
-    CHECK(taken >= 120);   // of 30 models each has a pair, or two, and a remote pole
+    CHECK(taken >= 120);  // of 30 models each has a pair, or two, and a remote pole
 }
 
-TEST_CASE("A pair on the imaginary axis hides nothing from a model of order one half, and is taken out; at order one it would resonate")
+TEST_CASE("A pair on the imaginary axis hides nothing from a model of order one half, and is taken out; at order one "
+          "it would resonate")
 {
     PoleZeroGain g;
     g.gain = 1.0;
@@ -165,7 +175,7 @@ TEST_CASE("A fractional model that was pruned by a response keeps what the respo
     pruning.order = 4;
     const auto small = prune(large.model, data, pruning);
     REQUIRE(small.model.form.order() == 4);
-    CHECK(small.steps.back().errorDb < -59.0);   // the noise is at -60 dB
+    CHECK(small.steps.back().errorDb < -59.0);  // the noise is at -60 dB
     CHECK(isStable(small.model));
     for (const double f : {12.0, 170.0, 3000.0})
         CHECK(std::abs(respond(small.model, {f})[0](0, 0) - truth(f)) < 2e-3 * std::abs(truth(f)));
@@ -178,7 +188,9 @@ TEST_CASE("What cannot be reduced is refused in a sentence")
     g.poles = {-1.0};
     const FractionalStateSpace model {0.5, realize(g)};
     refused(Error::Kind::usage, "within a band", [&] { reduceByPolesAndZeros(model, {}); });
-    refused(Error::Kind::usage, "between 0 and 2", [&] { reduceByPolesAndZeros(FractionalStateSpace {2.5, model.form}, {}); });
+    refused(Error::Kind::usage, "between 0 and 2", [&] {
+        reduceByPolesAndZeros(FractionalStateSpace {2.5, model.form}, {});
+    });
     PoleZeroReductionOptions options;
     options.alpha = 0.5;
     auto discrete = model.form;
@@ -248,20 +260,22 @@ Parts randomParts(double alpha, Normal& normal)
     for (int k = 0; k < 5; ++k) {
         const bool stable = k < 3;
         const double size = std::pow(10.0, drawn(normal, 0.5, 2.0));
-        auto pole = std::polar(size, stable ? border + drawn(normal, 0.15, 0.9) * (pi - border) : drawn(normal, 0.1, 0.85) * border);
+        auto pole = std::polar(size, stable ? border + drawn(normal, 0.15, 0.9) * (pi - border)
+                                            : drawn(normal, 0.1, 0.85) * border);
         if (k == 2)
             pole = -size;
         if (k == 4)
             pole = size;
         parts.poles.push_back(pole);
-        parts.residues.push_back(pole.imag() == 0.0 ? Complex(size, 0.0) : size * Complex(drawn(normal, -1.0, 1.0),
-                                                                                          drawn(normal, -1.0, 1.0)));
+        parts.residues.push_back(pole.imag() == 0.0
+                                     ? Complex(size, 0.0)
+                                     : size * Complex(drawn(normal, -1.0, 1.0), drawn(normal, -1.0, 1.0)));
     }
     parts.stable = 3;
     return parts;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A fractional model falls apart at the border of the sector, and the parts are those it was made of")
 {
@@ -285,7 +299,8 @@ TEST_CASE("A fractional model falls apart at the border of the sector, and the p
                 const auto lambda = onRay(f, alpha);
                 const auto size = std::abs(respond(model, {f})[0](0, 0)) + 1.0;
                 CHECK(std::abs(respond(model, {f})[0](0, 0) - parts.direct - parts.at(lambda, 0, 5)) < 1e-9 * size);
-                CHECK(std::abs(respond(found.model, {f})[0](0, 0) - parts.direct - parts.at(lambda, 0, 3)) < 1e-8 * size);
+                CHECK(std::abs(respond(found.model, {f})[0](0, 0) - parts.direct - parts.at(lambda, 0, 3))
+                      < 1e-8 * size);
                 CHECK(std::abs(respond(*found.unstable, {f})[0](0, 0) - parts.at(lambda, 3, 5)) < 1e-8 * size);
             }
         }
@@ -346,8 +361,7 @@ TEST_CASE("Unstable fractional fits of stable systems are stabilized, and the re
                 options.method = method;
                 const auto found = stabilized(free.model, data, options);
                 INFO("alpha " << alpha << ", seed " << seed << ": " << found.steps[0].weightedErrorDb << ", "
-                     << found.steps[1].weightedErrorDb << ", "
-                              << found.steps.back().weightedErrorDb << " dB");
+                              << found.steps[1].weightedErrorDb << ", " << found.steps.back().weightedErrorDb << " dB");
                 REQUIRE(found.steps.size() == 3);
                 CHECK_FALSE(found.steps[0].stable);
                 CHECK(found.steps[1].stable);
@@ -378,7 +392,9 @@ TEST_CASE("What cannot be stabilized at the sector is refused, and what is stabl
     refused(Error::Kind::usage, "No delay", [&] { stabilized(bad, sampled(bad), options); });
     options.alpha = 0.5;
     refused(Error::Kind::usage, "order of differentiation", [&] { stabilized(bad.form, sampled(bad), options); });
-    refused(Error::Kind::usage, "between 0 and 2", [&] { stabilized(FractionalStateSpace {2.0, bad.form}, sampled(bad)); });
+    refused(Error::Kind::usage, "between 0 and 2", [&] {
+        stabilized(FractionalStateSpace {2.0, bad.form}, sampled(bad));
+    });
     refused(Error::Kind::usage, "between 0 and 2", [&] { decomposed(bad.form, -1.0); });
     auto several = bad;
     several.form.C = several.form.C.replicate(2, 1).eval();

@@ -11,11 +11,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     try {
         const auto header = parseMeasurementJson({reinterpret_cast<const char*>(data), size}, "fuzz.json");
-        fuzz::demand(header.measurement.sampleRate >= 1.0 && header.measurement.sampleRate <= 1e8, "a possible sample rate");
+        fuzz::demand(header.measurement.sampleRate >= 1.0 && header.measurement.sampleRate <= 1e8,
+                     "a possible sample rate");
         for (const auto& channel : header.measurement.channels)
             fuzz::demand(std::isfinite(channel.fullScale) && channel.fullScale > 0.0, "a full scale");
         if (const auto& e = header.measurement.excitation) {
-            fuzz::demand(e->period > 0 && e->periods > 0 && e->realizations > 0 && e->settlePeriods >= 0 && !e->levels.empty(), "a possible excitation");
+            fuzz::demand(e->period > 0 && e->periods > 0 && e->realizations > 0 && e->settlePeriods >= 0
+                             && !e->levels.empty(),
+                         "a possible excitation");
             fuzz::demand(e->totalSamples() > 0, "lengths that do not overflow");
         }
         measurementJson(header.measurement, header.audio).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -27,11 +30,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 std::vector<std::string> fuzz::seeds()
 {
-    return {R"({"format": "excursion-measurement", "version": 1, "sampleRate": 48000.0, "audio": "take.wav",
+    return {
+        R"({"format": "excursion-measurement", "version": 1, "sampleRate": 48000.0, "audio": "take.wav",
  "channels": [{"quantity": "voltage", "unit": "V", "fullScale": 16.0}, {"quantity": "current", "unit": "mA", "fullScale": 4.0}],
  "excitation": {"kind": "multisine", "period": 1024, "settlePeriods": 1, "periods": 2, "realizations": 3, "levels": [0.3, 1.2, 2.7],
   "grid": "odd-random", "shape": "pink", "band": [11.7, 3668.8], "lines": [5, 9, 11]},
  "driver": {"name": "midbass", "coneArea": 0.0103, "microphoneDistance": 0.112}})",
-            R"({"format": "excursion-measurement", "version": 1, "sampleRate": 44100, "audio": "a.wav", "channels": [{"quantity": "force", "unit": "V", "fullScale": 1}]})",
-            R"({"format":"excursion-measurement","version":1,"sampleRate":1e4,"audio":"a.wav","channels":[{"quantity":"voltage","unit":"V","fullScale":1}],"excitation":{"kind":"noise"}})"};
+        R"({"format": "excursion-measurement", "version": 1, "sampleRate": 44100, "audio": "a.wav", "channels": [{"quantity": "force", "unit": "V", "fullScale": 1}]})",
+        R"({"format":"excursion-measurement","version":1,"sampleRate":1e4,"audio":"a.wav","channels":[{"quantity":"voltage","unit":"V","fullScale":1}],"excitation":{"kind":"noise"}})"};
 }

@@ -23,7 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 std::vector<std::string> fuzz::seeds()
 {
-    const std::string base = R"({"format": "excursion-model", "version": 1, "name": "m", "base": {"id": "electrodynamic", "parameters": [
+    const std::string base =
+        R"({"format": "excursion-model", "version": 1, "name": "m", "base": {"id": "electrodynamic", "parameters": [
  {"name": "Re", "value": 4.27, "unit": "ohm", "standardError": 0.001, "free": true}, {"name": "Le", "value": 0.000243, "unit": "H", "standardError": null, "free": true},
  {"name": "Bl", "value": 5.4, "unit": "N/A", "standardError": 0.002, "free": true}, {"name": "m", "value": 0.011, "unit": "kg", "standardError": 1e-5, "free": true},
  {"name": "Rms", "value": 1.87, "unit": "N s/m", "standardError": 0.003, "free": true}, {"name": "K", "value": 1415.0, "unit": "N/m", "standardError": 1.9, "free": true}]},)";

@@ -27,7 +27,7 @@ extern "C" const char* __asan_default_options()
 
 namespace {
 
-std::string current;   // what is being read
+std::string current;  // what is being read
 constexpr std::size_t largest = 1 << 16;
 
 void keep(int signal)
@@ -117,12 +117,12 @@ private:
         case 3: text.insert(at, tokens[below(std::size(tokens))]); break;
         case 4: text.insert(at, text.substr(below(text.size() + 1), below(64))); break;
         case 5: text.resize(at); break;
-        case 6: {   // the rest of another one
+        case 6: {  // the rest of another one
             const auto& other = pool_[below(pool_.size())];
             text = text.substr(0, at) + other.substr(below(other.size() + 1));
             break;
         }
-        case 7: {   // a number in the file, as a header has it
+        case 7: {  // a number in the file, as a header has it
             const std::uint64_t numbers[] {0,
                                            1,
                                            0x7F,
@@ -157,7 +157,7 @@ double run(std::string input)
     return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-} // namespace
+}  // namespace
 
 int main(int argc, char** argv)
 {

@@ -52,4 +52,4 @@ MemoryFile::~MemoryFile() { close(descriptor_); }
 
 std::filesystem::path MemoryFile::path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
-} // namespace excursion::fuzz
+}  // namespace excursion::fuzz

@@ -39,4 +39,4 @@ private:
     int descriptor_;
 };
 
-} // namespace excursion::fuzz
+}  // namespace excursion::fuzz

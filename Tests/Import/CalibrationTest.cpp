@@ -28,12 +28,13 @@ std::vector<double> toneBetweenNoise(double rms, double frequency, double noise,
     std::vector<double> x(static_cast<std::size_t>(5 * rate));
     for (std::size_t n = 0; n < x.size(); ++n) {
         const double t = static_cast<double>(n) / rate;
-        x[n] = normal(random) + (t >= 1 && t < 4 ? rms * std::numbers::sqrt2 * std::sin(turn * frequency * t + 0.3) : 0.0);
+        x[n] = normal(random)
+               + (t >= 1 && t < 4 ? rms * std::numbers::sqrt2 * std::sin(turn * frequency * t + 0.3) : 0.0);
     }
     return x;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A tone's level and frequency are told within their uncertainty", "[import][calibration]")
 {
@@ -67,7 +68,8 @@ TEST_CASE("A tone that is not steady, clean or there is refused", "[import][cali
     bad(toneBetweenNoise(0.0, 1000, 0.05), "dB below it");
     bad(changed([](double x, double) { return std::clamp(x, -0.2, 0.2); }), "converter's limit");
     bad(changed([](double x, double t) { return x * (1 + 0.02 * (t - 2.5)); }), "level changes");
-    bad(changed([](double x, double t) { return std::abs(t - 2.5) < 0.2 || std::fmod(t, 0.4) < 0.1 ? 0.0 : x; }), "half a second");
+    bad(changed([](double x, double t) { return std::abs(t - 2.5) < 0.2 || std::fmod(t, 0.4) < 0.1 ? 0.0 : x; }),
+        "half a second");
     std::vector<double> chirp(5 * 48000);
     for (std::size_t n = 0; n < chirp.size(); ++n) {
         const double t = static_cast<double>(n) / 48000;
@@ -110,7 +112,8 @@ TEST_CASE("What is connected to an input makes its quantity of volts", "[import]
     }
 }
 
-TEST_CASE("A calibration is the same when written and read again; what is wrong in one is told", "[import][calibration]")
+TEST_CASE("A calibration is the same when written and read again; what is wrong in one is told",
+          "[import][calibration]")
 {
     const Scratch s;
     const auto good = R"({"format": "excursion-calibration", "version": 1, "channels": [
@@ -125,7 +128,8 @@ TEST_CASE("A calibration is the same when written and read again; what is wrong 
     CHECK(jsonText(calibrationJson(readCalibration(s.file("again.json", written)))) == written);
 
     const auto bad = [&](const std::string& channels, const std::string& contains) {
-        const auto path = s.file("bad.json", R"({"format": "excursion-calibration", "version": 1, "channels": )" + channels + "}");
+        const auto path = s.file("bad.json",
+                                 R"({"format": "excursion-calibration", "version": 1, "channels": )" + channels + "}");
         refused(Kind::input, contains, [&] { readCalibration(path); });
     };
     bad("3", "channels");
@@ -138,7 +142,8 @@ TEST_CASE("A calibration is the same when written and read again; what is wrong 
     bad(R"([{"channel": 1, "fullScale": 1, "quantity": "current"}])", "senseResistor");
     bad(R"([{"channel": 1, "fullScale": 1, "quantity": "heat"}])", "quantity");
     bad(R"([{"channel": 1, "fullScale": 1, "unit": "kg", "quantity": "voltage"}])", "kg");
-    refused(Kind::input, "version", [&] { readCalibration(s.file("v.json", R"({"format": "excursion-calibration", "version": 2})")); });
+    refused(Kind::input, "version",
+            [&] { readCalibration(s.file("v.json", R"({"format": "excursion-calibration", "version": 2})")); });
     refused(Kind::input, "does not exist", [&] { readCalibration(s / "none.json"); });
     refused(Kind::input, "is empty", [&] { readCalibration(s.file("e.json", "")); });
 }
@@ -153,7 +158,8 @@ TEST_CASE("A microphone's curve is of minimum phase where it gives no phase", "[
     for (double f = 10; f < 400000; f *= 1.03) {
         const double db = 20 * std::log10(std::abs(shelf(f)));
         text += std::to_string(f) + "\t" + std::to_string(db) + "\n";
-        phased += std::to_string(f) + " " + std::to_string(db) + " " + std::to_string(std::arg(shelf(f)) * 360 / turn) + "\n";
+        phased += std::to_string(f) + " " + std::to_string(db) + " " + std::to_string(std::arg(shelf(f)) * 360 / turn)
+                  + "\n";
     }
     const auto minimum = readMicrophoneCurve(s.file("mic.cal", text), 1000);
     const auto given = readMicrophoneCurve(s.file("mic.frd", phased), 1000);
@@ -165,8 +171,9 @@ TEST_CASE("A microphone's curve is of minimum phase where it gives no phase", "[
         CHECK(std::abs(minimum(f)) == Approx(std::abs(truth)).epsilon(2e-3));
         CHECK(std::arg(minimum(f)) == Approx(std::arg(truth)).margin(0.02));
     }
-    CHECK(std::abs(given(1e6)) == Approx(std::abs(given(399000))).epsilon(1e-2));   // as at its end
-    refused(Kind::input, "beyond 60 dB", [&] { readMicrophoneCurve(s.file("z.txt", "10 100\n20 100\n30 100\n"), 1000); });
+    CHECK(std::abs(given(1e6)) == Approx(std::abs(given(399000))).epsilon(1e-2));  // as at its end
+    refused(Kind::input, "beyond 60 dB",
+            [&] { readMicrophoneCurve(s.file("z.txt", "10 100\n20 100\n30 100\n"), 1000); });
     refused(Kind::input, "", [&] { readMicrophoneCurve(s.file("w.txt", "10 0\n5 0\n30 0\n"), 1000); });
     refused(Kind::input, "is empty", [&] { readMicrophoneCurve(s.file("e.txt", ""), 1000); });
 }

@@ -39,7 +39,8 @@ public:
     {
         const double place = std::abs(u) * static_cast<double>(values_.size() - 2);
         const auto k = static_cast<std::size_t>(place);
-        return k + 1 >= values_.size() ? 0.0 : values_[k] + (place - static_cast<double>(k)) * (values_[k + 1] - values_[k]);
+        return k + 1 >= values_.size() ? 0.0
+                                       : values_[k] + (place - static_cast<double>(k)) * (values_[k + 1] - values_[k]);
     }
 
 private:
@@ -67,8 +68,7 @@ double between(const std::vector<double>& x, double p, const Kaiser& window)
     return sum;
 }
 
-
-} // namespace
+}  // namespace
 
 Played play(const PlayedOptions& options)
 {
@@ -90,7 +90,8 @@ Played play(const PlayedOptions& options)
     voltage.resize((voltage.size() + 4096) / 2 * 2, 0.0);
     const auto speaker = bench::drawLoudspeaker(options.seed, {{"stiffness", 0.3}});
     played.quantities = {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure};
-    const auto run = bench::run(speaker, voltage, options.sampleRate, {Quantity::current, Quantity::displacement, Quantity::pressure}, 0.1, options.bandLow);
+    const auto run = bench::run(speaker, voltage, options.sampleRate,
+                                {Quantity::current, Quantity::displacement, Quantity::pressure}, 0.1, options.bandLow);
     for (const auto quantity : played.quantities) {
         const auto& fine = run.signals.at(quantity);
         // Twice the plan's rate is kept; what the loudspeaker adds above the plan's band is far below the noise.
@@ -109,7 +110,8 @@ Recorded record(const Played& played, const Recorder& recorder)
     const double rate = played.plan.sampleRate;
     Recorded recorded;
     recorded.sampleRate = recorder.sampleRate;
-    const double actual = recorder.sampleRate * (1 + 1e-6 * recorder.ppm);   // samples a second of the player's clock
+    // samples a second of the player's clock
+    const double actual = recorder.sampleRate * (1 + 1e-6 * recorder.ppm);
     recorded.step = actual / rate;
     recorded.start = recorder.lead * actual;
     const double seconds = recorder.lead + static_cast<double>(played.plan.length()) / rate + recorder.tail;
@@ -117,8 +119,9 @@ Recorded record(const Played& played, const Recorder& recorder)
     std::mt19937_64 random(recorder.seed);
     std::normal_distribution<double> normal;
     for (std::size_t c = 0; c < recorder.signals.size(); ++c) {
-        const auto& signal = played.signals[recorder.signals[c]];   // at twice the plan's rate
-        // A recorder that is slower than the plan has a filter that lets nothing above half its rate pass; the plan has nothing there.
+        const auto& signal = played.signals[recorder.signals[c]];  // at twice the plan's rate
+        // A recorder that is slower than the plan has a filter that lets nothing above half its rate pass; the plan has
+        // nothing there.
         std::vector<double> x(length);
         for (std::size_t n = 0; n < length; ++n) {
             const double planSample = (static_cast<double>(n) - recorded.start) / recorded.step;
@@ -140,4 +143,4 @@ Recorded record(const Played& played, const Recorder& recorder)
     return recorded;
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

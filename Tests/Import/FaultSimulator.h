@@ -10,12 +10,13 @@
 
 namespace excursion::test {
 
-/// A plan as it was played to a loudspeaker of the bench, at the plan's rate, with silence before and after it: what perfect sensors would have seen.
+/// A plan as it was played to a loudspeaker of the bench, at the plan's rate, with silence before and after it: what
+/// perfect sensors would have seen.
 struct Played {
     Measurement plan;
-    std::size_t lead = 0;                             ///< samples before the plan's first one
+    std::size_t lead = 0;  ///< samples before the plan's first one
     std::vector<Quantity> quantities;
-    std::vector<std::vector<double>> signals;         ///< SI, one a quantity
+    std::vector<std::vector<double>> signals;  ///< SI, one a quantity
 };
 
 struct PlayedOptions {
@@ -30,26 +31,28 @@ Played play(const PlayedOptions&);
 
 /// One recorder, and what is wrong with it.
 struct Recorder {
-    double sampleRate = 48000.0;   ///< nominal
-    double ppm = 0.0;              ///< its clock is that much fast: it takes more samples
-    double lead = 0.5, tail = 0.5; ///< s before the plan's first sample, as real seconds, and after its last one; a lead below 0 misses the beginning
-    double noise = 1e-4;           ///< rms, of full scale
+    double sampleRate = 48000.0;    ///< nominal
+    double ppm = 0.0;               ///< its clock is that much fast: it takes more samples
+    double lead = 0.5, tail = 0.5;  ///< s before the plan's first sample, as real seconds, and after its last one; a
+                                    ///< lead below 0 misses the beginning
+    double noise = 1e-4;            ///< rms, of full scale
     int bits = 24;
     std::uint64_t seed = 1;
-    std::vector<std::size_t> signals;    ///< which of the played signals are on which channel
-    std::vector<double> fullScale;       ///< of each channel; negative: inverted
-    double dropAt = -1.0;                ///< s after the start of the file at which samples are lost; below 0: none
-    int drop = 0;                        ///< samples lost there
+    std::vector<std::size_t> signals;  ///< which of the played signals are on which channel
+    std::vector<double> fullScale;     ///< of each channel; negative: inverted
+    double dropAt = -1.0;              ///< s after the start of the file at which samples are lost; below 0: none
+    int drop = 0;                      ///< samples lost there
 };
 
 struct Recorded {
     double sampleRate = 0.0;
-    std::vector<std::vector<double>> channels;   ///< -1 .. 1
-    double start = 0.0, step = 1.0;              ///< where the plan truly lies: sample n of it at start + n step
+    std::vector<std::vector<double>> channels;  ///< -1 .. 1
+    double start = 0.0, step = 1.0;             ///< where the plan truly lies: sample n of it at start + n step
 };
 
-/// The band-limited signals between the samples of what was played, read at the recorder's own times by a sinc of 2 x 64 samples on the twofold upsampled
-/// record (by zeros in its spectrum) under a Kaiser window: errors below -130 dB of full scale. Then gain, noise, rounding and clipping.
+/// The band-limited signals between the samples of what was played, read at the recorder's own times by a sinc of 2 x
+/// 64 samples on the twofold upsampled record (by zeros in its spectrum) under a Kaiser window: errors below -130 dB of
+/// full scale. Then gain, noise, rounding and clipping.
 Recorded record(const Played&, const Recorder&);
 
-} // namespace excursion::test
+}  // namespace excursion::test

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings with known faults become takes whose time is right to a small part of a sample, or are refused for the right reason.
+// Recordings with known faults become takes whose time is right to a small part of a sample, or are refused for the
+// right reason.
 #include "Engine/Import/ImportRecording.h"
 #include "Engine/Measurement/TakeCheck.h"
 #include "Engine/Measurement/WavFile.h"
@@ -38,7 +39,8 @@ Recorder recorder(std::vector<std::size_t> signals)
     return r;
 }
 
-RecordingOptions optionsFor(const Played& played, std::vector<std::filesystem::path> files, const std::vector<std::string>& map)
+RecordingOptions optionsFor(const Played& played, std::vector<std::filesystem::path> files,
+                            const std::vector<std::string>& map)
 {
     RecordingOptions options;
     options.files = std::move(files);
@@ -51,16 +53,19 @@ RecordingOptions optionsFor(const Played& played, std::vector<std::filesystem::p
 /// The largest error of the clock that was found, in samples of the plan.
 double clockError(const Alignment& alignment, const Recorded& truth, const Measurement& take)
 {
-    const auto error = [&](double n) { return std::abs(alignment.clock.at(n) - truth.start - n * truth.step) / truth.step; };
+    const auto error = [&](double n) {
+        return std::abs(alignment.clock.at(n) - truth.start - n * truth.step) / truth.step;
+    };
     return std::max(error(0.0), error(static_cast<double>(take.length())));
 }
 
 struct Likeness {
-    double late = 0.0, gain = 0.0, left = 0.0;   ///< samples; ratio; rms of what is left over rms of the signal
+    double late = 0.0, gain = 0.0, left = 0.0;  ///< samples; ratio; rms of what is left over rms of the signal
 };
 
 /// How a channel of a take differs from what was played, by least squares: y = g x - g d x'.
-Likeness against(const std::vector<double>& y, const std::vector<double>& truth, std::size_t lead, std::size_t from, std::size_t to)
+Likeness against(const std::vector<double>& y, const std::vector<double>& truth, std::size_t lead, std::size_t from,
+                 std::size_t to)
 {
     double xx = 0, xd = 0, dd = 0, yx = 0, yd = 0, yy = 0;
     for (auto n = from; n < to; ++n) {
@@ -73,26 +78,32 @@ Likeness against(const std::vector<double>& y, const std::vector<double>& truth,
         yd += y[n] * d;
         yy += y[n] * y[n];
     }
-    const double determinant = xx * dd - xd * xd, g = (yx * dd - yd * xd) / determinant, s = (yd * xx - yx * xd) / determinant;
+    const double determinant = xx * dd - xd * xd, g = (yx * dd - yd * xd) / determinant,
+                 s = (yd * xx - yx * xd) / determinant;
     return {-s / g, g, std::sqrt(std::max(0.0, yy - g * yx - s * yd) / yy)};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A recording with offset, drift, another rate and 16 bits becomes the take that was played", "[import]")
 {
     const auto& played = smallPlay();
     const Scratch scratch;
     auto r = recorder({0, 1, 2});
-    struct Case { double rate, ppm, lead; int bits; };
-    for (const auto& c : {Case {48000, 0, 0.5, 24}, Case {48000, 173.2, 3.21234, 24}, Case {44100, -200, 1.00317, 16}, Case {96000, 61, 0.7, 24}}) {
+    struct Case {
+        double rate, ppm, lead;
+        int bits;
+    };
+    for (const auto& c : {Case {48000, 0, 0.5, 24}, Case {48000, 173.2, 3.21234, 24}, Case {44100, -200, 1.00317, 16},
+                          Case {96000, 61, 0.7, 24}}) {
         r.sampleRate = c.rate;
         r.ppm = c.ppm;
         r.lead = c.lead;
         r.bits = c.bits;
         const auto recorded = record(played, r);
         const auto file = save(scratch, "rec.wav", recorded);
-        const auto imported = importRecording(optionsFor(played, {file}, {"1=voltage:16", "2=current:4", "3=displacement:8mm"}));
+        const auto imported = importRecording(
+            optionsFor(played, {file}, {"1=voltage:16", "2=current:4", "3=displacement:8mm"}));
         INFO("rate " << c.rate << " ppm " << c.ppm);
         REQUIRE(imported.take.length() == played.plan.length());
         CHECK(imported.take.sampleRate == 48000.0);
@@ -102,8 +113,9 @@ TEST_CASE("A recording with offset, drift, another rate and 16 bits becomes the 
         CHECK(imported.remarks.empty());
         const auto block = static_cast<std::size_t>(played.plan.excitation->samplesPerRealization());
         for (std::size_t s = 0; s < 3; ++s)
-            for (const auto from : {block * 4 + block / 3, block * 5 + block / 3}) {   // the loudest level
-                const auto like = against(imported.take.find(played.quantities[s])->samples, played.signals[s], played.lead, from, from + block / 3);
+            for (const auto from : {block * 4 + block / 3, block * 5 + block / 3}) {  // the loudest level
+                const auto like = against(imported.take.find(played.quantities[s])->samples, played.signals[s],
+                                          played.lead, from, from + block / 3);
                 INFO(name(played.quantities[s]));
                 CHECK(std::abs(like.late) < (s == 2 ? 0.05 : 0.01));
                 CHECK(like.gain == Approx(1.0).margin(2e-3));
@@ -119,7 +131,8 @@ TEST_CASE("A recording on the player's own clock is copied, not resampled", "[im
     auto r = recorder({0, 1});
     r.lead = 12345.0 / 48000;
     const auto recorded = record(played, r);
-    const auto imported = importRecording(optionsFor(played, {save(scratch, "rec.wav", recorded)}, {"1=voltage:16", "2=current:-4"}));
+    const auto imported = importRecording(
+        optionsFor(played, {save(scratch, "rec.wav", recorded)}, {"1=voltage:16", "2=current:-4"}));
     CHECK(imported.files[0].alignment.clock.start == 12345.0);
     const auto& voltage = imported.take.find(Quantity::voltage)->samples;
     const auto& current = *imported.take.find(Quantity::current);
@@ -145,8 +158,9 @@ TEST_CASE("Devices with clocks of their own are aligned one by one", "[import]")
     const auto imported = importRecording(options);
     CHECK(clockError(imported.files[0].alignment, first, imported.take) < 0.005);
     CHECK(clockError(imported.files[1].alignment, second, imported.take) < 0.005);
-    options.map[3] = parseChannelMapping("4=pressure:8");   // the same, counted through
-    CHECK(importRecording(options).take.find(Quantity::pressure)->samples == imported.take.find(Quantity::pressure)->samples);
+    options.map[3] = parseChannelMapping("4=pressure:8");  // the same, counted through
+    CHECK(importRecording(options).take.find(Quantity::pressure)->samples
+          == imported.take.find(Quantity::pressure)->samples);
 }
 
 TEST_CASE("A voltage that was not recorded is the plan's, and said to be assumed", "[import]")
@@ -188,7 +202,8 @@ TEST_CASE("The response of an interface is taken off by its loopback", "[import]
     const auto& played = smallPlay();
     const Scratch scratch;
     auto recorded = record(played, recorder({0, 1, 0}));
-    for (auto& channel : recorded.channels) {   // y(n) = x(n - 1) with a pole: 2 dB less at 8 kHz, and later at low frequencies
+    // y(n) = x(n - 1) with a pole: 2 dB less at 8 kHz, and later at low frequencies
+    for (auto& channel : recorded.channels) {
         double before = 0.0, state = 0.0;
         for (auto& x : channel) {
             state = 0.75 * before + 0.25 * state;
@@ -196,12 +211,14 @@ TEST_CASE("The response of an interface is taken off by its loopback", "[import]
             x = state;
         }
     }
-    const auto imported = importRecording(optionsFor(played, {save(scratch, "rec.wav", recorded)}, {"1=voltage:16", "2=current:4", "3=loopback"}));
+    const auto imported = importRecording(
+        optionsFor(played, {save(scratch, "rec.wav", recorded)}, {"1=voltage:16", "2=current:4", "3=loopback"}));
     REQUIRE_FALSE(imported.files[0].loopback->flat);
     CHECK(imported.files[0].loopback->mostDb > 0.5);
     const auto block = static_cast<std::size_t>(played.plan.excitation->samplesPerRealization());
     for (std::size_t s = 0; s < 2; ++s) {
-        const auto like = against(imported.take.find(played.quantities[s])->samples, played.signals[s], played.lead, 4 * block + block / 3, 5 * block);
+        const auto like = against(imported.take.find(played.quantities[s])->samples, played.signals[s], played.lead,
+                                  4 * block + block / 3, 5 * block);
         CHECK(std::abs(like.late) < 0.01);
         CHECK(like.left < 3e-3);
     }
@@ -299,7 +316,8 @@ TEST_CASE("Recordings that cannot become a take are refused", "[import]")
         mapped({"1=voltage:16", "2=current"}, "what a sample of 1.0 stands for");
         mapped({"1=voltage:16", "x.wav:2=current:4"}, "none of the recordings");
         mapped({}, "--map");
-        for (const auto* text : {"voltage:16", "0=voltage:16", "1.5=voltage:16", "1=volts:16", "1=voltage:0", "1=voltage:16kg", "1=voltage:nan", "1=loopback:3", ":1=voltage:3", ""}) {
+        for (const auto* text : {"voltage:16", "0=voltage:16", "1.5=voltage:16", "1=volts:16", "1=voltage:0",
+                                 "1=voltage:16kg", "1=voltage:nan", "1=loopback:3", ":1=voltage:3", ""}) {
             INFO(text);
             refused(Kind::usage, "CHANNEL=QUANTITY", [&] { parseChannelMapping(text); });
         }
@@ -313,7 +331,7 @@ namespace {
 /// What one random recording came to.
 struct Outcome {
     std::string fault, told;
-    double error = -1.0;      ///< samples; below 0: refused
+    double error = -1.0;  ///< samples; below 0: refused
     bool right = false;
 };
 
@@ -363,16 +381,19 @@ Outcome randomRecording(std::uint64_t seed, const std::vector<const Played*>& pl
     auto recorded = record(played, r);
     const auto file = save(scratch, "random.wav", recorded);
     try {
-        const auto imported = importRecording(optionsFor(played, {file}, {"1=voltage:20", "2=current:10", "3=displacement:10mm", "4=pressure:20"}));
+        const auto imported = importRecording(
+            optionsFor(played, {file}, {"1=voltage:20", "2=current:10", "3=displacement:10mm", "4=pressure:20"}));
         outcome.error = clockError(imported.files[0].alignment, recorded, imported.take);
         outcome.told = imported.remarks.empty() ? "" : imported.remarks.front();
-        outcome.right = expected.empty() && outcome.error < 0.02 && (outcome.fault.empty() || imported.take.length() < played.plan.length());
+        outcome.right = expected.empty() && outcome.error < 0.02
+                        && (outcome.fault.empty() || imported.take.length() < played.plan.length());
     } catch (const Error& e) {
         outcome.told = e.what();
         outcome.right = !expected.empty() && outcome.told.find(expected) != std::string::npos;
     }
-    outcome.fault += (swapped ? " swapped" : "") + std::string(inverted ? " inverted" : "") + " rate " + std::to_string(r.sampleRate) + " ppm " + std::to_string(r.ppm)
-                   + " bits " + std::to_string(r.bits) + " lead " + std::to_string(r.lead);
+    outcome.fault += (swapped ? " swapped" : "") + std::string(inverted ? " inverted" : "") + " rate "
+                     + std::to_string(r.sampleRate) + " ppm " + std::to_string(r.ppm) + " bits "
+                     + std::to_string(r.bits) + " lead " + std::to_string(r.lead);
     return outcome;
 }
 
@@ -386,7 +407,8 @@ void randomRecordings(std::uint64_t from, std::uint64_t to, const std::vector<co
         INFO("seed " << seed << ": " << outcome.fault << "; error " << outcome.error << " samples; " << outcome.told);
         CHECK(outcome.right);
         if (tell)
-            std::cout << seed << (outcome.right ? " right " : " WRONG ") << outcome.error << " | " << outcome.fault << " | " << outcome.told << "\n";
+            std::cout << seed << (outcome.right ? " right " : " WRONG ") << outcome.error << " | " << outcome.fault
+                      << " | " << outcome.told << "\n";
         worst = std::max(worst, outcome.error);
         (outcome.error >= 0 ? aligned : refusals) += 1;
     }
@@ -394,7 +416,7 @@ void randomRecordings(std::uint64_t from, std::uint64_t to, const std::vector<co
         std::cout << aligned << " aligned, the worst within " << worst << " samples; " << refusals << " refused\n";
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Random faults: a few", "[import]") { randomRecordings(1, 6, {&smallPlay()}, false); }
 

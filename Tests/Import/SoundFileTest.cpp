@@ -34,17 +34,25 @@ std::filesystem::path write(const Scratch& scratch, const std::string& name, int
     return path;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("WAV, RF64, AIFF, CAF and FLAC are read, PCM and float", "[import][files]")
 {
     const Scratch s;
-    struct Case { const char* name; int format; double resolution; };
-    for (const auto& c : {Case {"a.wav", SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1e-4}, Case {"b.wav", SF_FORMAT_WAV | SF_FORMAT_PCM_24, 1e-6},
-                          Case {"c.wav", SF_FORMAT_WAV | SF_FORMAT_FLOAT, 1e-7}, Case {"d.wav", SF_FORMAT_RF64 | SF_FORMAT_PCM_32, 1e-8},
-                          Case {"e.aiff", SF_FORMAT_AIFF | SF_FORMAT_PCM_24, 1e-6}, Case {"f.aif", SF_FORMAT_AIFF | SF_FORMAT_DOUBLE, 1e-15},
-                          Case {"g.caf", SF_FORMAT_CAF | SF_FORMAT_PCM_16, 1e-4}, Case {"h.caf", SF_FORMAT_CAF | SF_FORMAT_FLOAT, 1e-7},
-                          Case {"i.flac", SF_FORMAT_FLAC | SF_FORMAT_PCM_24, 1e-6}, Case {"j.wav", SF_FORMAT_WAVEX | SF_FORMAT_PCM_24, 1e-6}}) {
+    struct Case {
+        const char* name;
+        int format;
+        double resolution;
+    };
+    for (const auto& c :
+         {Case {"a.wav", SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1e-4},
+          Case {"b.wav", SF_FORMAT_WAV | SF_FORMAT_PCM_24, 1e-6}, Case {"c.wav", SF_FORMAT_WAV | SF_FORMAT_FLOAT, 1e-7},
+          Case {"d.wav", SF_FORMAT_RF64 | SF_FORMAT_PCM_32, 1e-8},
+          Case {"e.aiff", SF_FORMAT_AIFF | SF_FORMAT_PCM_24, 1e-6},
+          Case {"f.aif", SF_FORMAT_AIFF | SF_FORMAT_DOUBLE, 1e-15},
+          Case {"g.caf", SF_FORMAT_CAF | SF_FORMAT_PCM_16, 1e-4}, Case {"h.caf", SF_FORMAT_CAF | SF_FORMAT_FLOAT, 1e-7},
+          Case {"i.flac", SF_FORMAT_FLAC | SF_FORMAT_PCM_24, 1e-6},
+          Case {"j.wav", SF_FORMAT_WAVEX | SF_FORMAT_PCM_24, 1e-6}}) {
         INFO(c.name);
         const auto path = write(s, c.name, c.format);
         const auto sound = readSound(path);
@@ -66,7 +74,8 @@ TEST_CASE("WAV, RF64, AIFF, CAF and FLAC are read, PCM and float", "[import][fil
 TEST_CASE("Sound files that boast, are lossy or nothing of the kind are refused", "[import][files]")
 {
     const Scratch s;
-    const auto boast = [&](const char* name, int format, const std::string& chunk, std::size_t bytes, const std::string& contains) {
+    const auto boast = [&](const char* name, int format, const std::string& chunk, std::size_t bytes,
+                           const std::string& contains) {
         const auto path = write(s, name, format);
         auto text = bytesOf(path);
         const auto at = text.find(chunk);
@@ -80,16 +89,19 @@ TEST_CASE("Sound files that boast, are lossy or nothing of the kind are refused"
     boast("a.wav", SF_FORMAT_WAV | SF_FORMAT_PCM_16, "data", 4, "truncated");
     boast("b.aif", SF_FORMAT_AIFF | SF_FORMAT_PCM_16, "SSND", 4, "truncated");
     boast("c.caf", SF_FORMAT_CAF | SF_FORMAT_PCM_16, "data", 8, "truncated");
-    // The number of samples of a FLAC has 36 bits, from the middle of the 14th byte of the block that begins 8 bytes into the file.
+    // The number of samples of a FLAC has 36 bits, from the middle of the 14th byte of the block that begins 8 bytes
+    // into the file.
     const auto flac = write(s, "d.flac", SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
     auto text = bytesOf(flac);
     for (std::size_t k = 8 + 14; k < 8 + 18; ++k)
         text[k] = static_cast<char>(0x7F);
     s.file("d.flac", text);
     refused(Kind::input, "d.flac", [&] { readSound(flac); });
-    refused(Kind::input, "WAV, AIFF, CAF or FLAC", [&] { readSound(write(s, "e.ogg", SF_FORMAT_OGG | SF_FORMAT_VORBIS)); });
+    refused(Kind::input, "WAV, AIFF, CAF or FLAC",
+            [&] { readSound(write(s, "e.ogg", SF_FORMAT_OGG | SF_FORMAT_VORBIS)); });
     refused(Kind::input, "no PCM or float", [&] { readSound(write(s, "f.wav", SF_FORMAT_WAV | SF_FORMAT_ULAW)); });
-    refused(Kind::input, "g.wav", [&] { readSound(s.file("g.wav", "this is text, not sound, however long it goes on")); });
+    refused(Kind::input, "g.wav",
+            [&] { readSound(s.file("g.wav", "this is text, not sound, however long it goes on")); });
     refused(Kind::input, "is empty", [&] { readSound(s.file("h.wav", "")); });
     refused(Kind::input, "does not exist", [&] { readSound(s / "i.wav"); });
     refused(Kind::input, "is not a file", [&] { readSound(s.folder()); });
@@ -109,8 +121,10 @@ TEST_CASE("A sine is read on another clock with errors below the noise of 24 bit
                 const auto y = onPlanClock(x, {start, step}, rate, 48000, 24000);
                 double worst = 0.0;
                 for (std::size_t n = 0; n < y.size(); ++n)
-                    worst = std::max(worst, std::abs(y[n] - std::cos(turn * frequency / 48000 * static_cast<double>(n))));
-                INFO("rate " << rate << ", " << ppm << " ppm, " << frequency << " Hz: " << 20 * std::log10(worst) << " dB");
+                    worst = std::max(worst,
+                                     std::abs(y[n] - std::cos(turn * frequency / 48000 * static_cast<double>(n))));
+                INFO("rate " << rate << ", " << ppm << " ppm, " << frequency << " Hz: " << 20 * std::log10(worst)
+                             << " dB");
                 CHECK(worst < std::exp2(-24));
             }
 }

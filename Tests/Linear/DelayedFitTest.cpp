@@ -21,7 +21,8 @@ Complex truthAt(double f)
 {
     const Complex s(0.0, 2.0 * std::numbers::pi * f);
     const Complex a(-200.0, 1500.0), b(-500.0, 9000.0);
-    return 0.3 + 300.0 / (s - a) + 300.0 / (s - std::conj(a)) + Complex(80.0, 400.0) / (s - b) + Complex(80.0, -400.0) / (s - std::conj(b));
+    return 0.3 + 300.0 / (s - a) + 300.0 / (s - std::conj(a)) + Complex(80.0, 400.0) / (s - b)
+           + Complex(80.0, -400.0) / (s - std::conj(b));
 }
 
 /// Measured `lag` seconds late, with noise of a share of the response's rms.
@@ -44,7 +45,7 @@ FrequencyData late(double lag, double share, std::uint64_t seed)
     return data;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The delay of exact data is found to many digits, whichever way it goes")
 {
@@ -52,7 +53,8 @@ TEST_CASE("The delay of exact data is found to many digits, whichever way it goe
         const double lag = samples / rate;
         DelayedFitOptions options;
         const auto found = fitDelayed(late(lag, 0.0, 1), options);
-        INFO(samples << " samples: " << -found.delay * rate << ", " << found.reason << " after " << found.iterations << ", cost " << found.fit.cost);
+        INFO(samples << " samples: " << -found.delay * rate << ", " << found.reason << " after " << found.iterations
+                     << ", cost " << found.fit.cost);
         CHECK(found.converged);
         CHECK_FALSE(found.atEdge);
         CHECK(std::abs(found.delay + lag) * rate < 1e-6);
@@ -79,14 +81,16 @@ TEST_CASE("With noise the delay lies where its standard error says", "[slow]")
         sum += error;
         deviations += found.deviation * rate / trials;
     }
-    INFO("rms " << std::sqrt(squares / trials) << ", mean " << sum / trials << ", standard error " << deviations << " samples");
+    INFO("rms " << std::sqrt(squares / trials) << ", mean " << sum / trials << ", standard error " << deviations
+                << " samples");
     // Of 40 normal numbers the rms lies within 1 +- 0.33, the mean within +- 0.47, with 99.7 %.
     CHECK(std::abs(std::sqrt(squares / trials) - 1.0) < 0.33);
     CHECK(std::abs(sum / trials) < 0.47);
     CHECK(deviations < 0.002);
 }
 
-TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, and the error falls to the noise", "[slow]")
+TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, and the error falls to the noise",
+          "[slow]")
 {
     // The output was recorded 0.6427 samples early, as in seed 6.2.4.
     const auto data = late(-0.6427 / rate, 0.01, 3);
@@ -100,8 +104,9 @@ TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, a
     const auto stable = identify(data, bound);
     DelayedFitOptions options;
     const auto found = fitDelayed(data, options);
-    INFO("free order 6 " << unstable.errorDb << " dB, stable " << unstable.stable << "; order 4 " << stable.errorDb << " dB; with delay "
-                         << 10.0 * std::log10(found.fit.cost) << " dB at " << found.delay * rate << " samples");
+    INFO("free order 6 " << unstable.errorDb << " dB, stable " << unstable.stable << "; order 4 " << stable.errorDb
+                         << " dB; with delay " << 10.0 * std::log10(found.fit.cost) << " dB at " << found.delay * rate
+                         << " samples");
     CHECK(std::abs(found.delay * rate - 0.6427) < 4.0 * found.deviation * rate);
     CHECK(found.deviation * rate < 0.002);
     CHECK(10.0 * std::log10(found.fit.cost) < -39.5);
@@ -111,15 +116,16 @@ TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, a
     StabilizeOptions byDelay;
     byDelay.method = StabilizingMethod::delay;
     const auto stabilization = stabilized(unstable.model, data, byDelay);
-    INFO("order 6: " << stabilization.steps[1].errorDb << " dB at " << stabilization.delay * rate << " +- " << *stabilization.delayDeviation * rate
-                     << " samples, " << stabilization.reason);
+    INFO("order 6: " << stabilization.steps[1].errorDb << " dB at " << stabilization.delay * rate << " +- "
+                     << *stabilization.delayDeviation * rate << " samples, " << stabilization.reason);
     REQUIRE(stabilization.steps.size() == 2);
     CHECK_FALSE(stabilization.steps[0].stable);
     CHECK(stabilization.steps[1].stable);
     CHECK(stabilization.steps[1].errorDb < -39.5);
     CHECK(stabilization.model.order() == 6);
     CHECK(isStable(stabilization.model));
-    CHECK(judged(stabilization.model, delayed(data, stabilization.delay)).errorDb == Approx(stabilization.steps[1].errorDb));
+    CHECK(judged(stabilization.model, delayed(data, stabilization.delay)).errorDb
+          == Approx(stabilization.steps[1].errorDb));
     byDelay.seconds = 0.6427 / rate;
     const auto given = stabilized(unstable.model, data, byDelay);
     CHECK(given.delay == 0.6427 / rate);

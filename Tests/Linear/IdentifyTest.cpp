@@ -62,7 +62,7 @@ std::vector<double> uniform(int first, int last, double step)
     return f;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Subspace identification recovers several inputs and outputs on an uneven grid")
 {
@@ -124,7 +124,7 @@ TEST_CASE("Responses of one input to several outputs share their poles in the re
 
 TEST_CASE("The order of a noisy response is found, in continuous time too")
 {
-    StateSpace truth;   // a driver's admittance: 3.3 ohm, 0.27 mH, 57 Hz
+    StateSpace truth;  // a driver's admittance: 3.3 ohm, 0.27 mH, 57 Hz
     truth.A.resize(3, 3);
     truth.A << 0, 1, 0, -1852 / 14.35e-3, -0.786 / 14.35e-3, 4.95 / 14.35e-3, 0, -4.95 / 266e-6, -3.3 / 266e-6;
     truth.B.resize(3, 1);

@@ -19,17 +19,18 @@ constexpr double fullTurn = 2.0 * std::numbers::pi;
 /// A driver with one voice coil and a cone that breaks up: lumped elements and modes.
 struct Loudspeaker {
     double Re = 3.3, Le = 266e-6, Bl = 4.95, m = 14.35e-3, r = 0.786, k = 1852;
-    double air = 0.05;   // rho Sd / (2 pi d), Pa / (m/s^2)
+    double air = 0.05;  // rho Sd / (2 pi d), Pa / (m/s^2)
     struct Mode {
         double frequency, quality, share;
     };
     std::vector<Mode> modes;
-    double box = 0.0;   // share of a resonance at 150 Hz of the air behind the cone
+    double box = 0.0;  // share of a resonance at 150 Hz of the air behind the cone
 
     Complex displacement(Complex s) const
     {
         const double w = fullTurn * 150.0;
-        return (1.0 + box * w * w / (s * s + w / 6.0 * s + w * w)) * Bl / ((Le * s + Re) * (m * s * s + r * s + k) + Bl * Bl * s);
+        return (1.0 + box * w * w / (s * s + w / 6.0 * s + w * w)) * Bl
+               / ((Le * s + Re) * (m * s * s + r * s + k) + Bl * Bl * s);
     }
     Complex cone(Complex s) const
     {
@@ -43,7 +44,10 @@ struct Loudspeaker {
     Complex pressure(Complex s) const { return cone(s) * s * s * displacement(s); }
 };
 
-double between(Normal& normal, double low, double high) { return low + (high - low) * 0.5 * std::erfc(-normal() / std::numbers::sqrt2); }
+double between(Normal& normal, double low, double high)
+{
+    return low + (high - low) * 0.5 * std::erfc(-normal() / std::numbers::sqrt2);
+}
 
 Loudspeaker random(Normal& normal)
 {
@@ -67,8 +71,8 @@ struct TakenResponses {
     FrequencyData displacement, pressure;
 };
 
-/// 10 Hz to 10 kHz. The displacement's noise is even, 10 dB below the displacement at `drowned` Hz; the pressure's -60 dB of its rms. 0:
-/// no noise.
+/// 10 Hz to 10 kHz. The displacement's noise is even, 10 dB below the displacement at `drowned` Hz; the pressure's -60
+/// dB of its rms. 0: no noise.
 TakenResponses measured(const Loudspeaker& l, double drowned, Normal& normal, int lines = 400)
 {
     TakenResponses result;
@@ -85,7 +89,7 @@ TakenResponses measured(const Loudspeaker& l, double drowned, Normal& normal, in
     if (drowned == 0.0)
         return result;
     const double quiet = std::abs(l.displacement(axis(drowned))) / std::sqrt(10.0),
-        hiss = 1e-3 * result.pressure.value.norm() / std::sqrt(lines);
+                 hiss = 1e-3 * result.pressure.value.norm() / std::sqrt(lines);
     for (auto* data : {&result.displacement, &result.pressure}) {
         data->deviation = Eigen::MatrixXd::Constant(lines, 1, data == &result.pressure ? hiss : quiet);
         for (Eigen::Index i = 0; i < lines; ++i)
@@ -116,9 +120,10 @@ MotorConeOptions orders(int motor, int cone)
     return options;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("Without noise motor and cone are told apart to rounding, and the motor's states are displacement, velocity and acceleration")
+TEST_CASE("Without noise motor and cone are told apart to rounding, and the motor's states are displacement, velocity "
+          "and acceleration")
 {
     Normal normal(1);
     for (int trial = 0; trial < 4; ++trial) {
@@ -135,7 +140,8 @@ TEST_CASE("Without noise motor and cone are told apart to rounding, and the moto
         // s^3 x = (Bl u - a_0 x - a_1 v - a_2 a)/(Le m), by hand from both laws
         const double unit = l.Le * l.m;
         Eigen::Matrix3d A;
-        A << 0, 1, 0, 0, 0, 1, -l.Re * l.k / unit, -(l.Re * l.r + l.Le * l.k + l.Bl * l.Bl) / unit, -(l.Re * l.m + l.Le * l.r) / unit;
+        A << 0, 1, 0, 0, 0, 1, -l.Re * l.k / unit, -(l.Re * l.r + l.Le * l.k + l.Bl * l.Bl) / unit,
+            -(l.Re * l.m + l.Le * l.r) / unit;
         for (Eigen::Index c = 0; c < 3; ++c) {
             CHECK(found.motor.A(2, c) == Approx(A(2, c)).epsilon(1e-6));
             CHECK((found.motor.A.col(c).head(2) - A.col(c).head(2)).norm() == 0.0);
@@ -146,7 +152,9 @@ TEST_CASE("Without noise motor and cone are told apart to rounding, and the moto
     }
 }
 
-TEST_CASE("With noise the cascade is below the noise of the pressure, and the split is told as far as the displacement is heard", "[slow]")
+TEST_CASE("With noise the cascade is below the noise of the pressure, and the split is told as far as the displacement "
+          "is heard",
+          "[slow]")
 {
     Normal normal(2);
     for (const double drowned : {1500.0, 500.0})
@@ -157,16 +165,18 @@ TEST_CASE("With noise the cascade is below the noise of the pressure, and the sp
             const auto pressureDb = errorDb(found.cascade, 0, 11.0, 9000.0, [&](Complex s) { return l.pressure(s); });
             const auto coneDb = errorDb(found.cone, 0, 30.0, drowned, [&](Complex s) { return l.cone(s); });
             const auto movedDb = errorDb(found.motor, 0, 11.0, drowned, [&](Complex s) { return l.displacement(s); });
-            const auto fastDb = errorDb(found.motor, 1, 11.0, drowned, [&](Complex s) { return s * l.displacement(s); });
-            const auto acceleratedDb = errorDb(found.motor, 2, 11.0, drowned, [&](Complex s) { return s * s * l.displacement(s); });
-            CAPTURE(drowned, trial, found.errorDb, pressureDb, coneDb, movedDb, fastDb, acceleratedDb, found.motorLikelihood,
-                    found.likelihood);
+            const auto fastDb = errorDb(found.motor, 1, 11.0, drowned,
+                                        [&](Complex s) { return s * l.displacement(s); });
+            const auto acceleratedDb = errorDb(found.motor, 2, 11.0, drowned,
+                                               [&](Complex s) { return s * s * l.displacement(s); });
+            CAPTURE(drowned, trial, found.errorDb, pressureDb, coneDb, movedDb, fastDb, acceleratedDb,
+                    found.motorLikelihood, found.likelihood);
             CHECK(found.stable);
             CHECK(found.from == ConeFrom::motor);
             // 800 real values of unit variance less 4, and less 17: one standard deviation is 5 %.
             CHECK(found.motorLikelihood == Approx(400.0).margin(80.0));
             CHECK(found.likelihood == Approx(400.0).margin(80.0));
-            CHECK(found.errorDb == Approx(-60.0).margin(1.0));   // the noise
+            CHECK(found.errorDb == Approx(-60.0).margin(1.0));  // the noise
             CHECK(found.refined);
             CHECK(pressureDb < -73.0);
             CHECK(coneDb < -60.0);
@@ -180,12 +190,13 @@ TEST_CASE("With noise the cascade is below the noise of the pressure, and the sp
         }
 }
 
-TEST_CASE("A motor of too low an order does not spoil the cone where the displacement is told, and the likelihood tells")
+TEST_CASE(
+    "A motor of too low an order does not spoil the cone where the displacement is told, and the likelihood tells")
 {
     Normal normal(3);
     for (int trial = 0; trial < 3; ++trial) {
         auto l = random(normal);
-        l.box = 0.1;   // 2 more states in the displacement, and thereby in the pressure
+        l.box = 0.1;  // 2 more states in the displacement, and thereby in the pressure
         const auto data = measured(l, 1500.0, normal);
         const auto low = identifyMotorCone(data.displacement, data.pressure, orders(3, 8));
         auto options = orders(3, 8);
@@ -195,20 +206,22 @@ TEST_CASE("A motor of too low an order does not spoil the cone where the displac
             return errorDb(found.cone, 0, 30.0, 1000.0, [&](Complex s) { return l.cone(s); });
         };
         const auto high = identifyMotorCone(data.displacement, data.pressure, orders(5, 8));
-        CAPTURE(trial, low.motorLikelihood, low.errorDb, high.motorLikelihood, high.likelihood, coneDb(low), coneDb(spoiled), coneDb(high));
+        CAPTURE(trial, low.motorLikelihood, low.errorDb, high.motorLikelihood, high.likelihood, coneDb(low),
+                coneDb(spoiled), coneDb(high));
         CHECK(low.from == ConeFrom::quotient);
         CHECK(low.motorLikelihood > 2000.0);
         CHECK_FALSE(low.refined);
         CHECK(coneDb(low) < -25.0);
         CHECK(coneDb(low) < coneDb(spoiled) - 6.0);
-        CHECK(low.errorDb > -20.0);   // the cascade has the motor's error, and says so
+        CHECK(low.errorDb > -20.0);  // the cascade has the motor's error, and says so
         CHECK(high.from == ConeFrom::motor);
         CHECK(high.likelihood < 480.0);
         CHECK(coneDb(high) < -70.0);
     }
 }
 
-TEST_CASE("The variance of the cone's response is that of the quotient, and the sound's way to the microphone is taken off")
+TEST_CASE(
+    "The variance of the cone's response is that of the quotient, and the sound's way to the microphone is taken off")
 {
     Normal normal(4);
     const auto l = random(normal);
@@ -235,7 +248,7 @@ TEST_CASE("The variance of the cone's response is that of the quotient, and the 
             }
     }
     REQUIRE(count > 400);
-    CHECK(square / count == Approx(1.0).margin(0.2));   // 4 standard deviations
+    CHECK(square / count == Approx(1.0).margin(0.2));  // 4 standard deviations
 }
 
 TEST_CASE("With next to no inductance the displacement falls by two powers only, and the motor has two states")
@@ -260,7 +273,8 @@ TEST_CASE("Responses that tell no motor and no cone are refused in a sentence")
     const auto l = random(normal);
     const auto data = measured(l, 500.0, normal, 60);
     auto options = orders(2, 8);
-    refused(Error::Kind::usage, "relative degree", [&] { identifyMotorCone(data.displacement, data.pressure, options); });
+    refused(Error::Kind::usage, "relative degree",
+            [&] { identifyMotorCone(data.displacement, data.pressure, options); });
     options = orders(3, 8);
     options.relativeDegree = 1;
     refused(Error::Kind::usage, "2 or 3", [&] { identifyMotorCone(data.displacement, data.pressure, options); });
@@ -283,10 +297,12 @@ TEST_CASE("Responses that tell no motor and no cone are refused in a sentence")
     two.outputs = 2;
     two.value = two.value.replicate(1, 2).eval();
     two.deviation = two.deviation.replicate(1, 2).eval();
-    refused(Error::Kind::data, "one displacement and one pressure", [&] { identifyMotorCone(data.displacement, two, orders(3, 8)); });
+    refused(Error::Kind::data, "one displacement and one pressure",
+            [&] { identifyMotorCone(data.displacement, two, orders(3, 8)); });
 }
 
-TEST_CASE("Partial fractions of a relative degree have Markov parameters of zero, and their refinement finds the least error among those")
+TEST_CASE("Partial fractions of a relative degree have Markov parameters of zero, and their refinement finds the least "
+          "error among those")
 {
     Normal normal(7);
     for (const int degree : {1, 2, 3}) {
@@ -340,13 +356,14 @@ TEST_CASE("A cascade is refined to a minimum, from halves that are off, and refu
     const auto motor = start(found.motor, 3, data.displacement), cone = start(found.cone, 0, found.coneResponse);
     const auto refined = refineCascade(motor, cone, data.displacement, data.pressure);
     CHECK(refined.converged);
-    CHECK(refined.likelihood == Approx(800.0).margin(115.0));   // 1600 real values: 4 standard deviations
+    CHECK(refined.likelihood == Approx(800.0).margin(115.0));  // 1600 real values: 4 standard deviations
     CHECK(refined.likelihood == Approx(found.motorLikelihood + found.likelihood).epsilon(1e-4));
     const auto model = realize(refined.first.sections, refined.first.C, refined.first.D);
     CHECK(std::abs((model.C * model.A * model.B)(0, 0)) < 1e-9 * (model.C.norm() * model.A.norm() * model.B.norm()));
     auto loose = motor;
     loose.sections.relativeDegree = 0;
-    refused(Error::Kind::usage, "relative degree", [&] { refineCascade(loose, cone, data.displacement, data.pressure); });
+    refused(Error::Kind::usage, "relative degree",
+            [&] { refineCascade(loose, cone, data.displacement, data.pressure); });
     auto blind = data.pressure;
     blind.deviation.resize(0, 0);
     refused(Error::Kind::usage, "deviations", [&] { refineCascade(motor, cone, data.displacement, blind); });

@@ -23,7 +23,7 @@ TEST_CASE("The factor of a tall matrix solves least squares that normal equation
     M.col(2) = M.col(1) + 1e-9 * M.col(2);
     const Eigen::Vector4d truth(1.0, -2.0, 3.0, 0.5);
     TallQr qr(5);
-    for (Eigen::Index first = 0; first < 1000; first += 125) {   // blocks of any size
+    for (Eigen::Index first = 0; first < 1000; first += 125) {  // blocks of any size
         Eigen::MatrixXd rows(125, 5);
         rows << M.middleRows(first, 125), M.middleRows(first, 125) * truth;
         qr.fold(rows);
@@ -45,7 +45,7 @@ TEST_CASE("Powers are orthonormal far past where plain powers break down, and ob
     const Eigen::Index K = 300, q = 120;
     Eigen::VectorXcd z(K);
     Eigen::VectorXd w(K);
-    for (Eigen::Index k = 0; k < K; ++k) {   // an arc, not a circle
+    for (Eigen::Index k = 0; k < K; ++k) {  // an arc, not a circle
         z[k] = std::polar(1.0, 0.2 + 1.3 * static_cast<double>(k) / static_cast<double>(K));
         w[k] = 1.0 + 0.5 * std::sin(static_cast<double>(k));
     }
@@ -55,15 +55,16 @@ TEST_CASE("Powers are orthonormal far past where plain powers break down, and ob
     CHECK((gram - Eigen::MatrixXd::Identity(q, q)).cwiseAbs().maxCoeff() < 1e-13);
     const Eigen::MatrixXcd left = z.asDiagonal() * basis.values.leftCols(q - 1);
     CHECK((left - basis.values * basis.H.topLeftCorner(q, q - 1)).cwiseAbs().maxCoeff() < 1e-13);
-    CHECK(orthogonalPowers(z.head(3), w.head(3), 20).values.cols() == 6);   // three points carry six real polynomials
+    // three points carry six real polynomials
+    CHECK(orthogonalPowers(z.head(3), w.head(3), 20).values.cols() == 6);
 }
 
 TEST_CASE("Sections hold any poles, mirror what is unstable, and slopes are derivatives")
 {
     for (const double rate : {0.0, 48000.0}) {
-        const std::vector<Complex> roots = rate == 0.0
-            ? std::vector<Complex> {{-300, 5000}, {-300, -5000}, {-20, 0}, {-9000, 0}, {-4000, 0}}
-            : std::vector<Complex> {{0.9, 0.3}, {0.9, -0.3}, {0.99, 0}, {-0.4, 0}, {0.2, 0}};
+        const std::vector<Complex> roots =
+            rate == 0.0 ? std::vector<Complex> {{-300, 5000}, {-300, -5000}, {-20, 0}, {-9000, 0}, {-4000, 0}}
+                        : std::vector<Complex> {{0.9, 0.3}, {0.9, -0.3}, {0.99, 0}, {-0.4, 0}, {0.2, 0}};
         const auto sections = sectionsOf(roots, rate, rate == 0.0 ? 1e4 : 1.0);
         CHECK(isStable(sections));
         for (const auto& root : roots) {
@@ -82,14 +83,16 @@ TEST_CASE("Sections hold any poles, mirror what is unstable, and slopes are deri
             const double h = 1e-5 * std::abs(sections.factors[j]);
             up.factors[j] += h;
             down.factors[j] -= h;
-            const Eigen::VectorXcd numeric = (partialFractions(up, lambda) - partialFractions(down, lambda)) * c / (2.0 * h);
+            const Eigen::VectorXcd numeric = (partialFractions(up, lambda) - partialFractions(down, lambda)) * c
+                                             / (2.0 * h);
             CHECK((numeric - slopes.col(j)).norm() < 1e-6 * slopes.col(j).norm());
         }
         // The realization has that response.
         const auto model = realize(sections, c.transpose(), Eigen::VectorXd::Constant(1, 0.25));
         const Eigen::VectorXcd wanted = basis * c + Eigen::VectorXcd::Constant(4, 0.25);
         for (std::size_t k = 0; k < f.size(); ++k)
-            CHECK(std::abs(respond(model, {f[k]})[0](0, 0) - wanted[static_cast<Eigen::Index>(k)]) < 1e-12 * wanted.norm());
+            CHECK(std::abs(respond(model, {f[k]})[0](0, 0) - wanted[static_cast<Eigen::Index>(k)])
+                  < 1e-12 * wanted.norm());
     }
     const auto outside = sectionsOf({{1.2, 0.5}, {1.2, -0.5}, {-3.0, 0.0}}, 1.0, 1.0);
     CHECK_FALSE(isStable(outside));

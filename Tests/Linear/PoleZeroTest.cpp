@@ -17,7 +17,10 @@ namespace {
 
 using std::numbers::pi;
 
-double uniform(Normal& normal, double least, double most) { return least + (most - least) * 0.5 * std::erfc(-normal() / std::numbers::sqrt2); }
+double uniform(Normal& normal, double least, double most)
+{
+    return least + (most - least) * 0.5 * std::erfc(-normal() / std::numbers::sqrt2);
+}
 
 void addRoot(std::vector<Complex>& roots, Complex root)
 {
@@ -34,8 +37,11 @@ Complex randomRoot(double rate, Normal& normal, bool real)
         const double size = std::exp(uniform(normal, std::log(10.0), std::log(kind < 1.0 ? 1e5 : 3000.0)));
         return real ? Complex(-size, 0.0) : std::polar(size, uniform(normal, 0.51, 0.95) * pi);
     }
-    const double radius = kind < 1.0 ? uniform(normal, 0.02, 0.4) : kind < 2.0 ? uniform(normal, 0.6, 0.98) : uniform(normal, 2.0, 20.0);
-    return real ? Complex(uniform(normal, 0.0, 1.0) < 0.5 ? -radius - 1.0 : radius - 1.0, 0.0) : std::polar(radius, uniform(normal, 0.05, 0.95) * pi) - 1.0;
+    const double radius = kind < 1.0   ? uniform(normal, 0.02, 0.4)
+                          : kind < 2.0 ? uniform(normal, 0.6, 0.98)
+                                       : uniform(normal, 2.0, 20.0);
+    return real ? Complex(uniform(normal, 0.0, 1.0) < 0.5 ? -radius - 1.0 : radius - 1.0, 0.0)
+                : std::polar(radius, uniform(normal, 0.05, 0.95) * pi) - 1.0;
 }
 
 /// Poles, and zeros: some of them close to a pole, no more than poles.
@@ -51,13 +57,16 @@ PoleZeroGain randomSystem(double rate, Normal& normal)
         const double what = uniform(normal, 0.0, 3.0);
         if (what < 1.0)
             continue;
-        const double near = (rate == 0.0 ? std::abs(pole.real()) : std::abs(1.0 - std::abs(1.0 + pole))) * uniform(normal, 0.001, 0.1);
-        addRoot(g.zeros, what < 2.0 ? randomRoot(rate, normal, real) : real ? pole + near : pole + std::polar(near, 1.0));
+        const double near = (rate == 0.0 ? std::abs(pole.real()) : std::abs(1.0 - std::abs(1.0 + pole)))
+                            * uniform(normal, 0.001, 0.1);
+        addRoot(g.zeros, what < 2.0 ? randomRoot(rate, normal, real)
+                         : real     ? pole + near
+                                    : pole + std::polar(near, 1.0));
     }
     return g;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A chain of sections answers as its poles and zeros say, and they are found again")
 {
@@ -74,8 +83,9 @@ TEST_CASE("A chain of sections answers as its poles and zeros say, and they are 
             for (int k = 0; k < 1000; ++k)
                 largest = std::max(largest, std::abs(respond(g, 24.0 * k)));
             for (const double f : {0.0, 3.0, 50.0, 700.0, 9000.0, 24000.0}) {
-                Complex expected = g.gain;   // not by the code under test
-                const Complex lambda = rate == 0.0 ? Complex(0.0, 2.0 * pi * f) : std::polar(1.0, 2.0 * pi * f / rate) - 1.0;
+                Complex expected = g.gain;  // not by the code under test
+                const Complex lambda = rate == 0.0 ? Complex(0.0, 2.0 * pi * f)
+                                                   : std::polar(1.0, 2.0 * pi * f / rate) - 1.0;
                 for (const auto& zero : g.zeros)
                     expected *= lambda - zero;
                 for (const auto& pole : g.poles)
@@ -104,10 +114,11 @@ TEST_CASE("A model without zeros has none that matter")
 {
     PoleZeroGain g;
     g.gain = 2.5;
-    for (const Complex pole : {Complex(-15.0481, 0), Complex(-14.7453, 23.0581), Complex(-33.424, 30.1889), Complex(-976.946, 896.799)})
+    for (const Complex pole :
+         {Complex(-15.0481, 0), Complex(-14.7453, 23.0581), Complex(-33.424, 30.1889), Complex(-976.946, 896.799)})
         addRoot(g.poles, pole);
     for (const auto& zero : zeros(realize(g)))
-        CHECK(std::abs(zero) > 1e4);   // from infinity, by rounding
+        CHECK(std::abs(zero) > 1e4);  // from infinity, by rounding
     for (const auto& zero : poleZeroGainOf(realize(g)).zeros)
         CHECK(std::abs(zero) > 1e4);
 }
@@ -118,7 +129,7 @@ TEST_CASE("Ripples are those of the seed: 6 dB for a root of size 1/3 or 3, and 
         const auto whole = distanceToBand(std::polar(radius, 1.1) - 1.0, 1.0, 0.0, 0.5);
         CHECK(whole.least == Approx(std::abs(1.0 - radius)));
         CHECK(whole.most == Approx(1.0 + radius));
-        CHECK(20.0 * std::log10(whole.most / whole.least) == Approx(20.0 * std::log10(2.0)));   // 6.02 dB
+        CHECK(20.0 * std::log10(whole.most / whole.least) == Approx(20.0 * std::log10(2.0)));  // 6.02 dB
     }
     // Against a search over the band.
     Normal normal(12);
@@ -162,7 +173,7 @@ TEST_CASE("What a reduction by poles and zeros changes never exceeds its bound")
             PoleZeroReduction found;
             try {
                 found = reduceByPolesAndZeros(model, options);
-            } catch (const Error& e) {   // the band lies so far below the peak that the roots do not tell it
+            } catch (const Error& e) {  // the band lies so far below the peak that the roots do not tell it
                 CHECK(e.kind() == Error::Kind::numerical);
                 ++refusals;
                 continue;
@@ -194,13 +205,14 @@ TEST_CASE("What a reduction by poles and zeros changes never exceeds its bound")
             }
             CHECK(20.0 * std::log10(most / least) <= found.steps.back().boundDb + 1e-6);
         }
-    INFO(removed << " remote, " << cancelled << " cancelled, " << complex << " of them pairs, " << delays << " with a delay, " << refusals << " refused; tightest " << tightest);
-    CHECK(refusals <= 6);   // of 300
+    INFO(removed << " remote, " << cancelled << " cancelled, " << complex << " of them pairs, " << delays
+                 << " with a delay, " << refusals << " refused; tightest " << tightest);
+    CHECK(refusals <= 6);  // of 300
     CHECK(removed > 30);
     CHECK(cancelled > 30);
     CHECK(complex > 30);
     CHECK(delays > 5);
-    CHECK(tightest > 0.7);   // the bound is no idle one
+    CHECK(tightest > 0.7);  // the bound is no idle one
 }
 
 TEST_CASE("The seed's pair of 0.8 and 0.79 is bounded by 0.87 dB and ripples by less")
@@ -215,7 +227,7 @@ TEST_CASE("The seed's pair of 0.8 and 0.79 is bounded by 0.87 dB and ripples by 
     const auto found = reduceByPolesAndZeros(realize(g), options);
     REQUIRE(found.steps.size() == 1);
     CHECK(found.steps[0].cancelled);
-    CHECK(found.steps[0].boundDb == Approx(20.0 * std::log10(1.05 / 0.95)));   // 0.869 dB
+    CHECK(found.steps[0].boundDb == Approx(20.0 * std::log10(1.05 / 0.95)));  // 0.869 dB
     // (z - 0.79)/(z - 0.8) is 0.21/0.2 at z = 1 and 1.79/1.8 at z = -1
     CHECK(found.steps[0].rippleDb == Approx(20.0 * std::log10(1.05 / (1.79 / 1.8))));
     CHECK(found.steps[0].errorBound == Approx(1.0 / 0.95 - 1.0));
@@ -243,7 +255,9 @@ TEST_CASE("A remote pole leaves a sample of delay behind, and bad options are re
     CHECK(found.steps[0].error == Approx(0.05));
     CHECK(found.model.order() == 1);
     PoleZeroReductionOptions options;
-    refused(Error::Kind::usage, "within a band", [&] { reduceByPolesAndZeros(realize(PoleZeroGain {{-1.0}, {}, 1.0, 0.0}), options); });
+    refused(Error::Kind::usage, "within a band", [&] {
+        reduceByPolesAndZeros(realize(PoleZeroGain {{-1.0}, {}, 1.0, 0.0}), options);
+    });
     options.high = 60.0;
     refused(Error::Kind::usage, "half the sample rate", [&] { reduceByPolesAndZeros(realize(g), options); });
     options.low = 70.0;

@@ -69,4 +69,4 @@ private:
     std::mt19937_64 engine_;
 };
 
-} // namespace excursion::test
+}  // namespace excursion::test

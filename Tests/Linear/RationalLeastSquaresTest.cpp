@@ -21,8 +21,8 @@ Complex fiveAt(double f)
 {
     const Complex s(0.0, 2.0 * std::numbers::pi * f);
     const Complex a(-40.0, 310.0), b(-300.0, 5600.0);
-    return 0.2 + 100.0 / (s - a) + 100.0 / (s - std::conj(a)) + Complex(30.0, 100.0) / (s - b) + Complex(30.0, -100.0) / (s - std::conj(b))
-           + 2000.0 / (s + 9000.0);
+    return 0.2 + 100.0 / (s - a) + 100.0 / (s - std::conj(a)) + Complex(30.0, 100.0) / (s - b)
+           + Complex(30.0, -100.0) / (s - std::conj(b)) + 2000.0 / (s + 9000.0);
 }
 
 FrequencyData fiveMeasured(double noise, std::uint64_t seed)
@@ -40,14 +40,15 @@ FrequencyData fiveMeasured(double noise, std::uint64_t seed)
     return data;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Exact data is met by Levy at once, poles and all")
 {
     RationalOptions options;
     options.order = 5;
     const auto found = fitRational(fiveMeasured(0.0, 1), options);
-    CHECK(10.0 * std::log10(found.fit.cost) < -230.0);   // -234 dB: the resonance lies 60 times below the end of the band
+    // -234 dB: the resonance lies 60 times below the end of the band
+    CHECK(10.0 * std::log10(found.fit.cost) < -230.0);
     CHECK(found.converged);
     const auto p = poles(found.fit.sections);
     for (const Complex expected : {Complex(-40, 310), Complex(-300, 5600), Complex(-9000, 0)}) {
@@ -62,12 +63,14 @@ TEST_CASE("Exact data is met by Levy at once, poles and all")
 
 TEST_CASE("Levy solves the equations that it is known by")
 {
-    // Of order 1, G (s + d) = n1 s + n0 in real and imaginary parts, in plain powers of s / 1000 and with Eigen's own least squares.
+    // Of order 1, G (s + d) = n1 s + n0 in real and imaginary parts, in plain powers of s / 1000 and with Eigen's own
+    // least squares.
     const auto data = fiveMeasured(0.0, 1);
     Eigen::MatrixXd M(500, 3);
     Eigen::VectorXd right(500);
     for (int k = 0; k < 250; ++k) {
-        const Complex s(0.0, 2.0 * std::numbers::pi * data.frequency[static_cast<std::size_t>(k)] / 1000.0), g = data.value(k, 0);
+        const Complex s(0.0, 2.0 * std::numbers::pi * data.frequency[static_cast<std::size_t>(k)] / 1000.0),
+            g = data.value(k, 0);
         const Complex row[] {s, 1.0, -g};
         for (int c = 0; c < 3; ++c) {
             M(k, c) = row[c].real();
@@ -103,8 +106,8 @@ TEST_CASE("With noise iterating helps Levy, and maximum likelihood both")
         iterated += last.fit.cost / 8.0;
         likely += fit.cost / 8.0;
     }
-    INFO("Levy " << 10.0 * std::log10(levy) << " dB, Sanathanan-Koerner " << 10.0 * std::log10(iterated) << " dB, maximum likelihood "
-                 << 10.0 * std::log10(likely) << " dB");
+    INFO("Levy " << 10.0 * std::log10(levy) << " dB, Sanathanan-Koerner " << 10.0 * std::log10(iterated)
+                 << " dB, maximum likelihood " << 10.0 * std::log10(likely) << " dB");
     CHECK(iterated < 0.5 * levy);
     RationalOptions options;
     options.order = 0;

@@ -37,7 +37,7 @@ double worst(const StateSpace& a, const StateSpace& b)
     return largest;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A balanced model keeps its response, and a truncated one its bound")
 {
@@ -49,8 +49,10 @@ TEST_CASE("A balanced model keeps its response, and a truncated one its bound")
         // Both Gramians are diag(sigma): A W A^T - W = -B B^T, or A W + W A^T = -B B^T
         const Eigen::MatrixXd W = found.singularValues.asDiagonal();
         const auto& m = found.model;
-        const Eigen::MatrixXd reached = rate == 0.0 ? Eigen::MatrixXd(m.A * W + W * m.A.transpose()) : Eigen::MatrixXd(m.A * W * m.A.transpose() - W);
-        const Eigen::MatrixXd seen = rate == 0.0 ? Eigen::MatrixXd(m.A.transpose() * W + W * m.A) : Eigen::MatrixXd(m.A.transpose() * W * m.A - W);
+        const Eigen::MatrixXd reached = rate == 0.0 ? Eigen::MatrixXd(m.A * W + W * m.A.transpose())
+                                                    : Eigen::MatrixXd(m.A * W * m.A.transpose() - W);
+        const Eigen::MatrixXd seen = rate == 0.0 ? Eigen::MatrixXd(m.A.transpose() * W + W * m.A)
+                                                 : Eigen::MatrixXd(m.A.transpose() * W * m.A - W);
         CHECK((reached + m.B * m.B.transpose()).norm() < 1e-9 * (m.B * m.B.transpose()).norm());
         CHECK((seen + m.C.transpose() * m.C).norm() < 1e-9 * (m.C.transpose() * m.C).norm());
         for (const Eigen::Index order : {2, 4, 6, 8})
@@ -59,9 +61,11 @@ TEST_CASE("A balanced model keeps its response, and a truncated one its bound")
                 CHECK(small.order() == order);
                 CHECK(isStable(small));
                 CHECK(worst(model, small) <= truncationBound(found, order) * (1.0 + 1e-9));
-                CHECK(worst(model, small) >= found.singularValues[order] * 0.95);   // no model of that order comes nearer than sigma itself
+                // no model of that order comes nearer than sigma itself
+                CHECK(worst(model, small) >= found.singularValues[order] * 0.95);
                 if (how == Truncation::singularPerturbation)
-                    CHECK(std::abs(respond(model, {0.0})[0](0, 0) - respond(small, {0.0})[0](0, 0)) < 1e-10 * found.singularValues[0]);
+                    CHECK(std::abs(respond(model, {0.0})[0](0, 0) - respond(small, {0.0})[0](0, 0))
+                          < 1e-10 * found.singularValues[0]);
             }
         CHECK(truncationBound(found, 10) == 0.0);
     }
@@ -97,7 +101,7 @@ TEST_CASE("Pruning stops before its bound, and ends where a direct fit would", "
     CHECK(pruned.fit.sections.order() == 22);
     CHECK(isStable(pruned.fit.sections));
     const double reached = judged(realize(pruned.fit.sections, pruned.fit.C, pruned.fit.D), data).errorDb;
-    CHECK(reached <= -15.3);   // and the best direct fit of that order is at -15.5 dB
+    CHECK(reached <= -15.3);  // and the best direct fit of that order is at -15.5 dB
     for (std::size_t k = 1; k < pruned.steps.size(); ++k)
         CHECK(pruned.steps[k].order < pruned.steps[k - 1].order);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Unstable models: their parts, their mirror images, their causal projections, and what a constrained fit makes of them.
+// Unstable models: their parts, their mirror images, their causal projections, and what a constrained fit makes of
+// them.
 #include "Engine/Linear/Decomposition.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
@@ -19,7 +20,7 @@ namespace {
 
 /// Poles and their partial fractions are known; then the model is taken into a random basis.
 struct Known {
-    std::vector<Complex> poles, residues;   ///< of one output and input, closed under conjugation
+    std::vector<Complex> poles, residues;  ///< of one output and input, closed under conjugation
     double direct = 0.0;
     StateSpace model;
 
@@ -41,11 +42,13 @@ struct Known {
     }
 };
 
-Known known(const std::vector<Complex>& upper, const std::vector<Complex>& residues, double direct, double rate, Normal& normal)
+Known known(const std::vector<Complex>& upper, const std::vector<Complex>& residues, double direct, double rate,
+            Normal& normal)
 {
     Known k;
     k.direct = direct;
-    const auto n = static_cast<Eigen::Index>(std::count_if(upper.begin(), upper.end(), [](Complex p) { return p.imag() > 0.0; }) + upper.size());
+    const auto n = static_cast<Eigen::Index>(
+        std::count_if(upper.begin(), upper.end(), [](Complex p) { return p.imag() > 0.0; }) + upper.size());
     auto& m = k.model;
     m.sampleRate = rate;
     m.A = Eigen::MatrixXd::Zero(n, n);
@@ -82,8 +85,10 @@ Known known(const std::vector<Complex>& upper, const std::vector<Complex>& resid
 Known mixed(double rate, Normal& normal)
 {
     if (rate == 0.0)
-        return known({{-3, 40}, {5, 25}, {-60, 0}, {12, 0}, {-1, 7}}, {{2, 5}, {1, -4}, {30, 0}, {-8, 0}, {0.4, 0.2}}, 0.7, 0.0, normal);
-    return known({{0.5, 0.7}, {0.9, 0.55}, {-0.4, 0}, {1.3, 0}, {0.97, 0.1}}, {{0.2, 0.1}, {0.3, -0.2}, {1, 0}, {-0.4, 0}, {0.02, 0.01}}, 0.7, rate, normal);
+        return known({{-3, 40}, {5, 25}, {-60, 0}, {12, 0}, {-1, 7}}, {{2, 5}, {1, -4}, {30, 0}, {-8, 0}, {0.4, 0.2}},
+                     0.7, 0.0, normal);
+    return known({{0.5, 0.7}, {0.9, 0.55}, {-0.4, 0}, {1.3, 0}, {0.97, 0.1}},
+                 {{0.2, 0.1}, {0.3, -0.2}, {1, 0}, {-0.4, 0}, {0.02, 0.01}}, 0.7, rate, normal);
 }
 
 std::vector<double> grid(double rate)
@@ -100,7 +105,7 @@ Complex pointOf(double f, double rate)
     return rate == 0.0 ? Complex(0.0, omega) : std::polar(1.0, omega / rate);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A Sylvester equation is solved to rounding, and one without solution is refused")
 {
@@ -129,7 +134,8 @@ TEST_CASE("A model is the sum of its stable and its unstable part")
             for (const auto& p : poles(parts.unstable))
                 CHECK((rate == 0.0 ? p.real() : std::abs(p) - 1.0) > 0.0);
             const auto f = grid(rate);
-            const auto whole = respond(truth.model, f), stable = respond(parts.stable, f), unstable = respond(parts.unstable, f);
+            const auto whole = respond(truth.model, f), stable = respond(parts.stable, f),
+                       unstable = respond(parts.unstable, f);
             double largest = 0.0, sumError = 0.0, stableError = 0.0, unstableError = 0.0;
             for (std::size_t k = 0; k < f.size(); ++k) {
                 const auto s = pointOf(f[k], rate);
@@ -205,7 +211,7 @@ TEST_CASE("Mirrored poles are the images of the unstable ones; magnitudes and ze
             moved = std::max(moved, std::abs(responses[k](0, 0) / g - 1.0));
         }
         CHECK(worst < 1e-11);
-        CHECK(moved > 0.5);   // the phase does not stay
+        CHECK(moved > 0.5);  // the phase does not stay
         const auto before = zeros(truth.model), after = zeros(image);
         REQUIRE(before.size() == after.size());
         for (std::size_t k = 0; k < before.size(); ++k)
@@ -213,7 +219,7 @@ TEST_CASE("Mirrored poles are the images of the unstable ones; magnitudes and ze
     }
     // Seed eqs 6.25 to 6.27: H = 1/(1 - p/z), whose image is p^-1/(1 - 1/(p z)) up to sign.
     const double p = 1.25;
-    const auto single = known({{p, 0}}, {{p, 0}}, 1.0, 1.0, normal);   // z/(z - p) = 1 + p/(z - p)
+    const auto single = known({{p, 0}}, {{p, 0}}, 1.0, 1.0, normal);  // z/(z - p) = 1 + p/(z - p)
     for (const double f : {0.0, 0.1, 0.37, 0.5}) {
         const auto z = pointOf(f, 1.0);
         const Complex expected = (1.0 / p) * z / (z - 1.0 / p);
@@ -250,7 +256,8 @@ TEST_CASE("Mirroring keeps the magnitudes of several outputs, or of several inpu
     border.sampleRate = 48000.0;
     CHECK(decomposed(border).unstable.order() == 1);
     CHECK(isStable(mirroredByAllPass(border)));
-    CHECK(std::abs(respond(mirroredByAllPass(border), {1000.0})[0](0, 0)) == Approx(std::abs(respond(border, {1000.0})[0](0, 0))).epsilon(1e-6));
+    CHECK(std::abs(respond(mirroredByAllPass(border), {1000.0})[0](0, 0))
+          == Approx(std::abs(respond(border, {1000.0})[0](0, 0))).epsilon(1e-6));
 }
 
 TEST_CASE("The projection leaves the anticausal energy out and no more, and a delay makes that fall as |p|^-d")
@@ -262,7 +269,8 @@ TEST_CASE("The projection leaves the anticausal energy out and no more, and a de
         const auto image = stableProjection(truth.model, delay);
         REQUIRE(isStable(image));
         CHECK(image.order() == 2 + delay);
-        // Mean square over the whole circle, by a sum that is exact to |p|^-2048: the responses' squares are smooth and periodic.
+        // Mean square over the whole circle, by a sum that is exact to |p|^-2048: the responses' squares are smooth and
+        // periodic.
         double energy = 0.0;
         const int N = 2048;
         for (int k = 0; k < N; ++k) {
@@ -323,7 +331,7 @@ Measured measured(double rate, std::uint64_t seed)
     return m;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("An unstable fit of a stable system is stabilized, and the constrained refit takes back what that cost")
 {
@@ -343,8 +351,9 @@ TEST_CASE("An unstable fit of a stable system is stabilized, and the constrained
                 CHECK(found.steps[1].stable);
                 CHECK(found.steps[2].stable);
                 CHECK(isStable(found.model));
-                INFO("rate " << rate << " seed " << seed << ": " << found.steps[0].weightedErrorDb << ", " << found.steps[1].weightedErrorDb << ", "
-                             << found.steps[2].weightedErrorDb << " dB, to the truth " << judged(found.model, m.clean).errorDb << " dB");
+                INFO("rate " << rate << " seed " << seed << ": " << found.steps[0].weightedErrorDb << ", "
+                             << found.steps[1].weightedErrorDb << ", " << found.steps[2].weightedErrorDb
+                             << " dB, to the truth " << judged(found.model, m.clean).errorDb << " dB");
                 CHECK(found.steps[2].weightedErrorDb <= found.steps[1].weightedErrorDb);
                 CHECK(found.steps[0].errorDb == Approx(judged(m.free.model, m.data).errorDb));
                 CHECK(found.steps[2].errorDb == Approx(judged(found.model, m.data).errorDb));
@@ -371,7 +380,7 @@ TEST_CASE("A stable model is left alone, and what cannot be stabilized is refuse
     REQUIRE(parted.parts);
     CHECK(parted.model.order() == 5);
     CHECK(parted.parts->unstable.order() == 3);
-    CHECK(parted.steps[0].errorDb < -200.0);   // the response is the model's own
+    CHECK(parted.steps[0].errorDb < -200.0);  // the response is the model's own
     CHECK(parted.steps[1].errorDb > -40.0);
     auto data = sampled(mix.model, 50);
     CHECK(data.lines() == 50);

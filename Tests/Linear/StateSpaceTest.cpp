@@ -40,7 +40,7 @@ Complex firstOutput(Complex s)
     return (s + 10.0 - 20.0) / q;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A continuous-time model answers as its transfer function does")
 {
@@ -95,7 +95,7 @@ TEST_CASE("The bilinear transform keeps the response at warped frequencies, and 
 
 TEST_CASE("Zeros are where the response vanishes, at infinity none")
 {
-    StateSpace model;   // (z - 0.5)(z - 1.25) / (z^3 - 0.3 z^2 + 0.1 z - 0.05) in controller form
+    StateSpace model;  // (z - 0.5)(z - 1.25) / (z^3 - 0.3 z^2 + 0.1 z - 0.05) in controller form
     model.sampleRate = 1.0;
     model.A.resize(3, 3);
     model.A << 0.3, -0.1, 0.05, 1, 0, 0, 0, 1, 0;

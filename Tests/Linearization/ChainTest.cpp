@@ -27,7 +27,7 @@ std::vector<double> scaled(std::vector<double> values, double factor)
     return values;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A chain does what its mode says, always as late", "[chain]")
 {
@@ -45,9 +45,10 @@ TEST_CASE("A chain does what its mode says, always as late", "[chain]")
     CHECK(relativeError(played(Mode::speaker, u), scaled(through(speaker, scaled(u, 8.0)), gain)) < 1e-12);
     speaker.reset();
     auto both = played(Mode::audition, u), apart = scaled(through(speaker, bent), gain);
-    both.resize(both.size() - 200);   // `bent` ends where the signal does, and the second filter looks beyond that
+    both.resize(both.size() - 200);  // `bent` ends where the signal does, and the second filter looks beyond that
     apart.resize(both.size());
-    CHECK(relativeError(both, apart) < 1e-6);   // the chain stays at the higher rate in between; a filter is flat within 3e-6
+    // the chain stays at the higher rate in between; a filter is flat within 3e-6
+    CHECK(relativeError(both, apart) < 1e-6);
 
     // Linearized, the speaker is a linear one; alone it is not.
     Speaker straight(linearPart(model), options);
@@ -91,18 +92,20 @@ TEST_CASE("Modes and levels are changed without a click", "[chain]")
     double steepest = 0.0;
     for (std::size_t n = 1; n < out.size(); ++n)
         steepest = std::max(steepest, std::abs(out[n] - out[n - 1]));
-    CHECK(steepest < 0.05);   // the tone has 0.01
+    CHECK(steepest < 0.05);  // the tone has 0.01
 }
 
 namespace {
 
-/// What a change does to a tone that has settled: the largest second difference after it, in units of the largest before and long after.
+/// What a change does to a tone that has settled: the largest second difference after it, in units of the largest
+/// before and long after.
 double kink(const ChainControls& before, const ChainControls& after, double frequency, double amplitude = 0.3)
 {
     Chain chain(everything(), {48000.0, 2}, before);
     std::vector<double> u(96000);
     for (std::size_t n = 0; n < u.size(); ++n)
-        u[n] = amplitude * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / 48000.0) * std::min(1.0, static_cast<double>(n) / 9600.0);
+        u[n] = amplitude * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / 48000.0)
+               * std::min(1.0, static_cast<double>(n) / 9600.0);
     const std::size_t change = 48000;
     for (std::size_t n = 0; n < u.size(); n += 480) {
         chain.set(n < change ? before : after);
@@ -117,7 +120,7 @@ double kink(const ChainControls& before, const ChainControls& after, double freq
     return largest(change, 80000) / std::max(largest(24000, change - 1), largest(80000, u.size() - 1));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("No change bends the signal more than three times as much as the signal itself does", "[chain][slow]")
 {
@@ -180,7 +183,8 @@ TEST_CASE("Bypass is bit by bit the signal as it was, whatever is moved meanwhil
         auto now = controls(Mode::bypass);
         now.fullScale = 1.0 + static_cast<double>(n % 7);
         now.trim = 0.1 * static_cast<double>(n % 11);
-        now.linearization = {0.1 * static_cast<double>(n % 10), 1e-4 * static_cast<double>(1 + n % 9), static_cast<double>(1 + n % 5), 1.0, 0.1};
+        now.linearization = {0.1 * static_cast<double>(n % 10), 1e-4 * static_cast<double>(1 + n % 9),
+                             static_cast<double>(1 + n % 5), 1.0, 0.1};
         chain.set(now);
         chain.process(u.data() + n, out.data() + n, 480);
     }

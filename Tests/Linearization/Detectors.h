@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detectors of what an audio thread must not do: allocate, lock, call the system. They replace functions of the C library, so one source of a program
-// includes this, and none where a sanitizer has brought its own.
+// Detectors of what an audio thread must not do: allocate, lock, call the system. They replace functions of the C
+// library, so one source of a program includes this, and none where a sanitizer has brought its own.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -27,7 +27,7 @@ void count(int& counter)
         ++counter;
 }
 
-} // namespace
+}  // namespace
 
 // glibc lets a program bring its own malloc; these count and pass on.
 extern "C" {
@@ -114,4 +114,4 @@ bool canWatchSystemCalls()
     return callsSystem([] { static_cast<void>(syscall(SYS_getppid)); });
 }
 
-} // namespace
+}  // namespace

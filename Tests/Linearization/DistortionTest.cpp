@@ -18,7 +18,7 @@ namespace {
 struct Stimulus {
     std::vector<int> lines;
     int period = 8192;
-    std::vector<double> u;   ///< faded in, several periods
+    std::vector<double> u;  ///< faded in, several periods
 };
 
 Stimulus stimulus(double sampleRate, double low, double high, int periods)
@@ -37,8 +37,8 @@ Stimulus stimulus(double sampleRate, double low, double high, int periods)
     return result;
 }
 
-/// Power on the silent lines of the band in the last period, over that on all lines; dB. What a slow transient of the linear
-/// driver leaves there is taken out with its own last period.
+/// Power on the silent lines of the band in the last period, over that on all lines; dB. What a slow transient of the
+/// linear driver leaves there is taken out with its own last period.
 double distortionDb(const Stimulus& played, const std::vector<double>& signal, const std::vector<double>& linear)
 {
     const auto last = [&](const std::vector<double>& samples) {
@@ -86,7 +86,7 @@ void checkResidual(const Model& model, double sampleRate, int oversampling)
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Predistorter and driver together are linear to -90 dB at 75 % of xmax", "[linearization][slow]")
 {
@@ -113,7 +113,8 @@ TEST_CASE("A model identified from a noisy take linearizes the driver that it wa
     // The driver is the virtual bench's, which shares no equation, law or integrator with the model.
     bench::DrawOptions options;
     options.driver = "seed";
-    options.hidden = std::vector<bench::HiddenEffect> {{"force-factor", 0.3}, {"stiffness", 0.3}, {"inductance-position", 0.3}};
+    options.hidden = std::vector<bench::HiddenEffect> {
+        {"force-factor", 0.3}, {"stiffness", 0.3}, {"inductance-position", 0.3}};
     options.noiseDb = -70.0;
     options.sampleRate = 44100.0;
     options.seconds = 2.0;
@@ -133,7 +134,8 @@ TEST_CASE("A model identified from a noisy take linearizes the driver that it wa
     const std::vector outputs {Quantity::displacement, Quantity::acceleration};
     const auto bent = through(predistorter, played.u);
     const auto wanted = bench::play(drawn.speaker.linear(), played.u, 44100.0, outputs);
-    const auto before = bench::play(drawn.speaker, played.u, 44100.0, outputs), after = bench::play(drawn.speaker, bent, 44100.0, outputs);
+    const auto before = bench::play(drawn.speaker, played.u, 44100.0, outputs),
+               after = bench::play(drawn.speaker, bent, 44100.0, outputs);
     for (const auto quantity : outputs) {
         const auto db = [&](const Measurement& take) {
             return distortionDb(played, take.find(quantity)->samples, wanted.find(quantity)->samples);

@@ -14,14 +14,15 @@
 
 namespace excursion {
 
-inline constexpr double xmax = 4e-3;   ///< m, of midbass()
+inline constexpr double xmax = 4e-3;  ///< m, of midbass()
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Brunet's driver.
 inline Model midbass()
 {
     auto model = makeModel("electrodynamic");
-    const std::pair<const char*, double> base[] {{"Re", 3.3}, {"Le", 266e-6}, {"Bl", 4.95}, {"m", 0.01435}, {"Rms", 0.786}, {"K", 1852.0}};
+    const std::pair<const char*, double> base[] {{"Re", 3.3},    {"Le", 266e-6}, {"Bl", 4.95},
+                                                 {"m", 0.01435}, {"Rms", 0.786}, {"K", 1852.0}};
     for (const auto& [name, value] : base)
         model.baseParameter(name).value = value;
     return model;
@@ -39,14 +40,17 @@ inline Model withStrong(const Model& plain, const Effect& effect)
     auto model = withEffect(plain, effect, extent);
     auto& added = model.components.back();
     if (const auto law = effect.law()) {
-        const bool rises = law->base == "K" || law->base == "Rms", flux = law->argument == "i";   // d(Le i)/di falls thrice as far as Le(i)
+        // d(Le i)/di falls thrice as far as Le(i)
+        const bool rises = law->base == "K" || law->base == "Rms", flux = law->argument == "i";
         added.parameters[0].value = (rises ? 0.05 : flux ? -0.02 : -0.06) * added.extent.scale;
         added.parameters[1].value = (rises ? 0.25 : flux ? -0.03 : -0.2) * added.extent.scale;
     } else {
         for (auto& parameter : added.parameters)
             if (parameter.strength && !parameter.heard)
-                parameter.value = std::isfinite(parameter.prior) ? 0.1 * parameter.prior
-                                  : std::isfinite(parameter.upper) ? 0.1 * parameter.upper : effect.electrical() ? 0.02 : 300.0;
+                parameter.value = std::isfinite(parameter.prior)   ? 0.1 * parameter.prior
+                                  : std::isfinite(parameter.upper) ? 0.1 * parameter.upper
+                                  : effect.electrical()            ? 0.02
+                                                                   : 300.0;
     }
     return model;
 }
@@ -68,7 +72,7 @@ inline std::vector<double> burst(double sampleRate, double seconds, double ampli
     for (std::size_t n = 0; n < u.size(); ++n) {
         const double t = static_cast<double>(n) / sampleRate, bell = (t - 0.5 * seconds) / (0.1 * seconds);
         u[n] = amplitude * std::exp(-0.5 * bell * bell)
-             * (std::sin(2.0 * std::numbers::pi * 60.0 * t) + 0.3 * std::sin(2.0 * std::numbers::pi * 910.0 * t));
+               * (std::sin(2.0 * std::numbers::pi * 60.0 * t) + 0.3 * std::sin(2.0 * std::numbers::pi * 910.0 * t));
     }
     return u;
 }
@@ -119,4 +123,4 @@ inline double peak(const std::vector<double>& values)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -37,7 +37,7 @@ struct Gain {
     std::atomic<int>* alive_;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A new engine fades in over the time that was asked for, and the old one comes back", "[handover]")
 {
@@ -46,24 +46,24 @@ TEST_CASE("A new engine fades in over the time that was asked for, and the old o
         Crossfade<Gain> crossfade(2400);
         std::vector<double> ones(1000, 1.0), out(1000);
         crossfade.process(ones.data(), out.data(), 1000);
-        CHECK(out == ones);   // nothing is there yet
+        CHECK(out == ones);  // nothing is there yet
         crossfade.start(std::make_unique<Gain>(2.0, &alive));
         crossfade.process(ones.data(), out.data(), 1000);
         CHECK(out == std::vector<double>(1000, 2.0));
 
         crossfade.offer(std::make_unique<Gain>(5.0, &alive));
-        crossfade.offer(std::make_unique<Gain>(3.0, &alive));   // replaces the one before, which never played
+        crossfade.offer(std::make_unique<Gain>(3.0, &alive));  // replaces the one before, which never played
         CHECK(alive == 2);
         std::vector<double> all;
         for (int block = 0; block < 4; ++block) {
             crossfade.process(ones.data(), out.data(), 1000);
             all.insert(all.end(), out.begin(), out.end());
             if (block == 1)
-                crossfade.offer(std::make_unique<Gain>(4.0, &alive));   // has to wait
+                crossfade.offer(std::make_unique<Gain>(4.0, &alive));  // has to wait
         }
         for (std::size_t n = 1; n < 2400; ++n) {
             CHECK(all[n] >= all[n - 1]);
-            CHECK(all[n] - all[n - 1] < 1.9 / 2400.0);   // the steepest of the curve is 15/8
+            CHECK(all[n] - all[n - 1] < 1.9 / 2400.0);  // the steepest of the curve is 15/8
         }
         CHECK(all[2399] == 3.0);
         CHECK(all.back() > 3.0);
@@ -91,9 +91,10 @@ struct Late {
     std::size_t at = 0;
 };
 
-} // namespace
+}  // namespace
 
-TEST_CASE("A new engine is heard once its delay line is full: two that do the same are swapped without a trace", "[handover]")
+TEST_CASE("A new engine is heard once its delay line is full: two that do the same are swapped without a trace",
+          "[handover]")
 {
     Crossfade<Late> crossfade(500, 100);
     crossfade.start(std::make_unique<Late>());
@@ -121,7 +122,7 @@ TEST_CASE("Engines are handed over and taken back while audio runs", "[handover]
             while (!done) {
                 crossfade.process(ones.data(), out.data(), out.size());
                 for (const double value : out)
-                    plausible = plausible && value >= 1.0 && value <= 2.0;   // a freed engine multiplies by 0
+                    plausible = plausible && value >= 1.0 && value <= 2.0;  // a freed engine multiplies by 0
             }
         });
         for (int k = 0; k < 2000; ++k) {
@@ -149,7 +150,8 @@ TEST_CASE("Meters are read and models are swapped from another thread", "[handov
     std::atomic<bool> done {false};
     Crossfade<Predistorter> crossfade(2400);
     const auto make = [](double amount) {
-        return std::make_unique<Predistorter>(everything(), RealTimeOptions {48000.0, 1}, LinearizationControls {amount, xmax, 40.0});
+        return std::make_unique<Predistorter>(everything(), RealTimeOptions {48000.0, 1},
+                                              LinearizationControls {amount, xmax, 40.0});
     };
     crossfade.start(make(1.0));
     bool finite = true;

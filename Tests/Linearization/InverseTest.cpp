@@ -22,7 +22,7 @@ Measurement simulated(const Model& model, const std::vector<double>& u, double s
     return simulate(model, u, sampleRate, options);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The reference moves as the linear driver does, each derivative that of the one before", "[linearization]")
 {
@@ -56,10 +56,11 @@ TEST_CASE("A driver whose poles coincide has a reference, too", "[linearization]
 {
     // Without inductance to speak of, critically damped: m s^2 + (Rms + Bl^2/Re) s + K is a square.
     auto model = makeModel("electrodynamic");
-    for (const auto& [name, value] : {std::pair {"Re", 4.0}, {"Le", 1e-4}, {"Bl", 4.0}, {"m", 0.01}, {"Rms", 1.0}, {"K", 625.0}})
+    for (const auto& [name, value] :
+         {std::pair {"Re", 4.0}, {"Le", 1e-4}, {"Bl", 4.0}, {"m", 0.01}, {"Rms", 1.0}, {"K", 625.0}})
         model.baseParameter(name).value = value;
     model = withStrong(model, effectNamed("creep"));
-    model.components.back().parameters[2].value = 0.0;   // and all relaxations alike
+    model.components.back().parameters[2].value = 0.0;  // and all relaxations alike
     const auto u = burst(48000.0, 0.3, 5.0);
     const auto truth = simulated(model, u, 48000.0);
     Reference reference(model, 48000.0);

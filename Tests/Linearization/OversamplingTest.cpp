@@ -36,7 +36,7 @@ std::vector<double> down(Oversampling& filter, const std::vector<double>& y)
     return x;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Up and down again is a delay by the latency, up to 0.45 of the rate", "[oversampling]")
 {
@@ -73,9 +73,9 @@ TEST_CASE("The way up adds no images, the way down no aliases", "[oversampling]"
             const double phase = 2.0 * std::numbers::pi * 0.2 / factor * static_cast<double>(n);
             rest.push_back(wide[n] - c * std::cos(phase) - s * std::sin(phase));
         }
-        CHECK(rms(rest) < 2e-3);   // the fit of a stretch that is no whole number of periods
+        CHECK(rms(rest) < 2e-3);  // the fit of a stretch that is no whole number of periods
         filter.reset();
-        for (const double frequency : {0.56, 0.8, 0.95}) {   // of the lower rate
+        for (const double frequency : {0.56, 0.8, 0.95}) {  // of the lower rate
             const auto folded = down(filter, sine(2048 * static_cast<std::size_t>(factor), frequency / factor));
             CHECK(rms({folded.begin() + 512, folded.end()}) < 1e-5);
             filter.reset();

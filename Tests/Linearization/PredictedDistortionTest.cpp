@@ -9,9 +9,11 @@
 
 using namespace excursion;
 
-TEST_CASE("A linear driver has no distortion to predict, one with laws has, and linearization takes it away", "[linearization]")
+TEST_CASE("A linear driver has no distortion to predict, one with laws has, and linearization takes it away",
+          "[linearization]")
 {
-    const LinearizationControls free {1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    const LinearizationControls free {1.0, std::numeric_limits<double>::infinity(),
+                                      std::numeric_limits<double>::infinity()};
     CHECK(predictDistortion(midbass(), free, 10.0).beforeDb < -150.0);
     const auto model = withStrong(midbass(), effectNamed("stiffness"));
     const auto soft = predictDistortion(model, free, 2.0), loud = predictDistortion(model, free, 10.0);

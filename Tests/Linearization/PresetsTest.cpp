@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> files(const std::string& folder)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Every factory driver loads, is stable, has laws that make sense and a level that does", "[presets][slow]")
 {
@@ -42,15 +42,17 @@ TEST_CASE("Every factory driver loads, is stable, has laws that make sense and a
             for (const double value : law.value) {
                 INFO(law.info.name);
                 const double base = model.baseParameter(law.info.base).value;
-                CHECK(value > (law.info.argument == "v" ? 0.99 : 0.3) * base);   // air resists more as it is faster
+                CHECK(value > (law.info.argument == "v" ? 0.99 : 0.3) * base);  // air resists more as it is faster
                 CHECK(value < 3.0 * base);
             }
         seed = seed
-            || (model.baseParameter("m").value == 14.35e-3 && model.baseParameter("Rms").value == 0.786 && model.baseParameter("K").value == 1852.0
-                && model.baseParameter("Bl").value == 4.95 && model.baseParameter("Le").value == 266e-6 && model.baseParameter("Re").value == 3.3);
+               || (model.baseParameter("m").value == 14.35e-3 && model.baseParameter("Rms").value == 0.786
+                   && model.baseParameter("K").value == 1852.0 && model.baseParameter("Bl").value == 4.95
+                   && model.baseParameter("Le").value == 266e-6 && model.baseParameter("Re").value == 3.3);
 
         // 2.83 V at 1 m, four times the resonance: what such drivers do is between 65 and 100 dB.
-        const double f0 = std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value) / (2.0 * std::numbers::pi);
+        const double f0 = std::sqrt(model.baseParameter("K").value / model.baseParameter("m").value)
+                          / (2.0 * std::numbers::pi);
         CHECK(f0 > 20.0);
         CHECK(f0 < 600.0);
         const double pascal = 2.83 * std::abs(respond(model, {Quantity::pressure}, {4.0 * f0}).front().value.front());
@@ -69,7 +71,8 @@ TEST_CASE("Every factory driver loads, is stable, has laws that make sense and a
             std::vector<double> u(48000);
             for (std::size_t n = 0; n < u.size(); ++n) {
                 const double t = static_cast<double>(n) / 48000.0;
-                u[n] = 0.8 * std::sin(std::numbers::pi * f0 * t) + 0.2 * std::sin(2.0 * std::numbers::pi * 6.3 * f0 * t);
+                u[n] = 0.8 * std::sin(std::numbers::pi * f0 * t)
+                       + 0.2 * std::sin(2.0 * std::numbers::pi * 6.3 * f0 * t);
             }
             const double before = rms(u), after = rms(through(chain, u));
             CHECK(after < 4.0 * before);

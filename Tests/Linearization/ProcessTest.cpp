@@ -25,7 +25,7 @@ template <class Engine>
 void checkBlocks(Engine make())
 {
     auto u = noise(20000, 6.0);
-    u[7000] = notANumber;   // so that a fault falls where it falls, too
+    u[7000] = notANumber;  // so that a fault falls where it falls, too
     auto whole = u, cut = u;
     make().process(whole.data(), whole.data(), whole.size());
     auto engine = make();
@@ -35,7 +35,8 @@ void checkBlocks(Engine make())
         std::vector<double> out(count + 1, 0.25);
         engine.process(cut.data() + n, out.data(), count);
         CHECK(out[count] == 0.25);
-        std::copy(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count), cut.begin() + static_cast<std::ptrdiff_t>(n));
+        std::copy(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count),
+                  cut.begin() + static_cast<std::ptrdiff_t>(n));
         n += count;
     }
     CHECK(cut == whole);
@@ -69,7 +70,7 @@ void checkFaults(Engine make())
         CHECK(allFinite(got));
         CHECK(engine.take().faults >= 1);
         CHECK(peak(got) < 3.0 * peak(expected));
-        double late = 0.0;   // once it has been faded back, and the linear driver has settled
+        double late = 0.0;  // once it has been faded back, and the linear driver has settled
         for (std::size_t n = 36000; n < got.size(); ++n)
             late = std::max(late, std::abs(got[n] - expected[n]));
         CHECK(late < 0.02 * peak(expected));
@@ -79,7 +80,7 @@ void checkFaults(Engine make())
 Predistorter predistorter() { return {everything(), {48000.0, 2}, {}}; }
 Speaker speaker() { return {everything(), {48000.0, 2}}; }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("How a signal is cut into blocks does not matter", "[linearization]")
 {
@@ -102,10 +103,11 @@ TEST_CASE("What is not finite resets, and what comes after is as before", "[line
 /// everything(), with the laws of its coil and spring, in units of which volt, ampere and metre are so many.
 Model inUnits(double volts, double amperes, double metres)
 {
-    const double newtons = volts * amperes / metres;   // power is the same
+    const double newtons = volts * amperes / metres;  // power is the same
     auto model = makeModel("electrodynamic");
-    const std::pair<const char*, double> base[] {{"Re", 3.3 * volts / amperes}, {"Le", 266e-6 * volts / amperes}, {"Bl", 4.95 * newtons / amperes},
-                                                 {"m", 0.01435 * newtons / metres}, {"Rms", 0.786 * newtons / metres}, {"K", 1852.0 * newtons / metres}};
+    const std::pair<const char*, double> base[] {{"Re", 3.3 * volts / amperes},     {"Le", 266e-6 * volts / amperes},
+                                                 {"Bl", 4.95 * newtons / amperes},  {"m", 0.01435 * newtons / metres},
+                                                 {"Rms", 0.786 * newtons / metres}, {"K", 1852.0 * newtons / metres}};
     for (const auto& [name, value] : base)
         model.baseParameter(name).value = value;
     for (const char* const id : {"force-factor", "stiffness", "inductance-position"}) {
@@ -129,7 +131,8 @@ TEST_CASE("What is played does not depend on the units", "[linearization]")
         const auto model = inUnits(volts, amperes, metres);
         Predistorter predistorter(model, {48000.0, 2}, {1.0, 3e-3 * metres, 12.0 * volts, 5.0 * volts * amperes});
         Speaker speaker(model, {48000.0, 2});
-        auto bent = through(predistorter, burst(48000.0, 0.5, 10.0 * volts)), heard = through(speaker, burst(48000.0, 0.5, 10.0 * volts));
+        auto bent = through(predistorter, burst(48000.0, 0.5, 10.0 * volts)),
+             heard = through(speaker, burst(48000.0, 0.5, 10.0 * volts));
         CHECK(predistorter.take().faults + speaker.take().faults == 0);
         for (auto& u : bent)
             u /= volts;
@@ -177,8 +180,8 @@ TEST_CASE("Around what is not finite there is silence, without a step", "[linear
         usual = std::max(usual, std::abs(u[n] - u[n - 1]));
     }
     CHECK(steepest < 6.0 * usual);
-    CHECK(rms({dirty.begin() + 15400, dirty.begin() + 15800}) < 0.02);   // the cone has come to rest
-    CHECK(rms({dirty.end() - 4800, dirty.end()}) > 3.0);   // and it comes back
+    CHECK(rms({dirty.begin() + 15400, dirty.begin() + 15800}) < 0.02);  // the cone has come to rest
+    CHECK(rms({dirty.end() - 4800, dirty.end()}) > 3.0);                // and it comes back
 }
 
 TEST_CASE("The amount goes from the signal as it is to all of the linearization", "[linearization]")
@@ -230,7 +233,8 @@ TEST_CASE("Controls are followed smoothly, and those that make no sense are left
         u[n] = 6.0 * std::sin(2.0 * std::numbers::pi * 50.0 * static_cast<double>(n) / 48000.0);
     auto out = u;
     for (std::size_t n = 0; n < u.size(); n += 500) {
-        engine.set(n % 1000 == 0 ? LinearizationControls {0.0, 10e-3, 50.0} : LinearizationControls {1.0, 3.5e-3, 30.0});
+        engine.set(n % 1000 == 0 ? LinearizationControls {0.0, 10e-3, 50.0}
+                                 : LinearizationControls {1.0, 3.5e-3, 30.0});
         engine.set({notANumber, -1.0, 0.0});
         engine.process(u.data() + n, out.data() + n, 500);
     }
@@ -238,7 +242,7 @@ TEST_CASE("Controls are followed smoothly, and those that make no sense are left
     for (std::size_t n = 1; n < out.size(); ++n)
         steepest = std::max(steepest, std::abs(out[n] - out[n - 1]));
     CHECK(allFinite(out));
-    CHECK(steepest < 0.2);   // the sine alone has 0.04
+    CHECK(steepest < 0.2);  // the sine alone has 0.04
 }
 
 TEST_CASE("Silence comes out as silence, not as subnormal numbers", "[linearization]")
@@ -252,7 +256,8 @@ TEST_CASE("Silence comes out as silence, not as subnormal numbers", "[linearizat
         bend.process(u.data(), u.data(), u.size());
         play.process(v.data(), v.data(), v.size());
         for (const auto* out : {&u, &v})
-            CHECK(std::none_of(out->begin(), out->end(), [](double value) { return std::fpclassify(value) == FP_SUBNORMAL; }));
+            CHECK(std::none_of(out->begin(), out->end(),
+                               [](double value) { return std::fpclassify(value) == FP_SUBNORMAL; }));
     }
 }
 
@@ -260,8 +265,10 @@ TEST_CASE("No model and no signal makes the inverse run away", "[linearization]"
 {
     // Laws as a bad fit may leave them: a force factor that vanishes and turns over, a stiffness and an inductance that
     // become negative.
-    for (const auto& [id, factor] :
-         {std::pair {"force-factor", -1.6}, {"stiffness", -1.5}, {"inductance-position", -1.5}, {"damping-velocity", -1.5}}) {
+    for (const auto& [id, factor] : {std::pair {"force-factor", -1.6},
+                                     {"stiffness", -1.5},
+                                     {"inductance-position", -1.5},
+                                     {"damping-velocity", -1.5}}) {
         INFO(id);
         auto model = withoutEffect(everything(), id);
         model = withStrong(model, effectNamed(id));

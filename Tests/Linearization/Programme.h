@@ -17,13 +17,17 @@ namespace excursion {
 class Draw {
 public:
     explicit Draw(unsigned seed) : random_(seed) {}
-    double within(double least, double most) { return least + (most - least) * static_cast<double>(random_() >> 11) * 0x1p-53; }
+    double within(double least, double most)
+    {
+        return least + (most - least) * static_cast<double>(random_() >> 11) * 0x1p-53;
+    }
 
 private:
     std::mt19937_64 random_;
 };
 
-/// Noise that falls by 3 dB an octave from 10 Hz on, of rms 1: white noise through low-passes of first order, one each two octaves.
+/// Noise that falls by 3 dB an octave from 10 Hz on, of rms 1: white noise through low-passes of first order, one each
+/// two octaves.
 inline std::vector<double> pinkNoise(Draw& draw, std::size_t length)
 {
     std::vector<double> sum(length, 0.0);
@@ -45,7 +49,7 @@ inline std::vector<double> pinkNoise(Draw& draw, std::size_t length)
 
 struct Programme {
     std::string name;
-    std::vector<double> samples;   ///< peaks about 1 to 2; the first 5 ms are silent
+    std::vector<double> samples;  ///< peaks about 1 to 2; the first 5 ms are silent
 };
 
 /// Something that is played: a tone, noise, bursts, a square wave, 5 Hz, steps, drums with noise, two tones.
@@ -55,10 +59,12 @@ inline Programme drawnProgramme(Draw& draw, double resonance, double rate, doubl
     auto& out = programme.samples;
     out.resize(static_cast<std::size_t>(seconds * rate));
     const auto kind = static_cast<int>(draw.within(0.0, 7.999));
-    const double f = resonance * std::exp(draw.within(-1.5, 2.0)), pause = draw.within(0.2, 0.7), step = draw.within(0.1, 0.4) * seconds;
+    const double f = resonance * std::exp(draw.within(-1.5, 2.0)), pause = draw.within(0.2, 0.7),
+                 step = draw.within(0.1, 0.4) * seconds;
     const auto tone = [](double frequency, double t) { return std::sin(2.0 * std::numbers::pi * frequency * t); };
     const auto noise = pinkNoise(draw, out.size());
-    static const char* const names[] {"tone", "pink noise", "bursts", "square wave", "5 Hz", "steps", "drums", "two tones"};
+    static const char* const names[] {"tone", "pink noise", "bursts", "square wave",
+                                      "5 Hz", "steps",      "drums",  "two tones"};
     programme.name = names[kind];
     for (auto n = static_cast<std::size_t>(0.005 * rate); n < out.size(); ++n) {
         const double t = static_cast<double>(n) / rate;
@@ -69,7 +75,10 @@ inline Programme drawnProgramme(Draw& draw, double resonance, double rate, doubl
         case 3: out[n] = tone(0.5 * f, t) > 0.0 ? 1.0 : -1.0; break;
         case 4: out[n] = tone(5.0, t); break;
         case 5: out[n] = std::fmod(t, 2.0 * step) > step ? 1.0 : -0.3; break;
-        case 6: out[n] = 0.5 * noise[n] * std::exp(-8.0 * std::fmod(t, 0.7 * pause)) + 0.7 * tone(1.1 * resonance, t) * std::exp(-6.0 * std::fmod(t, pause)); break;
+        case 6:
+            out[n] = 0.5 * noise[n] * std::exp(-8.0 * std::fmod(t, 0.7 * pause))
+                     + 0.7 * tone(1.1 * resonance, t) * std::exp(-6.0 * std::fmod(t, pause));
+            break;
         default: out[n] = 0.6 * tone(f, t) + 0.4 * tone(11.3 * f, t); break;
         }
     }
@@ -82,7 +91,8 @@ inline double powerAbove(double frequency, const std::vector<double>& signal, do
     auto faded = signal;
     const auto fade = std::min(signal.size() / 2, static_cast<std::size_t>(0.25 * rate));
     for (std::size_t n = 0; n < fade; ++n) {
-        const double share = 0.5 - 0.5 * std::cos(std::numbers::pi * static_cast<double>(n) / static_cast<double>(fade));
+        const double share = 0.5
+                             - 0.5 * std::cos(std::numbers::pi * static_cast<double>(n) / static_cast<double>(fade));
         faded[n] *= share * share;
         faded[faded.size() - 1 - n] *= share * share;
     }
@@ -95,4 +105,4 @@ inline double powerAbove(double frequency, const std::vector<double>& signal, do
     return sum / (length * length);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What comes out of a predistorter is given to the driver as Driver/Simulate integrates it, which shares the laws with the protection and nothing
-// else: not the inverse, not the reference, not the steps.
+// What comes out of a predistorter is given to the driver as Driver/Simulate integrates it, which shares the laws with
+// the protection and nothing else: not the inverse, not the reference, not the steps.
 #include "Linearization/Drivers.h"
 #include "Linearization/Programme.h"
 
@@ -36,7 +36,8 @@ std::vector<Model> factoryModels()
     return models;
 }
 
-/// One of the factory's drivers with every number of its base and every strength changed by up to a factor of 1.5 either way.
+/// One of the factory's drivers with every number of its base and every strength changed by up to a factor of 1.5
+/// either way.
 std::optional<Model> drawnModel(Draw& draw)
 {
     static const auto models = factoryModels();
@@ -71,7 +72,8 @@ double resonance(const Model& model)
 /// V at which the linear driver goes as far, slowly, as it was measured.
 double ratedVoltage(const Model& model)
 {
-    return measuredDisplacement(model) / std::abs(respond(model, {Quantity::displacement}, {0.05 * resonance(model)}).front().value.front());
+    return measuredDisplacement(model)
+           / std::abs(respond(model, {Quantity::displacement}, {0.05 * resonance(model)}).front().value.front());
 }
 
 LinearizationControls drawnControls(const Model& model, Draw& draw)
@@ -95,16 +97,20 @@ struct Reached {
     double displacement = 0.0, voltage = 0.0, power = 0.0;
 };
 
-/// @param from   sample at which these limits came; asked for from a fifth of a second later on, as the cone has to come back by itself. A mean
-///               of the heat that is above its limit has to fall, from half a second later on, nearly as fast as silence would let it
-Reached reachedBy(const Model& driver, const std::vector<double>& voltage, const LinearizationControls& limits, std::size_t from)
+/// @param from   sample at which these limits came; asked for from a fifth of a second later on, as the cone has to
+/// come back by itself. A mean
+///               of the heat that is above its limit has to fall, from half a second later on, nearly as fast as
+///               silence would let it
+Reached reachedBy(const Model& driver, const std::vector<double>& voltage, const LinearizationControls& limits,
+                  std::size_t from)
 {
     const auto take = simulate(driver, voltage, rate, {});
     const auto& x = take.find(Quantity::displacement)->samples;
     const auto& i = take.find(Quantity::current)->samples;
     const double ohms = driver.baseParameter("Re").value;
     Reached reached;
-    const std::size_t asked = from + static_cast<std::size_t>(from > 0 ? 0.2 * rate : 0.0), warm = from + static_cast<std::size_t>(from > 0 ? 0.5 * rate : 0.0);
+    const std::size_t asked = from + static_cast<std::size_t>(from > 0 ? 0.2 * rate : 0.0),
+                      warm = from + static_cast<std::size_t>(from > 0 ? 0.5 * rate : 0.0);
     double heat = 0.0, before = 0.0;
     for (std::size_t n = 0; n < voltage.size(); ++n) {
         heat += (1.0 - std::exp(-1.0 / (rate * LinearizationControls::averagingTime))) * (ohms * i[n] * i[n] - heat);
@@ -114,7 +120,11 @@ Reached reachedBy(const Model& driver, const std::vector<double>& voltage, const
             continue;
         reached.displacement = std::max(reached.displacement, std::abs(x[n]) / limits.displacementLimit);
         reached.voltage = std::max(reached.voltage, std::abs(voltage[n]) / limits.voltageLimit);
-        reached.power = std::max(reached.power, heat / std::max(limits.powerLimit, before * std::exp(-0.7 * (static_cast<double>(n) - static_cast<double>(warm)) / rate)));
+        reached.power = std::max(
+            reached.power,
+            heat
+                / std::max(limits.powerLimit,
+                           before * std::exp(-0.7 * (static_cast<double>(n) - static_cast<double>(warm)) / rate)));
     }
     return reached;
 }
@@ -135,15 +145,16 @@ Tally study(int drivers, double seconds, double error, unsigned seed)
             continue;
         auto first = drawnControls(*model, draw);
         auto second = draw.within(0.0, 1.0) < 0.5 ? drawnControls(*model, draw) : first;
-        if (error > 0.0)   // beyond what was measured a law is a guess, whatever the margin
+        if (error > 0.0)  // beyond what was measured a law is a guess, whatever the margin
             for (auto* controls : {&first, &second}) {
                 controls->margin = error;
                 controls->displacementLimit = std::min(controls->displacementLimit, 1.2 * measuredDisplacement(*model));
             }
         const auto programme = drawnProgramme(draw, resonance(*model), rate, seconds);
         const double level = draw.within(-20.0, 20.0), volts = ratedVoltage(*model) * std::pow(10.0, level / 20.0);
-        INFO("driver " << k << " (" << model->name << "), " << programme.name << " at " << level << " dB, limits (m, V, W) " << first.displacementLimit << ' '
-                       << first.voltageLimit << ' ' << first.powerLimit << " then " << second.displacementLimit << ' ' << second.voltageLimit << ' '
+        INFO("driver " << k << " (" << model->name << "), " << programme.name << " at " << level
+                       << " dB, limits (m, V, W) " << first.displacementLimit << ' ' << first.voltageLimit << ' '
+                       << first.powerLimit << " then " << second.displacementLimit << ' ' << second.voltageLimit << ' '
                        << second.powerLimit << ", amount " << first.amount << " then " << second.amount);
         Predistorter engine(*model, {rate, 2}, first);
         auto voltage = programme.samples;
@@ -156,7 +167,8 @@ Tally study(int drivers, double seconds, double error, unsigned seed)
             engine.process(voltage.data() + n, voltage.data() + n, std::min<std::size_t>(64, voltage.size() - n));
         }
         const auto driver = error > 0.0 ? wrong(*model, error, draw) : *model;
-        const auto before = reachedBy(driver, {voltage.begin(), voltage.begin() + static_cast<std::ptrdiff_t>(change)}, first, 0);
+        const auto before = reachedBy(driver, {voltage.begin(), voltage.begin() + static_cast<std::ptrdiff_t>(change)},
+                                      first, 0);
         const auto after = reachedBy(driver, voltage, second, change);
         const double most = error > 0.0 ? 1.05 : 1.01;
         for (const auto& reached : {before, after}) {
@@ -175,14 +187,16 @@ Tally study(int drivers, double seconds, double error, unsigned seed)
 
 void report(const Tally& tally, double least)
 {
-    WARN(tally.runs << " runs; at most " << 100.0 * tally.worst.displacement << " % of the excursion's limit, " << 100.0 * tally.worst.voltage
-                    << " % of the voltage's, " << 100.0 * tally.worst.power << " % of the power's");
-    CHECK(tally.worst.displacement > least);   // not by doing nothing
+    WARN(tally.runs << " runs; at most " << 100.0 * tally.worst.displacement << " % of the excursion's limit, "
+                    << 100.0 * tally.worst.voltage << " % of the voltage's, " << 100.0 * tally.worst.power
+                    << " % of the power's");
+    CHECK(tally.worst.displacement > least);  // not by doing nothing
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("The limits of excursion, voltage and power hold together, whatever is played and however they are changed", "[protection][slow]")
+TEST_CASE("The limits of excursion, voltage and power hold together, whatever is played and however they are changed",
+          "[protection][slow]")
 {
     report(study(16, 1.5, 0.0, 1), 0.95);
 }
@@ -207,8 +221,8 @@ TEST_CASE("The limits hold for 57 drivers and ten minutes each", "[.nightly][slo
 TEST_CASE("The meters show the motion of the driver that was given what came out", "[protection]")
 {
     const auto model = everything();
-    for (const auto& limits : {LinearizationControls {1.0, 3e-3, 12.0}, LinearizationControls {1.0, infinity, 5.0}, LinearizationControls {0.0, 3e-3, 12.0},
-                               LinearizationControls {0.3, infinity, 8.0}}) {
+    for (const auto& limits : {LinearizationControls {1.0, 3e-3, 12.0}, LinearizationControls {1.0, infinity, 5.0},
+                               LinearizationControls {0.0, 3e-3, 12.0}, LinearizationControls {0.3, infinity, 8.0}}) {
         Predistorter engine(model, {rate, 2}, limits);
         Draw draw(5);
         auto u = pinkNoise(draw, 48000);
@@ -254,7 +268,8 @@ TEST_CASE("Limiting adds no treble: what it leaves above 2 kHz is what turning d
         for (const double frequency : {0.3 * f0, f0, 2.0 * f0}) {
             std::vector<double> u(static_cast<std::size_t>(3.0 * rate));
             for (std::size_t n = 0; n < u.size(); ++n)
-                u[n] = 5.0 * rated * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate) * std::min(1.0, static_cast<double>(n) / rate);
+                u[n] = 5.0 * rated * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate)
+                       * std::min(1.0, static_cast<double>(n) / rate);
             Predistorter engine(model, {rate, 2}, controls);
             // The first second fades in, then the limit falls to a tenth and comes back.
             auto out = u;
@@ -266,7 +281,8 @@ TEST_CASE("Limiting adds no treble: what it leaves above 2 kHz is what turning d
                 engine.process(u.data() + n, out.data() + n, std::min<std::size_t>(64, u.size() - n));
             }
             REQUIRE(engine.take().displacementReduction > 6.0);
-            INFO(frequency << " Hz, treble " << 10.0 * std::log10(powerAbove(2000.0, out, rate)) << " dB of " << 20.0 * std::log10(rms(out)));
+            INFO(frequency << " Hz, treble " << 10.0 * std::log10(powerAbove(2000.0, out, rate)) << " dB of "
+                           << 20.0 * std::log10(rms(out)));
             CHECK(powerAbove(2000.0, out, rate) < 1e-6 * rms(out) * rms(out));
         }
         Draw draw(3);
@@ -319,15 +335,19 @@ TEST_CASE("The lowest band is given up before the next one is touched", "[protec
     Eigen::MatrixXd parts(2, 3);
     parts << 2.0, 0.5, 0.1, -1.0, 0.4, 0.2;
     const Bands::Values all {1.0, 1.0, 1.0};
-    const auto within = [&](double rest, double limit) { return largestWithin(Eigen::VectorXd::Constant(2, rest), parts, all, limit); };
+    const auto within = [&](double rest, double limit) {
+        return largestWithin(Eigen::VectorXd::Constant(2, rest), parts, all, limit);
+    };
     CHECK(within(0.0, 3.0) == all);
-    CHECK(within(0.0, 1.6) == Bands::Values {0.5, 1.0, 1.0});    // 0.6 + 2 g <= 1.6
+    CHECK(within(0.0, 1.6) == Bands::Values {0.5, 1.0, 1.0});  // 0.6 + 2 g <= 1.6
     CHECK(within(0.0, 0.35)[0] == 0.0);
-    CHECK(within(0.0, 0.35)[1] == Approx(0.375));                // 0.2 + 0.4 g <= 0.35
+    CHECK(within(0.0, 0.35)[1] == Approx(0.375));  // 0.2 + 0.4 g <= 0.35
     CHECK(within(0.0, 0.35)[2] == 1.0);
     CHECK(within(0.0, 0.1) == Bands::Values {0.0, 0.0, 0.5});
     CHECK(within(1.0, 0.5) == Bands::Values {});
-    CHECK(within(-0.9, 1.0)[0] == Approx(0.65));                 // -0.3 + 2 g <= 1
-    CHECK(within(-1.4, 1.0)[0] == Approx(0.2));                  // -0.8 - g >= -1, where the lowest band pushes further out
-    CHECK(within(-1.7, 1.0)[0] == 0.0);                          // at the first time it would help the others, on which nobody counts
+    CHECK(within(-0.9, 1.0)[0] == Approx(0.65));  // -0.3 + 2 g <= 1
+    // -0.8 - g >= -1, where the lowest band pushes further out
+    CHECK(within(-1.4, 1.0)[0] == Approx(0.2));
+    // at the first time it would help the others, on which nobody counts
+    CHECK(within(-1.7, 1.0)[0] == 0.0);
 }

@@ -20,7 +20,8 @@ using namespace excursion;
 
 namespace {
 
-/// Everything that an audio thread does: blocks of all sizes, controls, a fault, a model handed over and its predecessor back.
+/// Everything that an audio thread does: blocks of all sizes, controls, a fault, a model handed over and its
+/// predecessor back.
 struct AudioThread {
     explicit AudioThread(int oversampling) : bend(1000), play(everything(), {48000.0, oversampling})
     {
@@ -30,7 +31,8 @@ struct AudioThread {
     }
     void run()
     {
-        for (const std::size_t n : {std::size_t {0}, std::size_t {1}, std::size_t {64}, std::size_t {1000}, std::size_t {8192}}) {
+        for (const std::size_t n :
+             {std::size_t {0}, std::size_t {1}, std::size_t {64}, std::size_t {1000}, std::size_t {8192}}) {
             bend.each([](Predistorter& engine) { engine.set({0.5, 3e-3, 10.0}); });
             bend.process(u.data(), u.data(), n);
             play.process(u.data(), u.data(), n);
@@ -44,7 +46,7 @@ struct AudioThread {
     std::vector<double> u;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The detectors detect", "[realtime]")
 {

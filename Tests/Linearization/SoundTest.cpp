@@ -32,7 +32,7 @@ std::vector<double> pressure(const Model& model, const std::vector<double>& u, d
     return p;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The speaker plays what is heard, the cone's modes with the cone", "[linearization]")
 {

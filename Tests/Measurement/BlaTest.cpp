@@ -47,7 +47,7 @@ double mean(const std::vector<double>& values)
     return sum;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("without noise the BLA of the seed's driver is its frequency response")
 {
@@ -86,7 +86,7 @@ TEST_CASE("noise and nonlinear variances agree with the truth over 100 runs", "[
         noise += mean(result.frf.noiseVariance) / runs;
         total += mean(result.frf.totalVariance) / runs;
         nonlinear += (mean(result.frf.totalVariance) - mean(result.frf.noiseVariance)) / runs;
-        const double gain = 1.0 + 3.0 * 0.1;   // Bussgang: E v'(w) of a Gaussian of rms 1
+        const double gain = 1.0 + 3.0 * 0.1;  // Bussgang: E v'(w) of a Gaussian of rms 1
         for (const auto& G : result.frf.value)
             scatter += std::norm(G - gain) / static_cast<double>(result.frf.value.size()) / runs;
         // White noise puts N s^2 / P on a line of the average; the flat multisine N^2 / (2 F) of rms 1.
@@ -104,7 +104,7 @@ TEST_CASE("noise common to input and output of a wire does not widen its varianc
     synthetic::Plan plan;
     plan.outputs = {};
     auto take = synthetic::record({}, plan, random);
-    synthetic::addNoise(take.channels.front().samples, 0.01, random);   // the amplifier's own noise
+    synthetic::addNoise(take.channels.front().samples, 0.01, random);  // the amplifier's own noise
     take.channels.push_back({Quantity::current, "A", 10.0, take.channels.front().samples});
     const auto result = bla(take, Quantity::current, 0);
     for (std::size_t i = 0; i < result.frf.value.size(); ++i) {

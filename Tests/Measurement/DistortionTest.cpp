@@ -29,7 +29,7 @@ synthetic::Plan plan()
 /// Output of u + even u^2 + odd u^3, and of its polynomial terms alone.
 struct Polynomial {
     Measurement take;
-    double evenDb = 0.0, oddDb = 0.0;   ///< true power in the excited band, relative to the excited output
+    double evenDb = 0.0, oddDb = 0.0;  ///< true power in the excited band, relative to the excited output
 };
 
 Polynomial polynomialTake(double even, double odd, double noise, std::mt19937_64& random)
@@ -66,7 +66,7 @@ Polynomial polynomialTake(double even, double odd, double noise, std::mt19937_64
     return p;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("even and odd distortion of a polynomial are told apart and measured")
 {

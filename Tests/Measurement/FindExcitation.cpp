@@ -35,7 +35,7 @@ void amplify(std::vector<double>& u, double noise, double distortion = 0.01)
         value += distortion * (value * value / 3 + value * value * value / 9 / 4) + normal(random);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The excited lines are found in a distorting, noisy amplifier's voltage")
 {
@@ -58,7 +58,7 @@ TEST_CASE("Lines are found from one period, and from an amplifier that falls at 
     o.settlePeriods = 0;
     auto plan = planExcitation(o);
     auto& u = plan.channels[0].samples;
-    double before = 0, low = 0;   // a DC-coupled input behind a 10 Hz high-pass
+    double before = 0, low = 0;  // a DC-coupled input behind a 10 Hz high-pass
     for (auto& value : u) {
         low += (value - low) * 2 * 3.14159265 * 10 / 48000;
         before = value;
@@ -120,7 +120,7 @@ TEST_CASE("A record that starts late, or settles slowly, is cut where it is stea
     CHECK(shifted->periods == 3);
     CHECK(shifted->lines == plan.excitation->lines);
 
-    auto& u = plan.channels[0].samples;   // each realization fades in
+    auto& u = plan.channels[0].samples;  // each realization fades in
     for (std::size_t n = 0; n < u.size(); ++n)
         u[n] *= 1 - std::exp(-double(n % (4 * 4096)) / 500);
     const auto faded = findExcitation(u, 48000);

@@ -20,7 +20,7 @@ Measurement signals(const std::filesystem::path& path, const ImportOptions& opti
     return std::get<Measurement>(importText(path, options));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Column names say quantity and unit in the usual ways")
 {
@@ -49,7 +49,7 @@ TEST_CASE("Column names say quantity and unit in the usual ways")
 
 TEST_CASE("Numbers are read without regard to the locale")
 {
-    std::setlocale(LC_ALL, "de_DE.UTF-8");   // does nothing where it is not installed
+    std::setlocale(LC_ALL, "de_DE.UTF-8");  // does nothing where it is not installed
     CHECK(parseNumber("1.5e-3") == 0.0015);
     CHECK(parseNumber("+2.5") == 2.5);
     std::setlocale(LC_ALL, "C");
@@ -62,9 +62,10 @@ TEST_CASE("Numbers are read without regard to the locale")
 TEST_CASE("A CSV of time signals is read, with its sample rate from the time column")
 {
     const Scratch s;
-    for (const char* text : {"time,voltage,displacement_mm,extra\n0,1,2,a\n0.001,-1,4,b\n0.002,3,6,c\n",
-                             "\xEF\xBB\xBF# a comment\r\n\"t [ms]\";\"u (V)\";\"x [mm]\"\r\n0;1,0;2\r\n1;-1;4,0\r\n2;3;6\r\n\r\n",
-                             "time\tu\tx_mm\n0\t1\t2\n0.001\t-1\t4\n0.002\t3\t6"}) {
+    for (const char* text :
+         {"time,voltage,displacement_mm,extra\n0,1,2,a\n0.001,-1,4,b\n0.002,3,6,c\n",
+          "\xEF\xBB\xBF# a comment\r\n\"t [ms]\";\"u (V)\";\"x [mm]\"\r\n0;1,0;2\r\n1;-1;4,0\r\n2;3;6\r\n\r\n",
+          "time\tu\tx_mm\n0\t1\t2\n0.001\t-1\t4\n0.002\t3\t6"}) {
         const auto m = signals(s.file("a.csv", text));
         CHECK(m.sampleRate == Approx(1000));
         REQUIRE(m.channels.size() == 2);
@@ -125,7 +126,9 @@ TEST_CASE("A bad CSV is refused, naming line and column")
     bad("voltage,current\n1,2\n", "--rate", Kind::usage);
     bad("time,current\n0,1\n0.1,2\n0.2,3\n", "neither a voltage nor a force", Kind::data);
     bad("time,voltage,u\n0,1,1\n0.1,2,2\n0.2,3,3\n", "more than one column for the voltage");
-    bad("\x7f""ELF\n\x01\x02\n", "no rows of numbers");
+    bad("\x7f"
+        "ELF\n\x01\x02\n",
+        "no rows of numbers");
     bad("frequency_hz,u_re_v,u_im_v\n1,2,3\n1,2,4\n", "do not ascend");
     bad("frequency_hz,u_re_v\n1,2\n2,2\n3,2\n", "no column for its imaginary part");
     bad("frequency_hz,q_re_v,q_im_v\n1,2,3\n", "not understood");
@@ -137,7 +140,8 @@ TEST_CASE("Takes and spectra survive the way through a CSV")
     const Scratch s;
     Measurement m;
     m.sampleRate = 44100;
-    m.channels = {{Quantity::voltage, "V", 4, {1.1, -2.2, 1.0 / 3}}, {Quantity::acceleration, "m/s^2", 4, {1e-17, 5, 6}}};
+    m.channels = {{Quantity::voltage, "V", 4, {1.1, -2.2, 1.0 / 3}},
+                  {Quantity::acceleration, "m/s^2", 4, {1e-17, 5, 6}}};
     writeCsv(m, s / "m.csv");
     const auto read = readMeasurement(s / "m.csv");
     CHECK(read.sampleRate == Approx(44100));
@@ -146,7 +150,8 @@ TEST_CASE("Takes and spectra survive the way through a CSV")
 
     Spectra sp;
     sp.frequency = {10, 20, 30};
-    sp.channels = {{Quantity::voltage, "V", {{1, 2}, {3, 4}, {5, 1.0 / 7}}}, {Quantity::velocity, "m/s", {{6, 5}, {4, 3}, {2, 1}}}};
+    sp.channels = {{Quantity::voltage, "V", {{1, 2}, {3, 4}, {5, 1.0 / 7}}},
+                   {Quantity::velocity, "m/s", {{6, 5}, {4, 3}, {2, 1}}}};
     writeCsv(sp, s / "s.csv");
     const auto back = std::get<Spectra>(readTake(s / "s.csv"));
     CHECK(back.frequency == sp.frequency);
@@ -158,9 +163,11 @@ TEST_CASE("Takes and spectra survive the way through a CSV")
 TEST_CASE("ZMA and FRD are read in the forms that programs write")
 {
     const Scratch s;
-    for (const char* text : {"* REW\n; x\n# y\nFreq(Hz) Z(Ohms) Phase\n10 8 90\n20 4 -45\n30 2 0\n30 2 0\n", "10,8.0,90\r\n20,4,-45\r\n30,2,0\r\n",
-                             "10, 8, 90\n20, 4, -45\n30, 2, 0", "\"Hz\";\"Ohm\"\n10;8;90\n20;4;-45\n30;2;0\n",
-                             "  10,0\t8,00\t90\n\n  20,0\t+4,00\t-45\n  30,0\t2,00\t0\n", "1e1 8.0e+00 9e1 7\n2e1 4 -45 7\n3e1 2 0 7\n"}) {
+    for (const char* text :
+         {"* REW\n; x\n# y\nFreq(Hz) Z(Ohms) Phase\n10 8 90\n20 4 -45\n30 2 0\n30 2 0\n",
+          "10,8.0,90\r\n20,4,-45\r\n30,2,0\r\n", "10, 8, 90\n20, 4, -45\n30, 2, 0",
+          "\"Hz\";\"Ohm\"\n10;8;90\n20;4;-45\n30;2;0\n", "  10,0\t8,00\t90\n\n  20,0\t+4,00\t-45\n  30,0\t2,00\t0\n",
+          "1e1 8.0e+00 9e1 7\n2e1 4 -45 7\n3e1 2 0 7\n"}) {
         const auto z = std::get<Spectra>(readTake(s.file("a.ZMA", text)));
         INFO(text);
         REQUIRE(z.frequency == std::vector<double> {10, 20, 30});
@@ -171,7 +178,7 @@ TEST_CASE("ZMA and FRD are read in the forms that programs write")
     CHECK(frd.find(Quantity::voltage)->values[2] == 1.0);
     CHECK(std::abs(frd.find(Quantity::pressure)->values[0] + 10.0 * 20e-6) < 1e-12);
     CHECK(frd.find(Quantity::pressure)->values[2].real() == Approx(2e-6));
-    CHECK(frd.remarks.size() == 1);   // the voltage
+    CHECK(frd.remarks.size() == 1);  // the voltage
 }
 
 TEST_CASE("A bad ZMA is refused, naming the line")

@@ -49,10 +49,10 @@ ImportOptions mappedTo(std::initializer_list<const char*> mappings)
     return options;
 }
 
-const std::vector<double> fourOfThree {1, 10, 100, 2, 20, 200, 3, 30, 300, 4, 40, 400};   // 3 x 4, column by column
-const std::vector<double> threeOfFour {1, 2, 3, 4, 10, 20, 30, 40, 100, 200, 300, 400};   // 4 x 3
+const std::vector<double> fourOfThree {1, 10, 100, 2, 20, 200, 3, 30, 300, 4, 40, 400};  // 3 x 4, column by column
+const std::vector<double> threeOfFour {1, 2, 3, 4, 10, 20, 30, 40, 100, 200, 300, 400};  // 4 x 3
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Rows and columns of a matrix are mapped by number, in MAT files of both kinds", "[import]")
 {
@@ -139,7 +139,7 @@ TEST_CASE("Matrices that cannot be signals are refused", "[import]")
     refused(Kind::input, "square", [&] { importMat(s / "square.mat", mappedTo({"1=voltage"})); });
     refused(Kind::input, "finite", [&] { importMat(s / "nan.mat", mappedTo({"1=voltage"})); });
     refused(Kind::usage, "responses", [&] { importMat(s / "two.mat", mappedTo({"1=impedance.re"})); });
-    for (const char* kind : {"1", "9"}) {   // a file that ends early
+    for (const char* kind : {"1", "9"}) {  // a file that ends early
         const auto version = *kind == '1' ? MAT_FT_MAT5 : MAT_FT_MAT73;
         {
             MatWriter(s / "whole.mat", version)

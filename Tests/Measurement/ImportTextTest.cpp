@@ -64,7 +64,7 @@ std::string inUtf16(std::string_view ascii, bool bigEndian, bool mark)
     return bytes;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("An impedance is recognized by its content, in the layouts of the trade", "[import]")
 {
@@ -116,11 +116,12 @@ TEST_CASE("Texts are read in the encodings that programs write", "[import]")
     for (const bool bigEndian : {false, true})
         for (const bool mark : {false, true})
             checkImpedance(responses(inUtf16(text, bigEndian, mark)));
-    std::string old = text;   // a carriage return alone
+    std::string old = text;  // a carriage return alone
     old.erase(std::remove(old.begin(), old.end(), '\n'), old.end());
     checkImpedance(responses(old));
     checkImpedance(responses(
-        "* gemessen f\xfcr 5 \xb5V\nf [Hz];Z [Ohm];phase [\xb0]\n10.5;8.25;45\n21;30;-0.5\n42;6.5;-30\n"));   // Latin-1
+        // Latin-1
+        "* gemessen f\xfcr 5 \xb5V\nf [Hz];Z [Ohm];phase [\xb0]\n10.5;8.25;45\n21;30;-0.5\n42;6.5;-30\n"));
     CHECK(plainText("\xb5", "a") == "\u00b5");
     CHECK(plainText(std::string_view("\xff\xfe\x3d\xd8\x00\xde\x00\xd8", 8), "a") == "\U0001F600\uFFFD");
     refused(Kind::input, "zero bytes", [] { plainText(std::string("a\0b", 3), "a"); });
@@ -131,7 +132,7 @@ TEST_CASE("A sound pressure over frequency is recognized, and what its level mea
     for (const char* text :
          {"* Measurement data measured by REW V5.19\n* Measurement: L\n* Smoothing: 1/24 octave\n* Frequency Step: 1.0 "
           "Hz\n*\n"
-          "* Freq(Hz) SPL(dB) Phase(degrees)\n20.000 94.0 -90.0\n1000.000 100 180\n2000 80 0\n",   // REW, seen
+          "* Freq(Hz) SPL(dB) Phase(degrees)\n20.000 94.0 -90.0\n1000.000 100 180\n2000 80 0\n",  // REW, seen
           "Frequency,SPL (dBSPL),Phase\n20,94,-90\n1000,100,180\n2000,80,0\n",
           "Frequency [Hz]\tLevel [dB SPL]\tPhase [deg]\n20\t94\t-90\n1000\t100\t180\n2000\t80\t0\n"}) {
         INFO(text);
@@ -170,7 +171,7 @@ TEST_CASE("Curves of Klippel's programs are read", "[import]")
     phaseless.minimumPhase = true;
     const auto z = responses(qc, "Impedance-imp.txt", phaseless);
     CHECK(std::abs(z.find(Quantity::voltage)->values[2]) == Approx(5.1249));
-    CHECK(z.remarks.size() == 3);   // limits, unit, phase
+    CHECK(z.remarks.size() == 3);  // limits, unit, phase
     refused(Kind::input, "'resp'", [] {
         responses("frq\tresp\tmax\tmin\n200.00\t91.346\t97.060\t83.701\n206\t91.4\t97\t83\n212\t91.4\t97\t83\n");
     });
@@ -261,7 +262,7 @@ TEST_CASE("Time signals need no titles, and their units are understood", "[impor
     CHECK(measured("t,voltage\n0,1\n1,2\n2,3\n", {}).remarks.size() == 1);
     refused(Kind::input, "--map 1=voltage", [&] { measured("1 2\n3 4\n5 6\n", {}); });
     refused(Kind::usage, "no column '4'", [&] { measured("1 2\n3 4\n5 6\n", mapped({"4=voltage"})); });
-    refused(Kind::usage, "N, mN or V", [] { mapped({"1=force:MN"}); });   // mega is not milli
+    refused(Kind::usage, "N, mN or V", [] { mapped({"1=force:MN"}); });  // mega is not milli
 }
 
 TEST_CASE("An impulse response of REW becomes the frequency response from its time zero", "[import]")

@@ -31,16 +31,16 @@ double worstDegrees(Response response, double step, double low = 10.0, double hi
     return worst;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The minimum phase of a magnitude is that of poles and zeros in the left half plane", "[import]")
 {
-    CHECK(worstDegrees([](Complex s) { return s * 1e-3; }, 1.0 / 12) < 1e-9);   // a power of f is exact
+    CHECK(worstDegrees([](Complex s) { return s * 1e-3; }, 1.0 / 12) < 1e-9);  // a power of f is exact
     CHECK(worstDegrees([](Complex s) { return 5.0 / (s * s); }, 1.0 / 12) < 1e-9);
     CHECK(worstDegrees([](Complex) { return Complex(7.0); }, 1.0 / 3) < 1e-9);
     const auto loudspeaker = [](Complex s) { return 6.0 + s * 0.5e-3 + 36.0 / (1.5 + s * 0.015 + 1500.0 / s); };
     CHECK(worstDegrees(loudspeaker, 1.0 / 24) < 2.5);
     CHECK(worstDegrees(loudspeaker, 1.0 / 96) < 2.5);
-    CHECK(worstDegrees(loudspeaker, 1.0 / 500) < 2.5);   // more points than the integral takes
+    CHECK(worstDegrees(loudspeaker, 1.0 / 500) < 2.5);  // more points than the integral takes
     CHECK(worstDegrees([](Complex s) { return 1.0 / (1.0 + s / 2000.0 + s * s / 4e6); }, 1.0 / 24) < 1.5);
 }

@@ -33,7 +33,7 @@ Measurement numberedTake()
     return take;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a period is found by level, realization and number")
 {

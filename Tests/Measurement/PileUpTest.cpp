@@ -26,14 +26,17 @@ Measurement quietTake(std::uint64_t seed)
 
 std::vector<double>& samplesOf(Measurement& take, Quantity quantity)
 {
-    return std::find_if(take.channels.begin(), take.channels.end(), [&](const Channel& c) { return c.quantity == quantity; })->samples;
+    return std::find_if(take.channels.begin(), take.channels.end(),
+                        [&](const Channel& c) { return c.quantity == quantity; })
+        ->samples;
 }
 
 /// The value that a share of the samples of the loudest level exceeds.
 double exceededBy(const Measurement& take, const std::vector<double>& samples, double share)
 {
     const auto used = static_cast<std::size_t>(take.excitation->totalSamples());
-    std::vector<double> loud(samples.begin() + static_cast<std::ptrdiff_t>(used / 2), samples.begin() + static_cast<std::ptrdiff_t>(used));
+    std::vector<double> loud(samples.begin() + static_cast<std::ptrdiff_t>(used / 2),
+                             samples.begin() + static_cast<std::ptrdiff_t>(used));
     const auto place = loud.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(loud.size()));
     std::nth_element(loud.begin(), place, loud.end(), std::greater<>());
     return *place;
@@ -61,7 +64,7 @@ Measurement wave(const std::function<double(double)>& ofTurns, double turns, dou
 
 std::size_t found(const Measurement& take) { return pileUps(take, take.channels.front()).size(); }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("clipping ahead of noise is found, on its channel, level and side, in any unit")
 {
@@ -129,19 +132,23 @@ TEST_CASE("tops that are flat by nature are not clipping")
         {"sine", [=](double t) { return std::sin(turn(t)); }},
         {"two tones", [=](double t) { return std::sin(turn(t)) + 0.4 * std::sin(turn(3.7 * t)); }},
         {"flattest two tones", [=](double t) { return std::sin(turn(t)) + std::sin(turn(3.0 * t)) / 9.0; }},
-        {"flattest three tones", [=](double t) {
-             return std::sin(turn(t)) + std::sin(turn(3.0 * t)) / 6.0 + std::sin(turn(5.0 * t)) / 50.0;
-         }},
+        {"flattest three tones",
+         [=](double t) { return std::sin(turn(t)) + std::sin(turn(3.0 * t)) / 6.0 + std::sin(turn(5.0 * t)) / 50.0; }},
         {"square", [](double t) { return t - std::floor(t) < 0.5 ? 1.0 : -1.0; }},
         {"pulses", [](double t) { return t - std::floor(t) < 0.1 ? 1.0 : -0.1; }},
-        {"square of 15 harmonics", [=](double t) {
+        {"square of 15 harmonics",
+         [=](double t) {
              double sum = 0.0;
              for (int h = 1; h <= 15; h += 2)
                  sum += std::sin(turn(h * t)) / h;
              return sum;
          }},
         {"compressed sine", [=](double t) { return std::tanh(2.0 * std::sin(turn(t))); }},
-        {"limited sine", [=](double t) { const double s = 3.0 * std::sin(turn(t)); return s / std::sqrt(1.0 + s * s); }},
+        {"limited sine",
+         [=](double t) {
+             const double s = 3.0 * std::sin(turn(t));
+             return s / std::sqrt(1.0 + s * s);
+         }},
         {"decay", [=](double t) { return std::exp(-0.3 * t) * std::sin(turn(t)); }},
         {"nothing", [](double) { return 0.0; }},
         {"DC", [](double) { return 1.0; }},
@@ -167,8 +174,9 @@ TEST_CASE("a displacement that a stiff suspension compresses is not clipped")
         for (auto& channel : take.channels) {
             const double scale = synthetic::rms(channel.samples);
             for (auto& value : channel.samples)
-                value = scale * std::tanh(value / scale);   // to 76 % at one rms, no side beyond one
-            synthetic::addNoise(channel.samples, std::pow(10.0, -2.0 - 0.1 * static_cast<double>(seed)) * scale, random);
+                value = scale * std::tanh(value / scale);  // to 76 % at one rms, no side beyond one
+            synthetic::addNoise(channel.samples, std::pow(10.0, -2.0 - 0.1 * static_cast<double>(seed)) * scale,
+                                random);
             INFO("seed " << seed << ", " << name(channel.quantity));
             CHECK(pileUps(take, channel).empty());
         }

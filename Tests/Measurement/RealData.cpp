@@ -26,7 +26,7 @@ ImportOptions silverbox()
     return o;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The Silverbox is read from MAT and CSV alike")
 {
@@ -43,7 +43,7 @@ TEST_CASE("The Silverbox is read from MAT and CSV alike")
     double worst = 0;
     for (std::size_t n = 0; n < mat.length(); ++n)
         worst = std::max(worst, std::abs(mat.channels[1].samples[n] - csv.channels[1].samples[n]));
-    CHECK(worst < 1e-5);   // the CSV has five digits
+    CHECK(worst < 1e-5);  // the CSV has five digits
 
     const auto schroeder = std::get<Measurement>(importText(folder / "Schroeder80mV.csv", silverbox()));
     CHECK(schroeder.length() == 131072);
@@ -69,8 +69,8 @@ TEST_CASE("Novak's spectra are read as a take")
     REQUIRE(take.frequency.size() == 21996);
     const auto &u = take.find(Quantity::voltage)->values, &i = take.find(Quantity::current)->values;
     REQUIRE(take.find(Quantity::velocity));
-    CHECK(std::abs(u[15] / i[15]) == Approx(5.55).epsilon(0.005));      // 20 Hz
-    CHECK(std::abs(u[158] / i[158]) == Approx(53.0).epsilon(0.005));    // 163 Hz
+    CHECK(std::abs(u[15] / i[15]) == Approx(5.55).epsilon(0.005));    // 20 Hz
+    CHECK(std::abs(u[158] / i[158]) == Approx(53.0).epsilon(0.005));  // 163 Hz
 }
 
 TEST_CASE("Every impedance file at hand is read")

@@ -20,7 +20,8 @@ public:
     {
         static int count = 0;
         do
-            folder_ = std::filesystem::temp_directory_path() / ("excursion m\u00e4\u00df \u97f3 " + std::to_string(++count));
+            folder_ = std::filesystem::temp_directory_path()
+                      / ("excursion m\u00e4\u00df \u97f3 " + std::to_string(++count));
         while (!std::filesystem::create_directory(folder_));
     }
     ~Scratch()
@@ -75,4 +76,4 @@ inline std::filesystem::path dataFolder(const std::string& set)
     return {};
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

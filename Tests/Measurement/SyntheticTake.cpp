@@ -31,7 +31,8 @@ struct Response {
 };
 
 /// Linear response to the terminal voltage U and a force F on the cone.
-Response respond(const Loudspeaker& driver, const Plan& plan, const std::vector<Complex>& U, const std::vector<Complex>& F)
+Response respond(const Loudspeaker& driver, const Plan& plan, const std::vector<Complex>& U,
+                 const std::vector<Complex>& F)
 {
     Response out {std::vector<Complex>(U.size(), 0.0), std::vector<Complex>(U.size(), 0.0)};
     for (std::size_t k = 0; k < U.size(); ++k) {
@@ -68,7 +69,7 @@ Response steadyState(const Loudspeaker& driver, const Plan& plan, const std::vec
     const std::vector<Complex> none(U.size(), 0.0);
     auto response = respond(driver, plan, U, none);
     const bool linear = driver.evenStiffness == 0.0 && driver.oddStiffness == 0.0 && driver.evenForce == 0.0
-                     && driver.oddForce == 0.0;
+                        && driver.oddForce == 0.0;
     for (int iteration = 0; iteration < 6 && !linear; ++iteration) {
         const auto x = inverseFft(response.X, N), i = inverseFft(response.I, N);
         const auto v = inverseFft(differentiated(response.X, plan), N);
@@ -99,7 +100,9 @@ std::vector<double> channelSamples(Quantity quantity, const Loudspeaker& driver,
     case Quantity::pressure: {
         auto P = differentiated(differentiated(response.X, plan), plan);
         for (std::size_t k = 0; k < P.size(); ++k)
-            P[k] *= 8e-3 * std::polar(1.0, -2.0 * pi * static_cast<double>(k) * plan.sampleRate / plan.period * driver.microphoneDelay);
+            P[k] *= 8e-3
+                    * std::polar(1.0, -2.0 * pi * static_cast<double>(k) * plan.sampleRate / plan.period
+                                          * driver.microphoneDelay);
         P.back() = P.back().real();
         return inverseFft(P, N);
     }
@@ -107,7 +110,7 @@ std::vector<double> channelSamples(Quantity quantity, const Loudspeaker& driver,
     }
 }
 
-} // namespace
+}  // namespace
 
 double Loudspeaker::resonance() const { return std::sqrt(k / m); }
 
@@ -220,4 +223,4 @@ Measurement record(const Loudspeaker& driver, const Plan& plan, std::mt19937_64&
     return take;
 }
 
-} // namespace excursion::synthetic
+}  // namespace excursion::synthetic

@@ -13,17 +13,18 @@ namespace excursion::synthetic {
 /// enter by Picard iteration. Shares no code with the engine but the DFT. The defaults are the seed's driver (2.2).
 struct Loudspeaker {
     double m = 14.35e-3, r = 0.786, k = 1852.0, Bl = 4.95, L = 266e-6, R = 3.3;
-    double semiK = 0.0, semiExponent = 0.7;   ///< adds semiK s^a to the blocked impedance
-    double creep = 0.0;                       ///< k / (1 + creep log(w0 / s) / ln 10): compliance grows as frequency falls
-    double evenStiffness = 0.0, oddStiffness = 0.0;   ///< k (1 + even x/xRef + odd (x/xRef)^2)
-    double evenForce = 0.0, oddForce = 0.0;           ///< Bl (1 - even x/xRef - odd (x/xRef)^2)
-    double xReference = 1e-3;                         ///< m
-    double microphoneDelay = 0.9e-3;                  ///< s
+    double semiK = 0.0, semiExponent = 0.7;  ///< adds semiK s^a to the blocked impedance
+    /// k / (1 + creep log(w0 / s) / ln 10): compliance grows as frequency falls
+    double creep = 0.0;
+    double evenStiffness = 0.0, oddStiffness = 0.0;  ///< k (1 + even x/xRef + odd (x/xRef)^2)
+    double evenForce = 0.0, oddForce = 0.0;          ///< Bl (1 - even x/xRef - odd (x/xRef)^2)
+    double xReference = 1e-3;                        ///< m
+    double microphoneDelay = 0.9e-3;                 ///< s
 
-    double resonance() const;   ///< rad/s
+    double resonance() const;  ///< rad/s
     std::complex<double> blockedImpedance(std::complex<double> s) const;
-    std::complex<double> mechanicalImpedance(std::complex<double> s) const;   ///< force / displacement
-    std::complex<double> impedance(std::complex<double> s) const;             ///< voltage / current
+    std::complex<double> mechanicalImpedance(std::complex<double> s) const;  ///< force / displacement
+    std::complex<double> impedance(std::complex<double> s) const;            ///< voltage / current
     std::complex<double> displacementPerVoltage(std::complex<double> s) const;
 };
 
@@ -32,10 +33,10 @@ struct Plan {
     int period = 8192;
     int settlePeriods = 1, periods = 3, realizations = 3;
     std::vector<double> levels {0.5, 2.0};
-    double bandLow = 15.0, bandHigh = 8000.0;   ///< Hz
+    double bandLow = 15.0, bandHigh = 8000.0;  ///< Hz
     bool pink = true;
-    double noiseDb = -300.0;   ///< white, of each channel, relative to its rms at the loudest level
-    bool force = false;        ///< mechanical-only: force in, displacement out
+    double noiseDb = -300.0;  ///< white, of each channel, relative to its rms at the loudest level
+    bool force = false;       ///< mechanical-only: force in, displacement out
     std::vector<Quantity> outputs {Quantity::current, Quantity::displacement};
 };
 
@@ -54,4 +55,4 @@ double rms(const std::vector<double>&);
 /// offset + slope * n samples. Beyond the ends the record is zero.
 std::vector<double> delayed(const std::vector<double>& x, double offset, double slope = 0.0);
 
-} // namespace excursion::synthetic
+}  // namespace excursion::synthetic

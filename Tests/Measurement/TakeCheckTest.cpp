@@ -15,7 +15,6 @@ using namespace excursion;
 
 namespace {
 
-
 std::string fatalSentences(const CheckReport& report)
 {
     std::string text;
@@ -27,9 +26,8 @@ std::string fatalSentences(const CheckReport& report)
 
 const Problem* find(const CheckReport& report, std::string_view kind, std::optional<Quantity> channel)
 {
-    const auto found = std::find_if(report.problems.begin(), report.problems.end(), [&](const Problem& p) {
-        return p.kind == kind && p.channel == channel;
-    });
+    const auto found = std::find_if(report.problems.begin(), report.problems.end(),
+                                    [&](const Problem& p) { return p.kind == kind && p.channel == channel; });
     return found == report.problems.end() ? nullptr : &*found;
 }
 
@@ -62,7 +60,7 @@ Measurement soundTake(std::uint64_t seed = 1)
     return synthetic::record(driver, plan, random);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a sound take is fit for use")
 {
@@ -88,7 +86,9 @@ TEST_CASE("a late channel is named with its delay", "[slow]")
             CHECK(problem->fatal);
             CHECK(problem->unit == "samples");
             CHECK(problem->value == Approx(samples).margin(0.1));
-            CHECK(std::count_if(report.problems.begin(), report.problems.end(), [](const Problem& p) { return p.fatal; }) == 1);
+            CHECK(
+                std::count_if(report.problems.begin(), report.problems.end(), [](const Problem& p) { return p.fatal; })
+                == 1);
         }
 }
 
@@ -115,7 +115,8 @@ TEST_CASE("a reversed channel is named", "[slow]")
         const auto* problem = find(report, "polarity", quantity);
         REQUIRE(problem);
         CHECK(problem->fatal == (quantity != Quantity::pressure));
-        CHECK(std::count_if(report.problems.begin(), report.problems.end(), [](const Problem& p) { return p.kind == "polarity"; })
+        CHECK(std::count_if(report.problems.begin(), report.problems.end(),
+                            [](const Problem& p) { return p.kind == "polarity"; })
               == 1);
     }
 }
@@ -198,7 +199,8 @@ TEST_CASE("hum is named with its strength")
         for (std::size_t n = 0; n < samples.size(); ++n)
             for (const int h : {1, 2, 3})
                 samples[n] += loud * 0.03 / h
-                            * std::sin(2.0 * std::numbers::pi * h * mains * static_cast<double>(n) / take.sampleRate + h);
+                              * std::sin(2.0 * std::numbers::pi * h * mains * static_cast<double>(n) / take.sampleRate
+                                         + h);
         const auto report = check(take);
         INFO(fatalSentences(report));
         const auto* problem = find(report, "hum", Quantity::current);
@@ -243,14 +245,14 @@ TEST_CASE("lost samples are a dropout")
     const auto& e = *sound.excitation;
     const auto inside = static_cast<std::ptrdiff_t>(e.samplesPerRealization() * 4 + e.period * 2 + e.period / 2);
 
-    auto lost = sound;   // 64 samples never arrive, on all channels; the record is padded at its end
+    auto lost = sound;  // 64 samples never arrive, on all channels; the record is padded at its end
     for (auto& channel : lost.channels) {
         channel.samples.erase(channel.samples.begin() + inside, channel.samples.begin() + inside + 64);
         channel.samples.resize(sound.length(), 0.0);
     }
     CHECK(find(check(lost), "dropout", std::nullopt));
 
-    auto filled = sound;   // one channel holds its last value for 200 samples
+    auto filled = sound;  // one channel holds its last value for 200 samples
     auto& samples = samplesOf(filled, Quantity::current);
     std::fill(samples.begin() + inside, samples.begin() + inside + 200, samples[static_cast<std::size_t>(inside)]);
     CHECK(find(check(filled), "dropout", Quantity::current));
@@ -285,7 +287,7 @@ TEST_CASE("a gain that jumps is told from samples that are lost and from a louds
     INFO(fatalSentences(report));
     CHECK(othersThan(report, "gain-jump") == 0);
 
-    auto all = sound;   // what a coil does that has grown warm
+    auto all = sound;  // what a coil does that has grown warm
     for (const auto quantity : {Quantity::current, Quantity::displacement, Quantity::pressure})
         jump(all, quantity, 0.9);
     const auto changed = check(all);
@@ -300,7 +302,8 @@ TEST_CASE("a sensor that bends is named with what it takes off the peaks")
         auto take = soundTake();
         const auto& e = *take.excitation;
         auto& samples = samplesOf(take, quantity);
-        const auto loudest = samples.begin() + e.samplesPerRealization() * e.realizations * (static_cast<long>(e.levels.size()) - 1);
+        const auto loudest = samples.begin()
+                             + e.samplesPerRealization() * e.realizations * (static_cast<long>(e.levels.size()) - 1);
         double most = 0.0;
         for (auto sample = loudest; sample != samples.end(); ++sample)
             most = std::max(most, std::abs(*sample));
@@ -336,7 +339,7 @@ TEST_CASE("channels that are exchanged, or called something else, are told apart
     const auto exchanged = [&](Quantity a, Quantity b) {
         auto take = sound;
         std::swap(samplesOf(take, a), samplesOf(take, b));
-        for (auto& channel : take.channels)   // in other units, too
+        for (auto& channel : take.channels)  // in other units, too
             if (channel.quantity == a)
                 for (auto& sample : channel.samples)
                     sample *= 1e3;
@@ -421,7 +424,7 @@ TEST_CASE("no sound take is accused, from micro speaker to subwoofer", "[slow]")
 
     for (int run = 0; run < 30; ++run) {
         synthetic::Loudspeaker driver;
-        const double size = uniform(random);   // 0: micro speaker, 1: subwoofer
+        const double size = uniform(random);  // 0: micro speaker, 1: subwoofer
         driver.m = 1e-4 * std::pow(1500.0, size);
         const double w0 = 2.0 * std::numbers::pi * 800.0 * std::pow(25.0 / 800.0, size) * between(0.8, 1.2);
         driver.k = driver.m * w0 * w0;
@@ -431,7 +434,8 @@ TEST_CASE("no sound take is accused, from micro speaker to subwoofer", "[slow]")
         driver.L = driver.R * logBetween(2e-5, 4e-4);
         if (run % 2) {
             driver.semiExponent = between(0.4, 0.8);
-            driver.semiK = between(0.3, 1.5) * driver.R / std::pow(2.0 * std::numbers::pi * 3000.0, driver.semiExponent);
+            driver.semiK = between(0.3, 1.5) * driver.R
+                           / std::pow(2.0 * std::numbers::pi * 3000.0, driver.semiExponent);
             driver.L *= between(0.0, 1.0);
         }
         if (run % 3 == 0)
@@ -469,11 +473,11 @@ TEST_CASE("no sound take is accused, from micro speaker to subwoofer", "[slow]")
 
         const auto take = synthetic::record(driver, plan, random);
         if (const auto* x = take.find(Quantity::displacement))
-            REQUIRE(synthetic::rms(x->samples) < driver.xReference);   // it did converge
+            REQUIRE(synthetic::rms(x->samples) < driver.xReference);  // it did converge
         const auto report = check(take);
         INFO("run " << run << ", m " << driver.m << ", noise " << plan.noiseDb << "\n" << fatalSentences(report));
         CHECK(report.fitForUse());
-        auto music = take;   // the same samples, told nothing about them
+        auto music = take;  // the same samples, told nothing about them
         music.excitation.reset();
         const auto blind = check(music);
         INFO(fatalSentences(blind));

@@ -63,7 +63,7 @@ std::string withNumberAt(std::string bytes, std::size_t at, std::uint32_t number
     return bytes;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A take is read back as it was written, however its place is named")
 {
@@ -84,10 +84,12 @@ TEST_CASE("A take is read back as it was written, however its place is named")
             REQUIRE(read.channels[1].samples[n] == Approx(written.channels[1].samples[n]).epsilon(1e-15).margin(1e-18));
         REQUIRE(read.excitation);
         const auto &a = *read.excitation, &b = *written.excitation;
-        CHECK(std::tie(a.period, a.settlePeriods, a.periods, a.realizations, a.levels, a.grid, a.shape, a.bandLow, a.bandHigh, a.lines)
-              == std::tie(b.period, b.settlePeriods, b.periods, b.realizations, b.levels, b.grid, b.shape, b.bandLow, b.bandHigh, b.lines));
+        CHECK(std::tie(a.period, a.settlePeriods, a.periods, a.realizations, a.levels, a.grid, a.shape, a.bandLow,
+                       a.bandHigh, a.lines)
+              == std::tie(b.period, b.settlePeriods, b.periods, b.realizations, b.levels, b.grid, b.shape, b.bandLow,
+                          b.bandHigh, b.lines));
     }
-    CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 2);   // no draft is left
+    CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 2);  // no draft is left
 }
 
 TEST_CASE("The same take gives the same bytes, at the precision that it needs")
@@ -100,8 +102,10 @@ TEST_CASE("The same take gives the same bytes, at the precision that it needs")
 
     const auto noisy = take(1e-4);
     writeMeasurement(noisy, scratch / "noisy");
-    CHECK(std::filesystem::file_size(scratch / "noisy/take.wav") * 2 < std::filesystem::file_size(scratch / "a/take.wav") + 200);
-    CHECK(readMeasurement(scratch / "noisy").channels[0].samples[100] == Approx(noisy.channels[0].samples[100]).epsilon(1e-7));
+    CHECK(std::filesystem::file_size(scratch / "noisy/take.wav") * 2
+          < std::filesystem::file_size(scratch / "a/take.wav") + 200);
+    CHECK(readMeasurement(scratch / "noisy").channels[0].samples[100]
+          == Approx(noisy.channels[0].samples[100]).epsilon(1e-7));
 }
 
 TEST_CASE("A plan is a readable take")
@@ -131,7 +135,8 @@ TEST_CASE("A sample rate that is no whole number survives the WAV")
 TEST_CASE("Common multiples of units become SI; an analogue stays in volts")
 {
     Spoilt t;
-    t.json["channels"] = {{{"quantity", "force"}, {"unit", "V"}, {"fullScale", 2}}, {{"quantity", "displacement"}, {"unit", "mm"}, {"fullScale", 8}}};
+    t.json["channels"] = {{{"quantity", "force"}, {"unit", "V"}, {"fullScale", 2}},
+                          {{"quantity", "displacement"}, {"unit", "mm"}, {"fullScale", 8}}};
     t.scratch.file("measurement.json", t.json.dump());
     const auto m = readMeasurement(t.scratch.folder());
     CHECK(m.input().unit == "V");
@@ -165,45 +170,205 @@ TEST_CASE("What measurement.json says must be possible")
     auto& e = j["excitation"];
     auto& c = j["channels"];
     const auto refused = [&](const std::string& contains, Kind kind = Kind::input) { t.refused(contains, kind); };
-    SECTION("format") { j["format"] = "something"; refused("format"); }
-    SECTION("no format") { j.erase("format"); refused("'format' is missing"); }
-    SECTION("version") { j["version"] = 2; refused("version"); }
-    SECTION("version type") { j["version"] = "1"; refused("version"); }
-    SECTION("rate type") { j["sampleRate"] = "48000"; refused("sampleRate"); }
-    SECTION("rate sign") { j["sampleRate"] = -48000; refused("sampleRate"); }
-    SECTION("rate of the WAV") { j["sampleRate"] = 44100; refused("48000 Hz"); }
-    SECTION("audio missing") { j["audio"] = "other.wav"; refused("does not exist"); }
-    SECTION("audio elsewhere") { j["audio"] = "../../take.wav"; refused("'audio'"); }
-    SECTION("audio absolute") { j["audio"] = "/etc/passwd"; refused("'audio'"); }
-    SECTION("channel missing") { c.erase(1); refused("2 channels"); }
-    SECTION("no channels") { c = Json::array(); refused("channels"); }
-    SECTION("channels type") { c = 3; refused("channels"); }
-    SECTION("channel type") { c[0] = 3; refused("channels[0]"); }
-    SECTION("same twice") { c[1]["quantity"] = "voltage"; c[1]["unit"] = "V"; refused("each quantity once"); }
-    SECTION("unknown quantity") { c[1]["quantity"] = "temperature"; refused("channels[1].quantity"); }
-    SECTION("unknown unit") { c[1]["unit"] = "furlong"; refused("A or mA"); }
-    SECTION("unit of another") { c[1]["unit"] = "V"; refused("A or mA"); }
-    SECTION("full scale") { c[1]["fullScale"] = 0; refused("channels[1].fullScale"); }
-    SECTION("no input") { c[0]["quantity"] = "displacement"; refused("neither a voltage nor a force", Kind::data); }
-    SECTION("excitation type") { e = 5; refused("excitation"); }
-    SECTION("kind") { e["kind"] = "multisin"; refused("excitation.kind"); }
-    SECTION("period") { e["period"] = 0; refused("excitation.period"); }
-    SECTION("period fraction") { e["period"] = 511.5; refused("excitation.period"); }
-    SECTION("no period") { e.erase("period"); refused("'excitation.period' is missing"); }
-    SECTION("longer than the WAV") { e["realizations"] = 3; refused("record it to its end"); }
-    SECTION("overflow") { e["period"] = 2147483647; e["periods"] = 1000000000; e["realizations"] = 2147483647; e.erase("lines"); refused("excitation.period"); }
-    SECTION("huge count") { e["periods"] = 1e300; refused("excitation.periods"); }
-    SECTION("levels descend") { e["levels"] = {2.0, 0.5}; refused("excitation.levels[1]"); }
-    SECTION("level sign") { e["levels"] = {-1.0, 0.5}; refused("excitation.levels[0]"); }
-    SECTION("levels empty") { e["levels"] = Json::array(); refused("excitation.levels"); }
-    SECTION("line zero") { e["lines"] = {0, 3}; refused("excitation.lines[0]"); }
-    SECTION("line beyond") { e["lines"] = {3, 256}; refused("excitation.lines[1]"); }
-    SECTION("lines descend") { e["lines"] = {5, 3}; refused("excitation.lines[1]"); }
-    SECTION("grid") { e["grid"] = "hexagonal"; refused("odd-random"); }
-    SECTION("shape") { e["shape"] = "square"; refused("white, pink or red"); }
-    SECTION("band") { e["band"] = {8000, 15}; refused("excitation.band"); }
-    SECTION("band type") { e["band"] = {15}; refused("excitation.band"); }
-    SECTION("cone area") { j["driver"]["coneArea"] = -1; refused("driver.coneArea"); }
+    SECTION("format")
+    {
+        j["format"] = "something";
+        refused("format");
+    }
+    SECTION("no format")
+    {
+        j.erase("format");
+        refused("'format' is missing");
+    }
+    SECTION("version")
+    {
+        j["version"] = 2;
+        refused("version");
+    }
+    SECTION("version type")
+    {
+        j["version"] = "1";
+        refused("version");
+    }
+    SECTION("rate type")
+    {
+        j["sampleRate"] = "48000";
+        refused("sampleRate");
+    }
+    SECTION("rate sign")
+    {
+        j["sampleRate"] = -48000;
+        refused("sampleRate");
+    }
+    SECTION("rate of the WAV")
+    {
+        j["sampleRate"] = 44100;
+        refused("48000 Hz");
+    }
+    SECTION("audio missing")
+    {
+        j["audio"] = "other.wav";
+        refused("does not exist");
+    }
+    SECTION("audio elsewhere")
+    {
+        j["audio"] = "../../take.wav";
+        refused("'audio'");
+    }
+    SECTION("audio absolute")
+    {
+        j["audio"] = "/etc/passwd";
+        refused("'audio'");
+    }
+    SECTION("channel missing")
+    {
+        c.erase(1);
+        refused("2 channels");
+    }
+    SECTION("no channels")
+    {
+        c = Json::array();
+        refused("channels");
+    }
+    SECTION("channels type")
+    {
+        c = 3;
+        refused("channels");
+    }
+    SECTION("channel type")
+    {
+        c[0] = 3;
+        refused("channels[0]");
+    }
+    SECTION("same twice")
+    {
+        c[1]["quantity"] = "voltage";
+        c[1]["unit"] = "V";
+        refused("each quantity once");
+    }
+    SECTION("unknown quantity")
+    {
+        c[1]["quantity"] = "temperature";
+        refused("channels[1].quantity");
+    }
+    SECTION("unknown unit")
+    {
+        c[1]["unit"] = "furlong";
+        refused("A or mA");
+    }
+    SECTION("unit of another")
+    {
+        c[1]["unit"] = "V";
+        refused("A or mA");
+    }
+    SECTION("full scale")
+    {
+        c[1]["fullScale"] = 0;
+        refused("channels[1].fullScale");
+    }
+    SECTION("no input")
+    {
+        c[0]["quantity"] = "displacement";
+        refused("neither a voltage nor a force", Kind::data);
+    }
+    SECTION("excitation type")
+    {
+        e = 5;
+        refused("excitation");
+    }
+    SECTION("kind")
+    {
+        e["kind"] = "multisin";
+        refused("excitation.kind");
+    }
+    SECTION("period")
+    {
+        e["period"] = 0;
+        refused("excitation.period");
+    }
+    SECTION("period fraction")
+    {
+        e["period"] = 511.5;
+        refused("excitation.period");
+    }
+    SECTION("no period")
+    {
+        e.erase("period");
+        refused("'excitation.period' is missing");
+    }
+    SECTION("longer than the WAV")
+    {
+        e["realizations"] = 3;
+        refused("record it to its end");
+    }
+    SECTION("overflow")
+    {
+        e["period"] = 2147483647;
+        e["periods"] = 1000000000;
+        e["realizations"] = 2147483647;
+        e.erase("lines");
+        refused("excitation.period");
+    }
+    SECTION("huge count")
+    {
+        e["periods"] = 1e300;
+        refused("excitation.periods");
+    }
+    SECTION("levels descend")
+    {
+        e["levels"] = {2.0, 0.5};
+        refused("excitation.levels[1]");
+    }
+    SECTION("level sign")
+    {
+        e["levels"] = {-1.0, 0.5};
+        refused("excitation.levels[0]");
+    }
+    SECTION("levels empty")
+    {
+        e["levels"] = Json::array();
+        refused("excitation.levels");
+    }
+    SECTION("line zero")
+    {
+        e["lines"] = {0, 3};
+        refused("excitation.lines[0]");
+    }
+    SECTION("line beyond")
+    {
+        e["lines"] = {3, 256};
+        refused("excitation.lines[1]");
+    }
+    SECTION("lines descend")
+    {
+        e["lines"] = {5, 3};
+        refused("excitation.lines[1]");
+    }
+    SECTION("grid")
+    {
+        e["grid"] = "hexagonal";
+        refused("odd-random");
+    }
+    SECTION("shape")
+    {
+        e["shape"] = "square";
+        refused("white, pink or red");
+    }
+    SECTION("band")
+    {
+        e["band"] = {8000, 15};
+        refused("excitation.band");
+    }
+    SECTION("band type")
+    {
+        e["band"] = {15};
+        refused("excitation.band");
+    }
+    SECTION("cone area")
+    {
+        j["driver"]["coneArea"] = -1;
+        refused("driver.coneArea");
+    }
 }
 
 TEST_CASE("A measurement.json that is none is refused")

@@ -20,7 +20,7 @@ std::vector<double> whiteNoise(std::size_t length, double rms, std::mt19937_64& 
     return x;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Welch's estimate of a short filter is its frequency response")
 {
@@ -34,7 +34,8 @@ TEST_CASE("Welch's estimate of a short filter is its frequency response")
         const double w = 2.0 * std::numbers::pi * result.frf.frequency[i] / 48000.0;
         const auto truth = 0.5 + 0.3 * std::polar(1.0, -w) - 0.2 * std::polar(1.0, -2.0 * w);
         REQUIRE(std::abs(result.frf.value[i] - truth) < 0.01);
-        REQUIRE((result.frf.frequency[i] > 23000.0 || result.coherence[i] > 0.98));   // zero at the Nyquist frequency
+        // zero at the Nyquist frequency
+        REQUIRE((result.frf.frequency[i] > 23000.0 || result.coherence[i] > 0.98));
     }
 }
 
@@ -44,7 +45,7 @@ TEST_CASE("the non-coherent power is the power of what was added")
     const auto u = whiteNoise(600000, 1.0, random);
     auto y = u;
     for (auto& value : y)
-        value = 2.0 * value + 0.1 * (value * value - 1.0);   // u^2 of a Gaussian has variance 2 and no linear part
+        value = 2.0 * value + 0.1 * (value * value - 1.0);  // u^2 of a Gaussian has variance 2 and no linear part
     synthetic::addNoise(y, 0.05, random);
     const double truth = 0.01 * 2.0 + 0.0025;
     for (const double overlap : {0.0, 0.5, 0.75}) {

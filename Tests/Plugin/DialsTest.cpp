@@ -21,9 +21,11 @@ struct Host : juce::AudioProcessorListener {
     std::string heard;
 };
 
-} // namespace
+}  // namespace
 
-TEST_CASE("A dial puts a number on the nearest step and tells the host of one gesture; what a host sends, it follows silently", "[plugin]")
+TEST_CASE("A dial puts a number on the nearest step and tells the host of one gesture; what a host sends, it follows "
+          "silently",
+          "[plugin]")
 {
     Processor processor;
     Host host(processor);

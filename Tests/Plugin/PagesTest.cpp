@@ -37,7 +37,8 @@ template <class Component>
 Component* find(juce::Component& parent, const juce::String& text)
 {
     for (auto* child : parent.getChildren()) {
-        if (auto* match = dynamic_cast<Component*>(child); match != nullptr && match->getButtonText() == text && match->isVisible())
+        if (auto* match = dynamic_cast<Component*>(child);
+            match != nullptr && match->getButtonText() == text && match->isVisible())
             return match;
         if (child->isVisible())
             if (auto* match = find<Component>(*child, text))
@@ -77,7 +78,7 @@ void forecast(Editor& editor)
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clicks", "[plugin][slow]")
 {
@@ -92,7 +93,8 @@ TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clic
     const auto first = processor.session().findings();
     REQUIRE(first->file.ladder.rungs.size() == 1);
     REQUIRE(first->file.ladder.verdict == Verdict::missingEffect);
-    CHECK(!first->file.responses.empty());   // of which the page and a report draw the evidence of effects without a law
+    // of which the page and a report draw the evidence of effects without a law
+    CHECK(!first->file.responses.empty());
     click(editor, "Compare");
     CHECK(picture(editor, "compare") > 1000);
     click(editor, "Diagnose");
@@ -139,7 +141,7 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
                 all.push_back(meter);
         return all;
     };
-    CHECK(meters().size() == 2);   // no limit of the power is set
+    CHECK(meters().size() == 2);  // no limit of the power is set
     auto recipe = processor.parameters().recipe();
     recipe.mode = Mode::linearize;
     recipe.displacementLimit = 0.4;
@@ -152,7 +154,8 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
             juce::AudioBuffer<float> buffer(2, 480);
             for (int n = 0; n < 480; ++n)
                 for (int c = 0; c < 2; ++c)
-                    buffer.setSample(c, n, static_cast<float>(std::sin(2.0 * 3.14159265 * 40.0 * (480 * block + n) / 48000.0)));
+                    buffer.setSample(
+                        c, n, static_cast<float>(std::sin(2.0 * 3.14159265 * 40.0 * (480 * block + n) / 48000.0)));
             processor.processBlock(buffer, midi);
         }
     };
@@ -175,7 +178,8 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
             CHECK_FALSE(children[a]->getBounds().isEmpty());
             CHECK(page->getLocalBounds().contains(children[a]->getBounds()));
             for (int b = 0; b < a; ++b)
-                CHECK_FALSE((children[b]->isVisible() && children[b]->getBounds().intersects(children[a]->getBounds())));
+                CHECK_FALSE(
+                    (children[b]->isVisible() && children[b]->getBounds().intersects(children[a]->getBounds())));
         }
     }
     processor.prepareToPlay(1e6, 480);

@@ -73,7 +73,7 @@ juce::MemoryBlock stateOf(Processor& processor)
     return block;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Every mode does what the engine's chain does, at every rate, in mono and stereo", "[plugin]")
 {
@@ -87,7 +87,8 @@ TEST_CASE("Every mode does what the engine's chain does, at every rate, in mono 
                 processor.prepareToPlay(rate, 512);
                 const auto u = tone(rate, 0.15, 0.4);
                 const auto out = played(processor, u, 512, channels);
-                Chain chain(processor.model(), {rate, Processor::oversampling}, processor.parameters().controls(measuredDisplacement(processor.model())));
+                Chain chain(processor.model(), {rate, Processor::oversampling},
+                            processor.parameters().controls(measuredDisplacement(processor.model())));
                 CHECK(chain.latency() == processor.getLatencySamples());
                 std::vector<double> expected(u.begin(), u.end());
                 expected.resize(u.size() + static_cast<std::size_t>(chain.latency()), 0.0);
@@ -129,7 +130,7 @@ TEST_CASE("The host's bypass is the signal as it was, as late as ever", "[plugin
         processor.processBlockBypassed(buffer, midi);
         out.insert(out.end(), buffer.getReadPointer(0), buffer.getReadPointer(0) + 480);
     }
-    double worst = 0.0;   // once the mode has been faded out
+    double worst = 0.0;  // once the mode has been faded out
     for (std::size_t n = 4800; n < out.size(); ++n)
         worst = std::max(worst, std::abs(static_cast<double>(out[n] - u[n - latency])));
     CHECK(worst < 1e-6);
@@ -164,7 +165,8 @@ TEST_CASE("A state that cannot be used changes nothing", "[plugin]")
     auto text = state.toString().toStdString();
     auto later = text;
     later.replace(later.find("\"version\": 1"), 12, "\"version\": 9");
-    for (const auto& broken : {std::string(), std::string("{"), std::string("[]"), std::string(1000, '\0'), text.substr(0, text.size() / 2), later}) {
+    for (const auto& broken : {std::string(), std::string("{"), std::string("[]"), std::string(1000, '\0'),
+                               text.substr(0, text.size() / 2), later}) {
         processor.setStateInformation(broken.data(), static_cast<int>(broken.size()));
         CHECK(stateOf(processor) == state);
     }
@@ -201,15 +203,18 @@ TEST_CASE("An effect is switched off while audio runs, and a model replaced, wit
             *processor.parameters().effects()[1] = false;
         if (n == 96000)
             processor.setModel(plugin::modelFromText(plugin::factoryDrivers().back().text, "a driver"));
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));   // the thread that builds has its time
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread that builds has its time
     }
     double steepest = 0.0;
     for (std::size_t n = 1; n < out.size(); ++n)
         steepest = std::max(steepest, std::abs(static_cast<double>(out[n] - out[n - 1])));
     CHECK(steepest < 0.05);
-    const auto period = [&](std::size_t from) { return std::vector<float>(out.begin() + static_cast<std::ptrdiff_t>(from), out.begin() + static_cast<std::ptrdiff_t>(from + 800)); };
-    CHECK(distance(period(47200), period(95200)) > 1e-4);    // the effect is gone
-    CHECK(distance(period(95200), period(180000)) > 1e-2);   // another driver
+    const auto period = [&](std::size_t from) {
+        return std::vector<float>(out.begin() + static_cast<std::ptrdiff_t>(from),
+                                  out.begin() + static_cast<std::ptrdiff_t>(from + 800));
+    };
+    CHECK(distance(period(47200), period(95200)) > 1e-4);   // the effect is gone
+    CHECK(distance(period(95200), period(180000)) > 1e-2);  // another driver
 }
 
 TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
@@ -225,15 +230,11 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
     for (int operation = 0; operation < 2000; ++operation) {
         switch (random() % 12) {
         case 0:
-            rate = std::array {44100.0, 48000.0, 96000.0, 100.0, 1e6}[random() % 5];   // where no engine runs, too
+            rate = std::array {44100.0, 48000.0, 96000.0, 100.0, 1e6}[random() % 5];  // where no engine runs, too
             processor.prepareToPlay(rate, 256);
             break;
-        case 1:
-            kept = stateOf(processor);
-            break;
-        case 2:
-            processor.setStateInformation(kept.getData(), static_cast<int>(kept.getSize()));
-            break;
+        case 1: kept = stateOf(processor); break;
+        case 2: processor.setStateInformation(kept.getData(), static_cast<int>(kept.getSize())); break;
         case 3: {
             const auto& drivers = plugin::factoryDrivers();
             processor.setModel(plugin::modelFromText(drivers[random() % drivers.size()].text, "a driver"));
@@ -242,14 +243,14 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
         case 4:
         case 5: {
             auto& all = processor.getParameters();
-            all[static_cast<int>(random() % static_cast<unsigned>(all.size()))]->setValueNotifyingHost(static_cast<float>(random() % 1001) / 1000.0f);
+            all[static_cast<int>(random() % static_cast<unsigned>(all.size()))]->setValueNotifyingHost(
+                static_cast<float>(random() % 1001) / 1000.0f);
             break;
         }
-        case 6:
-            processor.reset();
-            break;
+        case 6: processor.reset(); break;
         default: {
-            juce::AudioBuffer<float> buffer(channels, static_cast<int>(random() % 5 == 0 ? random() % 3000 : random() % 200));
+            juce::AudioBuffer<float> buffer(channels,
+                                            static_cast<int>(random() % 5 == 0 ? random() % 3000 : random() % 200));
             for (int c = 0; c < channels; ++c)
                 for (int n = 0; n < buffer.getNumSamples(); ++n)
                     buffer.setSample(c, n, static_cast<float>(random() % 2001) / 1000.0f - 1.0f);

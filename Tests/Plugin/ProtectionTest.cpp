@@ -26,7 +26,8 @@ std::vector<double> played(Processor& processor, const std::vector<double>& u, c
         change(n);
         juce::AudioBuffer<double> buffer(2, 256);
         for (int c = 0; c < 2; ++c)
-            std::copy(u.begin() + static_cast<std::ptrdiff_t>(n), u.begin() + static_cast<std::ptrdiff_t>(n + 256), buffer.getWritePointer(c));
+            std::copy(u.begin() + static_cast<std::ptrdiff_t>(n), u.begin() + static_cast<std::ptrdiff_t>(n + 256),
+                      buffer.getWritePointer(c));
         processor.processBlock(buffer, midi);
         out.insert(out.end(), buffer.getReadPointer(1), buffer.getReadPointer(1) + 256);
     }
@@ -61,7 +62,8 @@ std::vector<double> tone(double frequency, double amplitude, double seconds)
 {
     std::vector<double> u(static_cast<std::size_t>(seconds * rate));
     for (std::size_t n = 0; n < u.size(); ++n)
-        u[n] = amplitude * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate) * std::min(1.0, static_cast<double>(n) / 2400.0);
+        u[n] = amplitude * std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(n) / rate)
+               * std::min(1.0, static_cast<double>(n) / 2400.0);
     return u;
 }
 
@@ -73,12 +75,15 @@ double largestBend(const std::vector<double>& u, std::size_t from, std::size_t t
     return result;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("Every factory driver stays within its excursion and the voltage within its limit and the converter's, with loud pink noise", "[plugin][protection]")
+TEST_CASE("Every factory driver stays within its excursion and the voltage within its limit and the converter's, with "
+          "loud pink noise",
+          "[plugin][protection]")
 {
     for (const auto& factory : plugin::factoryDrivers())
-        for (const auto& [fullScale, voltageLimit] : {std::pair {10.0, 25.0}, {40.0, 25.0}, {10.0, 10.0}, {40.0, 1000.0}}) {
+        for (const auto& [fullScale, voltageLimit] :
+             {std::pair {10.0, 25.0}, {40.0, 25.0}, {10.0, 10.0}, {40.0, 1000.0}}) {
             INFO(factory.title << ", " << fullScale << " V at 0 dBFS, limit " << voltageLimit << " V");
             Processor processor;
             const auto model = plugin::modelFromText(factory.text, factory.title);
@@ -93,7 +98,8 @@ TEST_CASE("Every factory driver stays within its excursion and the voltage withi
             CHECK(fullScale * peakOf(out) < 1.01 * voltageLimit);
             CHECK(peakOf(out) <= 1.0);
             CHECK(farthest(model, out, fullScale) < 1.01 * measuredDisplacement(model));
-            CHECK(peakOf(out) > 0.05 * peakOf(u) * std::min(1.0, voltageLimit / fullScale));   // it plays, all the same
+            // it plays, all the same
+            CHECK(peakOf(out) > 0.05 * peakOf(u) * std::min(1.0, voltageLimit / fullScale));
         }
 }
 
@@ -104,7 +110,8 @@ TEST_CASE("A person who just turns it on gets no more than the converter can giv
     processor.prepareToPlay(rate, 256);
     const auto out = played(processor, tone(50.0, 1.0, 2.0), [](std::size_t) {});
     CHECK(peakOf(out) <= 1.0);
-    CHECK(farthest(processor.model(), out, processor.parameters().recipe().fullScale) < 1.01 * measuredDisplacement(processor.model()));
+    CHECK(farthest(processor.model(), out, processor.parameters().recipe().fullScale)
+          < 1.01 * measuredDisplacement(processor.model()));
 }
 
 TEST_CASE("Turning the excursion down brakes nothing: no voltage above 5 kHz", "[plugin][protection]")
@@ -142,9 +149,10 @@ TEST_CASE("Swapping models and switching effects is not heard as a click", "[plu
                     processor.parameters().effects().front()->setValueNotifyingHost(0.0f);
                 else
                     processor.setModel(plugin::modelFromText(drivers[1].text, drivers[1].title));
-                juce::Thread::sleep(100);   // the worker builds
+                juce::Thread::sleep(100);  // the worker builds
             });
-            const double steady = std::max(largestBend(out, change / 2, change), largestBend(out, out.size() - change / 2, out.size()));
+            const double steady = std::max(largestBend(out, change / 2, change),
+                                           largestBend(out, out.size() - change / 2, out.size()));
             CHECK(largestBend(out, change, out.size()) < 3.0 * steady);
             if (mode == Mode::bypass)
                 CHECK(largestBend(out, change, out.size()) < 1.001 * steady);

@@ -60,11 +60,14 @@ bool isLate(const std::vector<float>& u, const std::vector<float>& out, int late
     return true;
 }
 
-constexpr double noNumber = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+constexpr double noNumber = std::numeric_limits<double>::quiet_NaN(),
+                 infinite = std::numeric_limits<double>::infinity();
 
-} // namespace
+}  // namespace
 
-TEST_CASE("At a rate at which the engine cannot run the signal goes through as it is, in every mode, as late as is reported", "[plugin]")
+TEST_CASE(
+    "At a rate at which the engine cannot run the signal goes through as it is, in every mode, as late as is reported",
+    "[plugin]")
 {
     const auto u = noise(3000);
     Processor processor;
@@ -91,7 +94,9 @@ TEST_CASE("At a rate at which the engine cannot run the signal goes through as i
     CHECK_FALSE(isLate(u, played<float>(processor, u, 0), latency));
 }
 
-TEST_CASE("At every rate at which the engine can run, and for blocks of any announced length, the same latency and finite samples", "[plugin]")
+TEST_CASE("At every rate at which the engine can run, and for blocks of any announced length, the same latency and "
+          "finite samples",
+          "[plugin]")
 {
     const auto u = noise(3000);
     Processor processor;
@@ -109,7 +114,8 @@ TEST_CASE("At every rate at which the engine can run, and for blocks of any anno
         }
 }
 
-TEST_CASE("Models and states are taken at a rate at which the engine cannot run, and are played once it can", "[plugin]")
+TEST_CASE("Models and states are taken at a rate at which the engine cannot run, and are played once it can",
+          "[plugin]")
 {
     const auto& drivers = plugin::factoryDrivers();
     const auto other = plugin::modelFromText(drivers.back().text, "a driver");

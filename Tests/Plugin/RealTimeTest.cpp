@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// No allocation, no lock and no system call where the host's audio runs. (That the detectors detect is tested where the engine is.)
-#include <cstddef>   // by which the C library says which it is
+// No allocation, no lock and no system call where the host's audio runs. (That the detectors detect is tested where the
+// engine is.)
+#include <cstddef>  // by which the C library says which it is
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
@@ -43,12 +44,17 @@ TEST_CASE("Nothing in processBlock allocates, locks or calls the system", "[plug
         }
         processor.reset();
     };
-    for (const auto& [rate, mode] : {std::pair {48000.0, Mode::bypass}, {48000.0, Mode::speaker}, {48000.0, Mode::distortion}, {48000.0, Mode::linearize},
-                                     {48000.0, Mode::audition}, {1e6, Mode::audition}}) {   // the last where no engine can run
+    for (const auto& [rate, mode] : {std::pair {48000.0, Mode::bypass},
+                                     {48000.0, Mode::speaker},
+                                     {48000.0, Mode::distortion},
+                                     {48000.0, Mode::linearize},
+                                     // the last where no engine can run
+                                     {48000.0, Mode::audition},
+                                     {1e6, Mode::audition}}) {
         INFO(rate << " Hz, " << name(mode));
         processor.prepareToPlay(rate, 64);
         processor.parameters().mode() = static_cast<int>(mode);
-        processor.setModel(processor.model());   // a hand-over is under way
+        processor.setModel(processor.model());  // a hand-over is under way
         const auto counts = countIn(work);
         CHECK(counts.allocations == 0);
         CHECK(counts.locks == 0);
@@ -57,7 +63,9 @@ TEST_CASE("Nothing in processBlock allocates, locks or calls the system", "[plug
     }
 }
 
-TEST_CASE("Automation of all parameters neither allocates nor calls the system, and locks nothing of ours, while the window is open", "[plugin]")
+TEST_CASE("Automation of all parameters neither allocates nor calls the system, and locks nothing of ours, while the "
+          "window is open",
+          "[plugin]")
 {
     // A wrapper sets a parameter on the audio thread and tells its listeners, for which JUCE locks the list of them.
     juce::AudioParameterBool alone({"alone", 1}, "Alone", false);
@@ -89,11 +97,12 @@ TEST_CASE("Automation of all parameters neither allocates nor calls the system, 
     bool calls = false;
     int written = -1;
     const bool watched = canWatchSystemCalls();
-    std::thread([&] {   // as the thread of the window may post messages to itself
+    std::thread([&] {  // as the thread of the window may post messages to itself
         calls = watched && callsSystem([&] { automate(operations); });
         counts = countIn([&] { automate(operations); });
         written = writes;
-    }).join();
+    })
+        .join();
     CHECK(written == 0);
     CHECK_FALSE(calls);
     CHECK(counts.allocations == 0);

@@ -21,7 +21,9 @@ Recipe read(const nlohmann::json& document) { return recipeFromJson(JsonField(do
 
 Recipe drawn(std::mt19937& random)
 {
-    const auto within = [&random](const Settings::Range& range) { return std::uniform_real_distribution<>(range.least, range.most)(random); };
+    const auto within = [&random](const Settings::Range& range) {
+        return std::uniform_real_distribution<>(range.least, range.most)(random);
+    };
     Recipe recipe;
     recipe.mode = modes[random() % modes.size()];
     recipe.fullScale = within(Settings::fullScales);
@@ -35,9 +37,11 @@ Recipe drawn(std::mt19937& random)
     return recipe;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("A recipe of version 1 is read with no limit of the power and no margin; a later version than ours is refused", "[plugin]")
+TEST_CASE(
+    "A recipe of version 1 is read with no limit of the power and no margin; a later version than ours is refused",
+    "[plugin]")
 {
     std::mt19937 random(2);
     const auto recipe = drawn(random);
@@ -57,7 +61,8 @@ TEST_CASE("A recipe of version 1 is read with no limit of the power and no margi
         document["version"] = version;
         CHECK_THROWS_WITH(read(document), Catch::Contains("1 or 2"));
     }
-    for (const auto& [key, value] : {std::pair {"powerLimit", 0.0}, {"powerLimit", 10001.0}, {"margin", -0.1}, {"margin", 0.31}}) {
+    for (const auto& [key, value] :
+         {std::pair {"powerLimit", 0.0}, {"powerLimit", 10001.0}, {"margin", -0.1}, {"margin", 0.31}}) {
         auto broken = documentOf(recipe);
         broken[key] = value;
         CHECK_THROWS_WITH(read(broken), Catch::Contains(key));
@@ -105,7 +110,9 @@ TEST_CASE("As the plugin is when it is just turned on, no sample leaves it that 
         for (int block = 0; block < 60; ++block) {
             juce::AudioBuffer<float> buffer(2, 480);
             for (int n = 0; n < 480; ++n)
-                buffer.setSample(0, n, static_cast<float>(std::sin(2.0 * std::numbers::pi * frequency * (480 * block + n) / 48000.0)));
+                buffer.setSample(
+                    0, n,
+                    static_cast<float>(std::sin(2.0 * std::numbers::pi * frequency * (480 * block + n) / 48000.0)));
             buffer.copyFrom(1, 0, buffer, 0, 0, 480);
             processor.processBlock(buffer, midi);
             largest = std::max(largest, buffer.getMagnitude(0, 480));
@@ -120,7 +127,10 @@ TEST_CASE("Parameters keep their places when later versions have more of them", 
     juce::StringArray ids;
     for (auto* parameter : processor.getParameters())
         ids.add(dynamic_cast<juce::AudioProcessorParameterWithID&>(*parameter).paramID);
-    CHECK(ids.joinIntoString(" ") == "mode fullScale amount displacementLimit voltageLimit trim effect-force-factor effect-stiffness effect-inductance-position "
-                                     "effect-eddy-currents effect-creep effect-damping-velocity powerLimit margin effect-inductance-current effect-friction "
-                                     "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance");
+    CHECK(ids.joinIntoString(" ")
+          == "mode fullScale amount displacementLimit voltageLimit trim effect-force-factor effect-stiffness "
+             "effect-inductance-position "
+             "effect-eddy-currents effect-creep effect-damping-velocity powerLimit margin effect-inductance-current "
+             "effect-friction "
+             "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance");
 }

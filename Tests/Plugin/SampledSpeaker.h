@@ -8,8 +8,8 @@
 
 namespace excursion::plugin {
 
-/// A midbass with a suspension that hardens, K(x) = 1852 (1 + |x/4 mm|^1.7) N/m, by Runge-Kutta steps, one sample after the other, with
-/// sensors that have noise. It shares no code with the models.
+/// A midbass with a suspension that hardens, K(x) = 1852 (1 + |x/4 mm|^1.7) N/m, by Runge-Kutta steps, one sample after
+/// the other, with sensors that have noise. It shares no code with the models.
 class SampledSpeaker {
 public:
     explicit SampledSpeaker(double sampleRate) : h_(1.0 / (steps * sampleRate)) {}
@@ -18,14 +18,15 @@ public:
         double voltage, current, displacement;
     };
 
-    /// @param u  V; the voltage between the samples is a cubic through four of them, so the reading is of two samples ago
+    /// @param u  V; the voltage between the samples is a cubic through four of them, so the reading is of two samples
+    /// ago
     Reading next(double u)
     {
         u_ = {u_[1], u_[2], u_[3], u};
         for (int k = 0; k < steps; ++k) {
             const double s = static_cast<double>(k) / steps, d = 1.0 / steps;
-            const auto a = rates(z_, at(s)), b = rates(plus(z_, a, 0.5 * h_), at(s + 0.5 * d)), c = rates(plus(z_, b, 0.5 * h_), at(s + 0.5 * d)),
-                       e = rates(plus(z_, c, h_), at(s + d));
+            const auto a = rates(z_, at(s)), b = rates(plus(z_, a, 0.5 * h_), at(s + 0.5 * d)),
+                       c = rates(plus(z_, b, 0.5 * h_), at(s + 0.5 * d)), e = rates(plus(z_, c, h_), at(s + d));
             for (std::size_t n = 0; n < 3; ++n)
                 z_[n] += h_ / 6.0 * (a[n] + 2.0 * b[n] + 2.0 * c[n] + e[n]);
         }
@@ -34,7 +35,7 @@ public:
 
 private:
     static constexpr int steps = 2;
-    using State = std::array<double, 3>;   // i, x, v
+    using State = std::array<double, 3>;  // i, x, v
 
     static State rates(const State& z, double u)
     {
@@ -50,8 +51,9 @@ private:
     /// Between the second and the third of the last four samples.
     double at(double s) const
     {
-        return u_[1] + s * (-u_[0] / 3.0 - u_[1] / 2.0 + u_[2] - u_[3] / 6.0) + s * s * (u_[0] / 2.0 - u_[1] + u_[2] / 2.0)
-             + s * s * s * (-u_[0] / 6.0 + u_[1] / 2.0 - u_[2] / 2.0 + u_[3] / 6.0);
+        return u_[1] + s * (-u_[0] / 3.0 - u_[1] / 2.0 + u_[2] - u_[3] / 6.0)
+               + s * s * (u_[0] / 2.0 - u_[1] + u_[2] / 2.0)
+               + s * s * s * (-u_[0] / 6.0 + u_[1] / 2.0 - u_[2] / 2.0 + u_[3] / 6.0);
     }
     double noise(double rms) { return rms * normal_(random_); }
 
@@ -62,4 +64,4 @@ private:
     std::normal_distribution<double> normal_;
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -20,7 +20,10 @@ juce::MemoryBlock stateOf(Processor& processor)
     return block;
 }
 
-void restore(Processor& processor, const juce::MemoryBlock& state) { processor.setStateInformation(state.getData(), static_cast<int>(state.getSize())); }
+void restore(Processor& processor, const juce::MemoryBlock& state)
+{
+    processor.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+}
 
 /// The state of a fresh plugin, changed.
 template <class Change>
@@ -33,7 +36,7 @@ juce::MemoryBlock changed(const Change& change)
     return {text.data(), text.size()};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A number between two steps stands for the one next to it, and stays what a host has sent", "[plugin]")
 {
@@ -57,7 +60,8 @@ TEST_CASE("A number between two steps stands for the one next to it, and stays w
         for (int k = 0; k < 2000; ++k) {
             const float sent = static_cast<float>(random()) / 4294967296.0f;
             parameter->setValue(sent);
-            CHECK(parameter->getValue() == Approx(sent).margin(3e-3));   // at the lower end of a long scale the numbers are closer than values can be
+            // at the lower end of a long scale the numbers are closer than values can be
+            CHECK(parameter->getValue() == Approx(sent).margin(3e-3));
             if (k % 100 != 0)
                 continue;
             const auto state = stateOf(processor);
@@ -90,13 +94,19 @@ TEST_CASE("All parameters come back from a state bit for bit, whatever numbers a
     }
 }
 
-TEST_CASE("What a host shows when a state is saved is what it shows when it has been restored, whatever numbers it had sent", "[plugin]")
+TEST_CASE(
+    "What a host shows when a state is saved is what it shows when it has been restored, whatever numbers it had sent",
+    "[plugin]")
 {
-    // As a host: it shows what it has sent until it is told something else, and reads all anew when it has restored a state.
+    // As a host: it shows what it has sent until it is told something else, and reads all anew when it has restored a
+    // state.
     struct Host : juce::AudioProcessorListener {
         explicit Host(Processor& of) : processor(of) { processor.addListener(this); }
         ~Host() override { processor.removeListener(this); }
-        void audioProcessorParameterChanged(juce::AudioProcessor*, int index, float value) override { shown[static_cast<std::size_t>(index)] = value; }
+        void audioProcessorParameterChanged(juce::AudioProcessor*, int index, float value) override
+        {
+            shown[static_cast<std::size_t>(index)] = value;
+        }
         void audioProcessorChanged(juce::AudioProcessor*, const ChangeDetails&) override {}
         void send(std::size_t index, float value)
         {
@@ -123,12 +133,15 @@ TEST_CASE("What a host shows when a state is saved is what it shows when it has 
             INFO(processor.getParameters()[static_cast<int>(k)]->getName(40));
             // At the low end of a skewed dial neighbouring numbers differ by less than the digits of a document.
             const double lowEnd = 3e-3;
-            CHECK(processor.getParameters()[static_cast<int>(k)]->getValue() == Approx(shown[k]).margin(shown[k] < lowEnd ? lowEnd : 1e-3));
+            CHECK(processor.getParameters()[static_cast<int>(k)]->getValue()
+                  == Approx(shown[k]).margin(shown[k] < lowEnd ? lowEnd : 1e-3));
         }
     }
 }
 
-TEST_CASE("Everything that a recipe may hold is held as it is, between the steps of a dial too; what it may not is refused", "[plugin]")
+TEST_CASE(
+    "Everything that a recipe may hold is held as it is, between the steps of a dial too; what it may not is refused",
+    "[plugin]")
 {
     for (const double volts : {0.01, 2.8284271247461903, 200.01, 500.0, 1000.0}) {
         INFO(volts << " V");
@@ -159,25 +172,29 @@ TEST_CASE("Everything that a recipe may hold is held as it is, between the steps
         Processor processor;
         const auto before = stateOf(processor);
         restore(processor, changed([&](auto& document) {
-            document["recipe"]["fullScale"] = volts;
-            document["recipe"]["trimDb"] = 3.0;
-        }));
+                    document["recipe"]["fullScale"] = volts;
+                    document["recipe"]["trimDb"] = 3.0;
+                }));
         CHECK(stateOf(processor) == before);
     }
 }
 
-TEST_CASE("Numbers between steps that contradict the recipe are not taken, and a state with impossible ones is refused", "[plugin]")
+TEST_CASE("Numbers between steps that contradict the recipe are not taken, and a state with impossible ones is refused",
+          "[plugin]")
 {
     Processor processor;
-    restore(processor, changed([](auto& document) { document["between"] = {{"mode", 0.84}, {"effect-creep", 0.84}, {"effect-of-a-later-version", 0.5}}; }));
+    restore(processor, changed([](auto& document) {
+                document["between"] = {{"mode", 0.84}, {"effect-creep", 0.84}, {"effect-of-a-later-version", 0.5}};
+            }));
     CHECK(processor.parameters().mode().getValue() == 0.0f);
     CHECK(processor.parameters().effects()[4]->getValue() == 0.84f);
     const auto before = stateOf(processor);
-    for (const nlohmann::json& impossible : {nlohmann::json({{"mode", 1.5}}), nlohmann::json({{"mode", "loud"}}), nlohmann::json(3)}) {
+    for (const nlohmann::json& impossible :
+         {nlohmann::json({{"mode", 1.5}}), nlohmann::json({{"mode", "loud"}}), nlohmann::json(3)}) {
         restore(processor, changed([&](auto& document) {
-            document["between"] = impossible;
-            document["recipe"]["mode"] = "speaker";
-        }));
+                    document["between"] = impossible;
+                    document["recipe"]["mode"] = "speaker";
+                }));
         CHECK(stateOf(processor) == before);
     }
 }

@@ -11,8 +11,8 @@
 
 namespace excursion::plugin {
 
-/// An audio device at whose output a SampledSpeaker hangs: inputs 1 to 3 are voltage (16 V at full scale), current (4 A) and
-/// displacement (8 mm). It runs as fast as it can.
+/// An audio device at whose output a SampledSpeaker hangs: inputs 1 to 3 are voltage (16 V at full scale), current (4
+/// A) and displacement (8 mm). It runs as fast as it can.
 class VirtualDevice : public juce::AudioIODevice {
 public:
     VirtualDevice() : AudioIODevice("Virtual loudspeaker", "Virtual") {}
@@ -104,4 +104,4 @@ public:
     juce::AudioIODevice* createDevice(const juce::String&, const juce::String&) override { return new VirtualDevice; }
 };
 
-} // namespace excursion::plugin
+}  // namespace excursion::plugin

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Block models against recursions written out by hand, and the choice of their branches on systems that have one of them.
+// Block models against recursions written out by hand, and the choice of their branches on systems that have one of
+// them.
 #include "Engine/Polynomial/BlockModelFile.h"
 #include "Engine/Polynomial/BlockModelFit.h"
 #include "Engine/Polynomial/PnlssRecord.h"
@@ -49,10 +50,13 @@ struct Resonator {
     }
 };
 
-Eigen::VectorXd bent(const Eigen::VectorXd& v, double square, double cube) { return square * v.array().square() + cube * v.array().cube(); }
+Eigen::VectorXd bent(const Eigen::VectorXd& v, double square, double cube)
+{
+    return square * v.array().square() + cube * v.array().cube();
+}
 
-/// A system with one kind of nonlinearity, whose polynomials are those of a signal of about unit size where the input is white of unit
-/// size.
+/// A system with one kind of nonlinearity, whose polynomials are those of a signal of about unit size where the input
+/// is white of unit size.
 Eigen::VectorXd systemOf(BlockBranch kind, const Resonator& G, const Eigen::VectorXd& u, double square, double cube)
 {
     const Eigen::VectorXd w = G(u);
@@ -74,13 +78,15 @@ Eigen::VectorXd duffing(const Eigen::VectorXd& u, double fs, double k2, double k
     constexpr int steps = 8;
     const double h = 1.0 / fs / steps;
     const auto rate = [&](const Eigen::Vector2d& at, double force) {
-        return Eigen::Vector2d(at[1], w0 * w0 * (force - at[0] - k2 * at[0] * at[0] - k3 * at[0] * at[0] * at[0]) - damping * at[1]);
+        return Eigen::Vector2d(at[1], w0 * w0 * (force - at[0] - k2 * at[0] * at[0] - k3 * at[0] * at[0] * at[0])
+                                          - damping * at[1]);
     };
     for (Index t = 0; t < u.size(); ++t) {
         y[t] = x[0];
         const double from = u[t], to = t + 1 < u.size() ? u[t + 1] : u[t];
         for (int s = 0; s < steps; ++s) {
-            const double f0 = from + (to - from) * s / steps, f1 = from + (to - from) * (s + 1) / steps, f = 0.5 * (f0 + f1);
+            const double f0 = from + (to - from) * s / steps, f1 = from + (to - from) * (s + 1) / steps,
+                         f = 0.5 * (f0 + f1);
             const Eigen::Vector2d r1 = rate(x, f0), r2 = rate(x + 0.5 * h * r1, f);
             const Eigen::Vector2d r3 = rate(x + 0.5 * h * r2, f), r4 = rate(x + h * r3, f1);
             x += h / 6.0 * (r1 + 2.0 * r2 + 2.0 * r3 + r4);
@@ -89,7 +95,8 @@ Eigen::VectorXd duffing(const Eigen::VectorXd& u, double fs, double k2, double k
     return y;
 }
 
-/// Three steady periods of one system, the last one for validation, and the linear model that its best linear approximation gives.
+/// Three steady periods of one system, the last one for validation, and the linear model that its best linear
+/// approximation gives.
 template <class System>
 BlockModelFit fitted(const System& system, double amplitude, double fs, Normal& normal, double noise)
 {
@@ -113,7 +120,7 @@ BlockModelFit fitted(const System& system, double amplitude, double fs, Normal& 
     return fitBlockModel(linear, {records[0], records[1]}, {records[2]});
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A block model answers as its branches do by hand, and so does the PNLSS model that it is")
 {
@@ -264,8 +271,8 @@ TEST_CASE("A linear system needs no branch, and an unstable or useless linear pa
     const Eigen::MatrixXd u = Eigen::VectorXd::LinSpaced(50, -1.0, 1.0);
     auto unstable = G.model();
     unstable.A *= 1.3;
-    const auto no = [&](Error::Kind kind, const char* what, const StateSpace& linear, const std::vector<PnlssRecord>& records,
-                        const BlockModelFitOptions& options) {
+    const auto no = [&](Error::Kind kind, const char* what, const StateSpace& linear,
+                        const std::vector<PnlssRecord>& records, const BlockModelFitOptions& options) {
         refused(kind, what, [&] { fitBlockModel(linear, records, {}, options); });
     };
     no(Error::Kind::usage, "not stable", unstable, {{u, u, 0, false}}, {});
@@ -287,7 +294,8 @@ TEST_CASE("A block model is kept and read again, bit for bit, and what does not 
 {
     const Scratch scratch;
     Normal normal(8);
-    const BlockModel model {Resonator(normal).model(), {}, Eigen::Vector3d(0.3, 0.05, -0.04), Eigen::Vector2d(0.1, 0.2), 0.5};
+    const BlockModel model {
+        Resonator(normal).model(), {}, Eigen::Vector3d(0.3, 0.05, -0.04), Eigen::Vector2d(0.1, 0.2), 0.5};
     writeBlockModel({"box", "voltage", "displacement", model}, scratch / "model.json");
     const auto named = readBlockModel(scratch / "model.json");
     CHECK(named.output == "displacement");

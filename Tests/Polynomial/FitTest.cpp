@@ -44,19 +44,21 @@ StateSpace seedsLoudspeaker(const std::string& tag)
 }
 
 struct Recovery {
-    PnlssFit fromTruth, fromResponse;   ///< from the true linear part, which stays; from the measured best linear approximation
+    /// from the true linear part, which stays; from the measured best linear approximation
+    PnlssFit fromTruth, fromResponse;
 };
 
 Recovery recover(const StateSpace& truth, const PnlssRecord& estimation, const PnlssRecord& validation)
 {
     PnlssFitOptions options;
     options.linearFree = false;
-    const auto bla = linearStart(meanResponse({estimation.input.col(0)}, {estimation.output.col(0)}, truth.sampleRate), 3, truth.sampleRate);
+    const auto bla = linearStart(meanResponse({estimation.input.col(0)}, {estimation.output.col(0)}, truth.sampleRate),
+                                 3, truth.sampleRate);
     return {fitPnlss(withTerms(truth, 2, TermMask::statesOnly), {estimation}, {validation}, options),
             fitPnlss(withTerms(bla, 2, TermMask::statesOnly), {estimation}, {validation})};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A fit from a linear start finds a nonlinear model, with transients estimated or waited for, weighted or not")
 {
@@ -89,10 +91,12 @@ TEST_CASE("A fit from a linear start finds a nonlinear model, with transients es
     const auto [u2, y2] = period(level);
     const auto [u3, y3] = period(0.0);
     const std::vector validation {periodicRecord(u3, y3, 1024)};
-    const auto start = withTerms(linearStart(meanResponse({u1.col(0), u2.col(0)}, {y1.col(0), y2.col(0)}, 1000.0), 2, 1000.0), 3, TermMask::statesOnly);
+    const auto start = withTerms(
+        linearStart(meanResponse({u1.col(0), u2.col(0)}, {y1.col(0), y2.col(0)}, 1000.0), 2, 1000.0), 3,
+        TermMask::statesOnly);
 
     const auto waited = fitPnlss(start, {periodicRecord(u1, y1, 1024), periodicRecord(u2, y2, 1024)}, validation);
-    CHECK(relativeErrorDb(start, validation) > -40.0);   // the linear start is far from it
+    CHECK(relativeErrorDb(start, validation) > -40.0);  // the linear start is far from it
     CHECK(waited.estimationDb == Approx(-70.0).margin(0.7));
     CHECK(waited.validationDb < -78.0);
     CHECK(waited.stable);
@@ -109,7 +113,8 @@ TEST_CASE("A fit from a linear start finds a nonlinear model, with transients es
     weighting.lineWeights = Eigen::VectorXd::Ones(513);
     const std::vector records {periodicRecord(u1, y1, 1024), periodicRecord(u2, y2, 1024)};
     const auto weighted = fitPnlss(start, records, validation, weighting);
-    CHECK(weighted.validationDb == Approx(waited.validationDb).margin(0.05));   // all weights equal: the same problem, by Parseval
+    // all weights equal: the same problem, by Parseval
+    CHECK(weighted.validationDb == Approx(waited.validationDb).margin(0.05));
     weighting.lineWeights.tail(300).setZero();
     const auto low = fitPnlss(start, records, validation, weighting);
     CHECK(low.validationDb < -60.0);
@@ -201,14 +206,16 @@ TEST_CASE("What cannot be fitted is told in a sentence")
     refused(Error::Kind::data, "periodic", [&] { fitPnlss(start, {{u, u, 0, false}}, {}, options); });
 }
 
-TEST_CASE("The seed's loudspeaker is recovered to rounding, from its true linear part and from its best linear approximation")
+TEST_CASE(
+    "The seed's loudspeaker is recovered to rounding, from its true linear part and from its best linear approximation")
 {
     for (const std::string tag : {"48000_p", "44100_m"}) {
         const auto io = matrixOf(problemRows("P1_" + tag + "_io.csv"));
         if (io.size() == 0)
             return;
         INFO(tag);
-        const auto found = recover(seedsLoudspeaker(tag), {io.col(0), io.col(1), 0, false}, {io.col(2), io.col(3), 0, false});
+        const auto found = recover(seedsLoudspeaker(tag), {io.col(0), io.col(1), 0, false},
+                                   {io.col(2), io.col(3), 0, false});
         CHECK(found.fromTruth.estimationDb < -218.0);
         CHECK(found.fromTruth.validationDb < -204.0);
         CHECK(found.fromResponse.estimationDb < -120.0);
@@ -229,12 +236,14 @@ TEST_CASE("The seed's loudspeaker is recovered to rounding from other inputs as 
         for (int seed = 1; seed <= 10; ++seed) {
             CAPTURE(tag, seed);
             Normal normal(seed);
-            // A flat random-phase multisine as long as the fixed problem's, from rest; the recursion is written out by itself.
+            // A flat random-phase multisine as long as the fixed problem's, from rest; the recursion is written out by
+            // itself.
             const auto record = [&] {
                 constexpr Index N = 4096;
                 std::vector<std::complex<double>> spectrum(N / 2 + 1);
                 for (std::size_t k = 1; k < N / 2; ++k)
-                    spectrum[k] = std::polar(1.0, 2.0 * std::numbers::pi * normal());   // wrapped this often, a phase is uniform
+                    // wrapped this often, a phase is uniform
+                    spectrum[k] = std::polar(1.0, 2.0 * std::numbers::pi * normal());
                 const auto period = inverseFft(spectrum, N);
                 Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), N);
                 u *= level * std::sqrt(static_cast<double>(N)) / u.norm();
@@ -262,7 +271,9 @@ TEST_CASE("The seed's loudspeaker is recovered to rounding from other inputs as 
     CHECK(astray <= 1);
 }
 
-TEST_CASE("A driver with four nonlinear laws is explained down to its noise, from its measured best linear approximation", "[slow]")
+TEST_CASE(
+    "A driver with four nonlinear laws is explained down to its noise, from its measured best linear approximation",
+    "[slow]")
 {
     const auto rows = matrixOf(problemRows("P2_io.csv"));
     if (rows.size() == 0)
@@ -270,7 +281,7 @@ TEST_CASE("A driver with four nonlinear laws is explained down to its noise, fro
     const Index N = 8192;
     std::vector<Eigen::VectorXd> u, y;
     std::vector<PnlssRecord> records;
-    for (Index r = 0; r < 3; ++r) {   // two periods of each realization, averaged
+    for (Index r = 0; r < 3; ++r) {  // two periods of each realization, averaged
         u.emplace_back(0.5 * (rows.block(2 * r * N, 2, N, 1) + rows.block((2 * r + 1) * N, 2, N, 1)));
         y.emplace_back(0.5 * (rows.block(2 * r * N, 3, N, 1) + rows.block((2 * r + 1) * N, 3, N, 1)));
         records.push_back(periodicRecord(u.back(), y.back(), 500));
@@ -279,28 +290,29 @@ TEST_CASE("A driver with four nonlinear laws is explained down to its noise, fro
     PnlssFitOptions options;
     options.maximumIterations = 30;
     const auto fit = fitPnlss(withTerms(bla, 3), {records[0], records[1]}, {records[2]}, options);
-    CHECK(fit.estimationDb < -82.5);   // noise: -83
+    CHECK(fit.estimationDb < -82.5);  // noise: -83
     CHECK(fit.validationDb < -82.0);
     CHECK(fit.stable);
 }
 
 TEST_CASE("Other drivers with four nonlinear laws are explained down to their noise", "[slow]")
 {
-    // As the fixed problem: Bl(x), K(x), L(x) and the reluctance force, voltage held between samples, the current heard with noise at -80 dB;
-    // integrated here by Runge and Kutta's rule, eight steps a sample.
+    // As the fixed problem: Bl(x), K(x), L(x) and the reluctance force, voltage held between samples, the current heard
+    // with noise at -80 dB; integrated here by Runge and Kutta's rule, eight steps a sample.
     constexpr double rate = 8000.0;
     constexpr Index N = 8192;
     for (int seed = 1; seed <= 3; ++seed) {
         CAPTURE(seed);
         Normal normal(seed);
         const auto drawn = [&normal](double value, double share) { return value * std::exp(share * normal()); };
-        const double m = drawn(14.35e-3, 0.2), r = drawn(0.786, 0.2), k = drawn(1852.0, 0.2), Bl = drawn(4.95, 0.1), L = drawn(266e-6, 0.2),
-                     R = drawn(3.3, 0.15), b1 = 15.0 * normal(), b2 = drawn(4000.0, 0.3), k1 = 25.0 * normal(), k2 = drawn(9000.0, 0.3),
-                     l1 = 40.0 + 15.0 * normal(), l2 = drawn(1000.0, 0.3), level = drawn(4.5, 0.15);
-        using State = Eigen::Vector3d;   // i, x, v
+        const double m = drawn(14.35e-3, 0.2), r = drawn(0.786, 0.2), k = drawn(1852.0, 0.2), Bl = drawn(4.95, 0.1),
+                     L = drawn(266e-6, 0.2), R = drawn(3.3, 0.15), b1 = 15.0 * normal(), b2 = drawn(4000.0, 0.3),
+                     k1 = 25.0 * normal(), k2 = drawn(9000.0, 0.3), l1 = 40.0 + 15.0 * normal(),
+                     l2 = drawn(1000.0, 0.3), level = drawn(4.5, 0.15);
+        using State = Eigen::Vector3d;  // i, x, v
         const auto slope = [&](const State& z, double u) {
-            const double i = z[0], x = z[1], v = z[2], force = Bl * (1.0 + b1 * x - b2 * x * x), inductance = L * (1.0 - l1 * x + l2 * x * x),
-                         bend = L * (2.0 * l2 * x - l1);
+            const double i = z[0], x = z[1], v = z[2], force = Bl * (1.0 + b1 * x - b2 * x * x),
+                         inductance = L * (1.0 - l1 * x + l2 * x * x), bend = L * (2.0 * l2 * x - l1);
             return State((u - R * i - force * v - bend * v * i) / inductance, v,
                          (force * i + 0.5 * bend * i * i - r * v - k * (1.0 + k1 * x + k2 * x * x) * x) / m);
         };
@@ -318,13 +330,15 @@ TEST_CASE("Other drivers with four nonlinear laws are explained down to their no
         for (int realization = 0; realization < 3; ++realization) {
             std::vector<std::complex<double>> spectrum(N / 2 + 1);
             for (std::size_t line = 5; line <= N / 4; ++line)
-                spectrum[line] = std::polar(1.0 / std::sqrt(1.0 + static_cast<double>(line) / 300.0), 2.0 * std::numbers::pi * normal());
+                spectrum[line] = std::polar(1.0 / std::sqrt(1.0 + static_cast<double>(line) / 300.0),
+                                            2.0 * std::numbers::pi * normal());
             const auto period = inverseFft(spectrum, N);
             u.emplace_back(Eigen::Map<const Eigen::VectorXd>(period.data(), N));
             u.back() *= level * std::sqrt(static_cast<double>(N)) / u.back().norm();
             const auto heard = current(u.back());
             y.emplace_back(0.5 * (heard.segment(N, N) + heard.tail(N)));
-            const double size = 1e-4 * y.back().norm() / std::sqrt(2.0 * static_cast<double>(N));   // of the mean of two periods
+            // of the mean of two periods
+            const double size = 1e-4 * y.back().norm() / std::sqrt(2.0 * static_cast<double>(N));
             for (auto& sample : y.back())
                 sample += size * normal();
             records.push_back(periodicRecord(u.back(), y.back(), 500));
@@ -336,7 +350,7 @@ TEST_CASE("Other drivers with four nonlinear laws are explained down to their no
         const auto fit = fitPnlss(start, {records[0], records[1]}, {records[2]}, options);
         CAPTURE(relativeErrorDb(start, {records[2]}), fit.estimationDb, fit.iterations);
         CHECK(relativeErrorDb(start, {records[2]}) > -45.0);
-        CHECK(fit.validationDb < -82.0);   // noise: -83
+        CHECK(fit.validationDb < -82.0);  // noise: -83
         CHECK(fit.stable);
     }
 }
@@ -353,13 +367,14 @@ TEST_CASE("The Silverbox is explained to a quarter of a millivolt")
     auto take = std::get<Measurement>(importText(folder / "SNLS80mV.csv", import));
     const auto record = [&](std::size_t from, std::size_t to, Index skip) {
         const auto cut = [&](int channel) {
-            return Eigen::MatrixXd(Eigen::Map<const Eigen::VectorXd>(take.channels[static_cast<std::size_t>(channel)].samples.data() + from,
-                                                                     static_cast<Index>(to - from)));
+            return Eigen::MatrixXd(Eigen::Map<const Eigen::VectorXd>(
+                take.channels[static_cast<std::size_t>(channel)].samples.data() + from, static_cast<Index>(to - from)));
         };
         return PnlssRecord {cut(0), cut(1), skip, false};
     };
     // Nine multisines, then the tenth, then the arrow, whose record begins amid a transient.
-    const std::vector estimation {record(40580, 118800, 200)}, last {record(118800, 127400, 200)}, arrow {record(0, 40000, 1000)};
+    const std::vector estimation {record(40580, 118800, 200)}, last {record(118800, 127400, 200)},
+        arrow {record(0, 40000, 1000)};
     auto part = take;
     for (auto& channel : part.channels)
         channel.samples = {channel.samples.begin() + 40580, channel.samples.begin() + 118800};
@@ -374,12 +389,12 @@ TEST_CASE("The Silverbox is explained to a quarter of a millivolt")
     keepOutputLinear(start);
     PnlssFitOptions options;
     options.search = PnlssSearch::plain;
-    options.maximumIterations = 10;   // more bend the model for what the arrow, which goes further, does not do
+    options.maximumIterations = 10;  // more bend the model for what the arrow, which goes further, does not do
     const auto fit = fitPnlss(start, estimation, {}, options);
     const auto millivolts = [&](const std::vector<PnlssRecord>& records) {
         const auto rows = records[0].output.rows() - records[0].skip;
-        return 1e3 * std::pow(10.0, relativeErrorDb(fit.model, records) / 20.0) * records[0].output.bottomRows(rows).norm()
-             / std::sqrt(static_cast<double>(rows));
+        return 1e3 * std::pow(10.0, relativeErrorDb(fit.model, records) / 20.0)
+               * records[0].output.bottomRows(rows).norm() / std::sqrt(static_cast<double>(rows));
     };
     CHECK(millivolts(last) < 0.235);
     CHECK(millivolts(arrow) < 0.26);

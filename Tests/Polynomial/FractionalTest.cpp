@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Polynomial models of fractional order against closed forms, another discretization, and a loudspeaker simulated by other means.
+// Polynomial models of fractional order against closed forms, another discretization, and a loudspeaker simulated by
+// other means.
 #include "Bench/Draw.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Measurement/Bla.h"
@@ -27,7 +28,7 @@ FractionalPnlss nonlinearDriver(double alpha)
     auto model = withTerms(linear, 3);
     for (Index k = 0; k < model.form.terms(); ++k) {
         const Eigen::RowVectorXi e = model.form.exponents.row(k);
-        const double x0 = 2e-3;   // V s
+        const double x0 = 2e-3;  // V s
         if (e == Eigen::RowVector4i(3, 0, 0, 0))
             model.form.E(1, k) = -0.2 * std::pow(2.0 * pi * 50.0, 2) / (x0 * x0);
         if (e == Eigen::RowVector4i(2, 0, 1, 0))
@@ -45,11 +46,12 @@ Eigen::MatrixXd tones(Index samples, double rate, double size)
     Eigen::MatrixXd u = Eigen::MatrixXd::Zero(samples, 1);
     for (const double f : {31.0, 47.0, 90.0, 270.0, 900.0})
         for (Index t = 0; t < samples; ++t)
-            u(t, 0) += size * std::sin(2.0 * pi * f * static_cast<double>(t) / rate + f) * std::min(1.0, static_cast<double>(t) / 400.0);
+            u(t, 0) += size * std::sin(2.0 * pi * f * static_cast<double>(t) / rate + f)
+                       * std::min(1.0, static_cast<double>(t) / 400.0);
     return u;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The integral of fractional order on a grid has the response of s^-alpha")
 {
@@ -92,13 +94,15 @@ TEST_CASE("The linear part of a fractional polynomial model, simulated, settles 
     const auto y = simulate(model, u, grid);
     const auto expected = respondLinear(model, frequency);
     const auto spectrumOf = [&](const Eigen::MatrixXd& x) {
-        return fft(std::span<const double>(x.data() + settle - 500, static_cast<std::size_t>(period)));   // ahead of the end, where the input is a guess
+        // ahead of the end, where the input is a guess
+        return fft(std::span<const double>(x.data() + settle - 500, static_cast<std::size_t>(period)));
     };
     const auto U = spectrumOf(u), Y = spectrumOf(y);
     const std::vector<std::size_t> lines {10, 26, 52, 150, 400};
     for (std::size_t k = 0; k < lines.size(); ++k) {
         CAPTURE(frequency[k]);
-        CHECK(std::abs(Y[lines[k]] / U[lines[k]] / expected[k](0, 0) - 1.0) < 2e-4);   // what the slowest memory still holds decays with a power of time
+        // what the slowest memory still holds decays with a power of time
+        CHECK(std::abs(Y[lines[k]] / U[lines[k]] / expected[k](0, 0) - 1.0) < 2e-4);
     }
     // As an ordinary model it is the same.
     const auto ordinary = expandedLinear(model, grid);
@@ -118,7 +122,10 @@ TEST_CASE("A nonlinear fractional equation, against Gruenwald and Letnikov's dif
     auto model = withTerms(linear, 3, TermMask::statesOnly);
     REQUIRE(model.form.terms() == 2);
     model.form.E(0, 1) = -c;
-    const auto input = [](double t) { return std::pow(std::sin(pi * std::min(t / 0.05, 0.5)), 2) * (0.1 * std::sin(2 * pi * 40 * t) + 0.05 * std::sin(2 * pi * 130 * t)); };
+    const auto input = [](double t) {
+        return std::pow(std::sin(pi * std::min(t / 0.05, 0.5)), 2)
+               * (0.1 * std::sin(2 * pi * 40 * t) + 0.05 * std::sin(2 * pi * 130 * t));
+    };
     Eigen::MatrixXd u(N, 1);
     for (Index t = 0; t < N; ++t)
         u(t, 0) = input(static_cast<double>(t) / rate);
@@ -148,7 +155,16 @@ TEST_CASE("A nonlinear fractional equation, against Gruenwald and Letnikov's dif
     const Eigen::VectorXd coarse = difference(8), fine = difference(16), truth = 2.0 * fine - coarse;
     const auto grid = gridFor(model, rate, {40.0, 130.0, 390.0}, 0.2, 1e-5);
     const auto y = simulate(model, u, grid);
-    const double nonlinear = (y - simulate([&] { auto flat = model; flat.form.E.setZero(); return flat; }(), u, grid)).norm() / y.norm();
+    const double nonlinear = (y
+                              - simulate(
+                                  [&] {
+                                      auto flat = model;
+                                      flat.form.E.setZero();
+                                      return flat;
+                                  }(),
+                                  u, grid))
+                                 .norm()
+                             / y.norm();
     CHECK(nonlinear > 0.05);
     const double error = (y.topRows(N - 100) - truth.head(N - 100)).norm() / truth.norm();
     CAPTURE(error, (truth - fine).norm() / truth.norm());
@@ -169,7 +185,9 @@ TEST_CASE("The Jacobian of a fractional polynomial model is that of finite diffe
     FractionalRecursion::Trajectory run;
     REQUIRE(recursion.run(model, input, 1e6, run));
     Eigen::MatrixXd J(600, recursion.parameters());
-    recursion.differentiate(model, input, run, [&](Index first, std::vector<Eigen::MatrixXd>& block) { J.middleRows(first, block[0].rows()) = block[0]; });
+    recursion.differentiate(model, input, run, [&](Index first, std::vector<Eigen::MatrixXd>& block) {
+        J.middleRows(first, block[0].rows()) = block[0];
+    });
     const auto values = recursion.valuesOf(model);
     CHECK(values[values.size() - 1] == 0.55);
     double worst = 0.0;
@@ -193,7 +211,9 @@ TEST_CASE("The Jacobian of a fractional polynomial model is that of finite diffe
     CHECK(worst < 1e-7);
 }
 
-TEST_CASE("A fractional polynomial model explains a driver with semi-inductance down to its noise, where one of integer order does not", "[slow]")
+TEST_CASE("A fractional polynomial model explains a driver with semi-inductance down to its noise, where one of "
+          "integer order does not",
+          "[slow]")
 {
     bench::Loudspeaker speaker;
     speaker.Le = 1e-9;
@@ -202,8 +222,16 @@ TEST_CASE("A fractional polynomial model explains a driver with semi-inductance 
     gap.centre = 0.0003;
     bench::BenchSetup setup;
     setup.sampleRate = 16000.0;
-    setup.excitation = {.period = 4096, .settlePeriods = 1, .periods = 2, .realizations = 4, .levels = {2.5}, .grid = "odd-random", .shape = "pink",
-                        .bandLow = 15.0, .bandHigh = 3500.0, .lines = {}};
+    setup.excitation = {.period = 4096,
+                        .settlePeriods = 1,
+                        .periods = 2,
+                        .realizations = 4,
+                        .levels = {2.5},
+                        .grid = "odd-random",
+                        .shape = "pink",
+                        .bandLow = 15.0,
+                        .bandHigh = 3500.0,
+                        .lines = {}};
     setup.channels = {Quantity::voltage, Quantity::current};
     setup.noiseDb = -66.0;
     setup.channelNoiseDb[Quantity::voltage] = -110.0;
@@ -214,7 +242,9 @@ TEST_CASE("A fractional polynomial model explains a driver with semi-inductance 
     const auto take = bench::measure(speaker, setup);
     const auto frf = bla(take, Quantity::current, 0).frf;
     std::vector<PnlssRecord> estimation, validation;
-    const auto column = [](const std::vector<double>& x) { return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size())); };
+    const auto column = [](const std::vector<double>& x) {
+        return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
+    };
     for (int r = 0; r < 4; ++r)
         (r < 3 ? estimation : validation)
             .push_back(periodicRecord(column(averagePeriod(take, *take.find(Quantity::voltage), 0, r)),
@@ -234,12 +264,14 @@ TEST_CASE("A fractional polynomial model explains a driver with semi-inductance 
     options.maximumIterations = 10;
     const auto fit = fitFractionalPnlss(start, grid, estimation, validation, options);
 
-    // Integer orders with as many parameters or fewer, in several ways, from the linear model that leaves least in the record
+    // Integer orders with as many parameters or fewer, in several ways, from the linear model that leaves least in the
+    // record
     auto weighted = frequencyDataOf(frf);
     const auto U = fft(averagePeriod(take, *take.find(Quantity::voltage), 0, 0));
     weighted.deviation.resize(weighted.lines(), 1);
     for (Index k = 0; k < weighted.lines(); ++k)
-        weighted.deviation(k, 0) = 1.0 / std::abs(U[static_cast<std::size_t>(take.excitation->lines[static_cast<std::size_t>(k)])]);
+        weighted.deviation(
+            k, 0) = 1.0 / std::abs(U[static_cast<std::size_t>(take.excitation->lines[static_cast<std::size_t>(k)])]);
     double integerDb = 0.0;
     for (const auto& [order, mask] : {std::pair {3, TermMask::full}, std::pair {7, TermMask::diagonal}}) {
         IdentifyOptions identifying;
@@ -250,7 +282,8 @@ TEST_CASE("A fractional polynomial model explains a driver with semi-inductance 
         searching.maximumIterations = 60;
         const auto integer = fitPnlss(withTerms(linear, 3, mask), estimation, validation, searching);
         CAPTURE(order, integer.estimationDb, integer.validationDb);
-        CHECK(Recursion(integer.model, true).parameters() < FractionalRecursion(fit.model, grid, true, true).parameters());
+        CHECK(Recursion(integer.model, true).parameters()
+              < FractionalRecursion(fit.model, grid, true, true).parameters());
         integerDb = std::min(integerDb, integer.validationDb);
     }
     const double noiseDb = setup.noiseDb - 10.0 * std::log10(2.0);

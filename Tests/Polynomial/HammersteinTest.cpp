@@ -18,8 +18,8 @@ using Eigen::Index;
 
 namespace {
 
-/// (b0 + b1/z + b2/z^2) / (1 + a1/z + a2/z^2): the bilinear transform of an analog resonance (n0 + n1 s + n2 s^2) / (1 + s/Q + s^2), s in
-/// units of f0.
+/// (b0 + b1/z + b2/z^2) / (1 + a1/z + a2/z^2): the bilinear transform of an analog resonance (n0 + n1 s + n2 s^2) / (1
+/// + s/Q + s^2), s in units of f0.
 struct Resonance {
     double b0, b1, b2, a1, a2;
 
@@ -92,17 +92,19 @@ double branchError(const ParallelHammerstein& model, Index branch, const Resonan
 Eigen::VectorXd padded(const std::vector<double>& x, Index more)
 {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Index>(x.size()) + more);
-    result.head(static_cast<Index>(x.size())) = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
+    result.head(static_cast<Index>(x.size())) = Eigen::Map<const Eigen::VectorXd>(x.data(),
+                                                                                  static_cast<Index>(x.size()));
     return result;
 }
 
 std::span<const double> spanOf(const Eigen::VectorXd& y) { return {y.data(), static_cast<std::size_t>(y.size())}; }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Harmonics with known sizes and phases come out of the answer to a sweep")
 {
-    const ExponentialSweep sweep({.sampleRate = 48000.0, .bandLow = 10.0, .bandHigh = 5000.0, .seconds = 5.0, .peak = 0.7});
+    const ExponentialSweep sweep(
+        {.sampleRate = 48000.0, .bandLow = 10.0, .bandHigh = 5000.0, .seconds = 5.0, .peak = 0.7});
     const std::complex<double> truth[] {{0.9, 0.3}, {-0.2, 0.1}, {0.05, -0.11}, {0.01, 0.02}};
     const double L = sweep.rate();
     Eigen::VectorXd y(static_cast<Index>(sweep.seconds() * 48000.0) + 1);
@@ -118,7 +120,8 @@ TEST_CASE("Harmonics with known sizes and phases come out of the answer to a swe
         double worst = 0.0;
         for (std::size_t k = 0; k < found.frequency.size(); ++k)
             if (found.frequency[k] > 200.0 && found.frequency[k] < 0.8 * m * 5000.0)
-                worst = std::max(worst, std::abs(found.value(static_cast<Index>(k), m - 1) - truth[m - 1]) / std::abs(truth[m - 1]));
+                worst = std::max(worst, std::abs(found.value(static_cast<Index>(k), m - 1) - truth[m - 1])
+                                            / std::abs(truth[m - 1]));
         CHECK(worst < 2e-3);
     }
 }
@@ -128,16 +131,22 @@ TEST_CASE("A parallel Hammerstein system is found from a sweep, at any sample ra
     const auto rate = GENERATE(44100.0, 48000.0, 96000.0);
     const auto fades = GENERATE(false, true);
     const int degree = rate == 48000.0 ? 5 : 3;
-    const double high = 0.98 * rate / 2.0 / degree;   // its powers stay below half the sample rate
-    const ExponentialSweep sweep({.sampleRate = rate, .bandLow = 8.0, .bandHigh = high, .seconds = 6.0, .peak = 0.8,
-                                  .fadeIn = fades ? 0.1 : 0.0, .fadeOut = fades ? 0.02 : 0.0});
+    const double high = 0.98 * rate / 2.0 / degree;  // its powers stay below half the sample rate
+    const ExponentialSweep sweep({.sampleRate = rate,
+                                  .bandLow = 8.0,
+                                  .bandHigh = high,
+                                  .seconds = 6.0,
+                                  .peak = 0.8,
+                                  .fadeIn = fades ? 0.1 : 0.0,
+                                  .fadeOut = fades ? 0.02 : 0.0});
     const auto branches = drawnBranches(degree, rate, 250.0, static_cast<std::uint64_t>(rate) + fades);
     const auto y = played(branches, padded(sweep.samples(), static_cast<Index>(0.2 * rate)));
     HammersteinSweepOptions options {.degree = degree, .length = static_cast<Index>(0.03 * rate)};
     const auto fit = identifyHammerstein(sweep, spanOf(y), options);
     CHECK(fit.estimationDb < -55.0);
     for (int n = 1; n <= degree; ++n) {
-        const double error = branchError(fit.model, n - 1, branches[static_cast<std::size_t>(n - 1)], 100.0, 0.8 * high);
+        const double error = branchError(fit.model, n - 1, branches[static_cast<std::size_t>(n - 1)], 100.0,
+                                         0.8 * high);
         CHECK(error < (n <= 3 ? -55.0 : fades ? -50.0 : -40.0));
     }
 }
@@ -145,7 +154,8 @@ TEST_CASE("A parallel Hammerstein system is found from a sweep, at any sample ra
 TEST_CASE("Noise on the answer to a sweep is spread over it, and a model is judged on what it has not seen")
 {
     const double rate = 48000.0;
-    const ExponentialSweep sweep({.sampleRate = rate, .bandLow = 8.0, .bandHigh = 7800.0, .seconds = 6.0, .fadeIn = 0.1, .fadeOut = 0.02});
+    const ExponentialSweep sweep(
+        {.sampleRate = rate, .bandLow = 8.0, .bandHigh = 7800.0, .seconds = 6.0, .fadeIn = 0.1, .fadeOut = 0.02});
     const auto branches = drawnBranches(3, rate, 250.0, 77);
     auto y = played(branches, padded(sweep.samples(), 9600));
     Normal normal(3);
@@ -158,10 +168,11 @@ TEST_CASE("Noise on the answer to a sweep is spread over it, and a model is judg
         CHECK(error < -50.0);
     }
     // A multisine that the identification has not seen
-    const MultisineOptions options {.sampleRate = rate, .period = 16384, .grid = Grid::full,
-                                   .bandLow = 100.0, .bandHigh = 5000.0, .rms = 0.25};
+    const MultisineOptions options {
+        .sampleRate = rate, .period = 16384, .grid = Grid::full, .bandLow = 100.0, .bandHigh = 5000.0, .rms = 0.25};
     const auto u = multisine(options, chooseLines(options), 0);
-    const Eigen::VectorXd twice = padded(u, 0).replicate(2, 1), truth = played(branches, twice), modelled = simulate(fit.model, twice);
+    const Eigen::VectorXd twice = padded(u, 0).replicate(2, 1), truth = played(branches, twice),
+                          modelled = simulate(fit.model, twice);
     Eigen::VectorXd a = truth.tail(16384), b = modelled.tail(16384);
     a.array() -= a.mean();
     b.array() -= b.mean();
@@ -172,7 +183,8 @@ TEST_CASE("A sweep's answer that cannot be taken apart is refused")
 {
     const ExponentialSweep sweep({.sampleRate = 8000.0, .bandLow = 20.0, .bandHigh = 1000.0, .seconds = 1.0});
     auto y = sweep.samples();
-    const auto no = [&](Error::Kind kind, const char* what, const HammersteinSweepOptions& options, const std::vector<double>& record) {
+    const auto no = [&](Error::Kind kind, const char* what, const HammersteinSweepOptions& options,
+                        const std::vector<double>& record) {
         refused(kind, what, [&] { identifyHammerstein(sweep, record, options); });
     };
     no(Error::Kind::usage, "degree", {.degree = 0}, y);
@@ -182,7 +194,8 @@ TEST_CASE("A sweep's answer that cannot be taken apart is refused")
     no(Error::Kind::data, "overlap", {.degree = 3, .length = 900}, y);
     no(Error::Kind::data, "fewer", {.length = 64}, std::vector<double>(y.begin(), y.end() - 100));
     const ExponentialSweep narrow({.sampleRate = 8000.0, .bandLow = 100.0, .bandHigh = 400.0, .seconds = 3.0});
-    refused(Error::Kind::usage, "narrow", [&] { identifyHammerstein(narrow, narrow.samples(), {.degree = 4, .length = 64}); });
+    refused(Error::Kind::usage, "narrow",
+            [&] { identifyHammerstein(narrow, narrow.samples(), {.degree = 4, .length = 64}); });
     y[17] = std::nan("");
     no(Error::Kind::data, "not finite", {.length = 64}, y);
 }
@@ -205,7 +218,7 @@ TEST_CASE("A parallel Hammerstein model answers as the sum that defines it")
     }
     const auto G = responses(model, {0.0, 250.0});
     CHECK(std::abs(G(0, 0) - 1.2) < 1e-14);
-    CHECK(std::abs(G(1, 1) - std::complex<double>(-0.5 - 0.7, -0.2)) < 1e-14);   // z = j
+    CHECK(std::abs(G(1, 1) - std::complex<double>(-0.5 - 0.7, -0.2)) < 1e-14);  // z = j
     refused(Error::Kind::usage, "one input", [&] { simulate(model, Eigen::MatrixXd::Zero(4, 2)); });
     model.filters(1, 1) = std::nan("");
     refused(Error::Kind::usage, "finite", [&] { simulate(model, u); });
@@ -238,8 +251,8 @@ TEST_CASE("Any record gives the model: exactly where it is one, to the noise whe
 
     const double rate = 48000.0;
     const auto branches = drawnBranches(3, rate, 400.0, 5);
-    const MultisineOptions options {.sampleRate = rate, .period = 8192, .grid = Grid::full,
-                                   .bandLow = 20.0, .bandHigh = 7500.0, .rms = 0.4};
+    const MultisineOptions options {
+        .sampleRate = rate, .period = 8192, .grid = Grid::full, .bandLow = 20.0, .bandHigh = 7500.0, .rms = 0.4};
     const auto steady = [&](int realization, double noise) {
         const Eigen::VectorXd u = padded(multisine(options, chooseLines(options), realization), 0);
         Eigen::VectorXd y = played(branches, u.replicate(2, 1)).tail(8192);
@@ -248,7 +261,8 @@ TEST_CASE("Any record gives the model: exactly where it is one, to the noise whe
             value += level * normal();
         return periodicRecord(u, y, 1024);
     };
-    const auto fit = fitHammerstein(rate, {steady(0, 1e-2), steady(1, 1e-2), steady(2, 1e-2)}, {steady(3, 1e-2)}, {.length = 512});
+    const auto fit = fitHammerstein(rate, {steady(0, 1e-2), steady(1, 1e-2), steady(2, 1e-2)}, {steady(3, 1e-2)},
+                                    {.length = 512});
     CHECK(fit.validationDb < -39.0);
     const auto clean = steady(4, 0.0);
     const double db = outputErrorDb({simulate(fit.model, clean.input)}, {clean});
@@ -275,15 +289,21 @@ TEST_CASE("Branches with a long memory are found by iteration")
     CHECK(fit.validationDb < -150.0);
     CHECK((fit.model.filters - truth.filters).norm() < 1e-7 * truth.filters.norm());
     CHECK(fit.model.offset == Approx(0.2).margin(1e-7));
-    const auto alone = fitHammerstein(8000.0, {drawn(16000, 0)}, {}, {.degree = 2, .length = 2100, .regularization = 1e-12});
+    const auto alone = fitHammerstein(8000.0, {drawn(16000, 0)}, {},
+                                      {.degree = 2, .length = 2100, .regularization = 1e-12});
     CHECK((alone.model.filters - truth.filters).norm() < 1e-7 * truth.filters.norm());
 
     // A resonance at 40 Hz at 48 kHz: it rings for a tenth of a second.
     const double rate = 48000.0;
-    const std::vector<Resonance> branches {{40.0, 2.0, 1.0, 0.0, 0.0, rate}, {60.0, 1.0, 0.0, 0.1, 0.0, rate},
-                                           {2000.0, 0.7, 0.05, 0.0, 0.0, rate}};
-    const MultisineOptions options {.sampleRate = rate, .period = 32768, .grid = Grid::full,
-                                    .shape = Shape::pink, .bandLow = 10.0, .bandHigh = 7500.0, .rms = 0.4};
+    const std::vector<Resonance> branches {
+        {40.0, 2.0, 1.0, 0.0, 0.0, rate}, {60.0, 1.0, 0.0, 0.1, 0.0, rate}, {2000.0, 0.7, 0.05, 0.0, 0.0, rate}};
+    const MultisineOptions options {.sampleRate = rate,
+                                    .period = 32768,
+                                    .grid = Grid::full,
+                                    .shape = Shape::pink,
+                                    .bandLow = 10.0,
+                                    .bandHigh = 7500.0,
+                                    .rms = 0.4};
     const auto steady = [&](int realization) {
         const Eigen::VectorXd u = padded(multisine(options, chooseLines(options), realization), 0);
         Eigen::VectorXd y = played(branches, u.replicate(2, 1)).tail(32768);
@@ -302,7 +322,8 @@ TEST_CASE("Branches with a long memory are found by iteration")
 TEST_CASE("Records that no parallel Hammerstein model can be fitted to are refused")
 {
     const Eigen::MatrixXd u = Eigen::VectorXd::LinSpaced(50, -1.0, 1.0);
-    const auto no = [&](Error::Kind kind, const char* what, const std::vector<PnlssRecord>& records, const HammersteinFitOptions& options) {
+    const auto no = [&](Error::Kind kind, const char* what, const std::vector<PnlssRecord>& records,
+                        const HammersteinFitOptions& options) {
         refused(kind, what, [&] { fitHammerstein(1000.0, records, {}, options); });
     };
     no(Error::Kind::usage, "degree", {{u, u, 0, false}}, {.degree = 0});

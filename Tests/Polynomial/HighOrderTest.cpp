@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models of order 20 and degree 3, as a whole loudspeaker asks for: with all monomials they would have 42483 parameters, with few they
-// are fitted.
+// Models of order 20 and degree 3, as a whole loudspeaker asks for: with all monomials they would have 42483
+// parameters, with few they are fitted.
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Linear/Problem.h"
 
@@ -25,9 +25,9 @@ StateSpace tenResonances()
     linear.D = Eigen::MatrixXd::Constant(1, 1, 0.05);
     for (Index i = 0; i < order / 2; ++i) {
         const double angle = 2.0 * std::numbers::pi * 60.0 * std::pow(1.65, static_cast<double>(i)) / linear.sampleRate,
-            radius = 1.0 - 0.12 * angle;
-        linear.A.block(2 * i, 2 * i, 2, 2) << radius * std::cos(angle), radius * std::sin(angle), -radius * std::sin(angle),
-            radius * std::cos(angle);
+                     radius = 1.0 - 0.12 * angle;
+        linear.A.block(2 * i, 2 * i, 2, 2) << radius * std::cos(angle), radius * std::sin(angle),
+            -radius * std::sin(angle), radius * std::cos(angle);
         linear.B(2 * i + 1, 0) = 0.5 * std::sqrt(angle);
         linear.C(0, 2 * i) = i == 0 ? 1.0 : (i % 2 == 0 ? 0.15 : -0.15);
     }
@@ -64,7 +64,7 @@ PnlssRecord periodOf(const Pnlss& truth, Index N, double noiseDb, Normal& normal
     return periodicRecord(u, y, 2560);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A chosen list of monomials is what a model has, and lists that make no model are refused")
 {
@@ -72,7 +72,7 @@ TEST_CASE("A chosen list of monomials is what a model has, and lists that make n
     Exponents chosen = Exponents::Zero(3, order + 1);
     chosen(0, 0) = 3;
     chosen(1, 4) = chosen(1, order) = 1;
-    const auto model = withTerms(linear, chosen);   // the third is an offset
+    const auto model = withTerms(linear, chosen);  // the third is an offset
     REQUIRE(model.isValid());
     CHECK(model.exponents == chosen);
     CHECK(model.free.all());
@@ -138,7 +138,7 @@ TEST_CASE("Order 20, degree 3 without cross products runs to its end and fits", 
     for (const bool everywhere : {false, true}) {
         auto start = truth;
         start.E.setZero();
-        if (!everywhere)   // forces act on velocities
+        if (!everywhere)  // forces act on velocities
             for (Index row = 0; row <= order; ++row)
                 start.free.row(row).setConstant(row % 2 == 1);
         PnlssFitOptions options;
@@ -148,8 +148,9 @@ TEST_CASE("Order 20, degree 3 without cross products runs to its end and fits", 
         const auto fit = fitPnlss(start, {estimation}, {validation}, options);
         CAPTURE(everywhere, fit.iterations, fit.reason, fit.history, fit.estimationDb, fit.validationDb);
         CHECK(relativeErrorDb(start, {validation}) > -20.0);
-        CHECK(fit.history.back() < -59.6);   // the noise is at -60 dB
-        // 420 coefficients are told by 6144 samples; 882 are fitted to the noise as well, and extrapolate to the peaks of another record.
+        CHECK(fit.history.back() < -59.6);  // the noise is at -60 dB
+        // 420 coefficients are told by 6144 samples; 882 are fitted to the noise as well, and extrapolate to the peaks
+        // of another record.
         CHECK(fit.validationDb < (everywhere ? -58.0 : -68.0));
         CHECK(fit.stable);
     }

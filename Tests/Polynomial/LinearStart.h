@@ -7,10 +7,13 @@
 namespace excursion::test {
 
 /// The mean of Y/U over records of one length, on the lines that all inputs excite.
-inline FrequencyData meanResponse(const std::vector<Eigen::VectorXd>& u, const std::vector<Eigen::VectorXd>& y, double rate)
+inline FrequencyData meanResponse(const std::vector<Eigen::VectorXd>& u, const std::vector<Eigen::VectorXd>& y,
+                                  double rate)
 {
     const auto N = u[0].size();
-    const auto spectrum = [N](const Eigen::VectorXd& x) { return fft(std::span<const double>(x.data(), static_cast<std::size_t>(N))); };
+    const auto spectrum = [N](const Eigen::VectorXd& x) {
+        return fft(std::span<const double>(x.data(), static_cast<std::size_t>(N)));
+    };
     std::vector<std::complex<double>> mean(static_cast<std::size_t>(N / 2), 0.0);
     std::vector<bool> excited(mean.size(), true);
     for (std::size_t r = 0; r < u.size(); ++r) {
@@ -40,4 +43,4 @@ inline StateSpace linearStart(const FrequencyData& data, int order, double rate)
     return identify(data, options).model;
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

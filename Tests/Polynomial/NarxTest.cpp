@@ -51,7 +51,7 @@ Eigen::MatrixXd recursion(const Eigen::MatrixXd& u)
     return y;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A NARX model answers as its recursion, and so does the PNLSS model that it is")
 {
@@ -67,9 +67,9 @@ TEST_CASE("A NARX model answers as its recursion, and so does the PNLSS model th
     CHECK(pnlss.linear.order() == 3);
     CHECK(pnlss.terms() == 3);
     CHECK((simulate(pnlss, u) - truth).norm() < 1e-13 * truth.norm());
-    CHECK(isStable(model));   // z^2 - 1.5 z + 0.7: poles of size 0.84
+    CHECK(isStable(model));  // z^2 - 1.5 z + 0.7: poles of size 0.84
     auto wild = model;
-    wild.coefficients[0] = 1.8;   // z^2 - 1.8 z + 0.7: a pole at 1.13
+    wild.coefficients[0] = 1.8;  // z^2 - 1.8 z + 0.7: a pole at 1.13
     CHECK_FALSE(isStable(wild));
     wild.coefficients[4] = 0.5;
     const auto lost = simulate(wild, u);
@@ -93,12 +93,13 @@ TEST_CASE("The derivatives of a NARX simulation are those of finite differences"
 {
     Normal normal(2);
     const auto model = example();
-    const Eigen::VectorXd u = white(600, 0.4, normal);   // more than two blocks
+    const Eigen::VectorXd u = white(600, 0.4, normal);  // more than two blocks
     const NarxRecursion compiled(model);
     Eigen::VectorXd y, up, down;
     REQUIRE(compiled.run(model.coefficients, u, 1e6, y) == 600);
     Eigen::MatrixXd J(600, 7);
-    compiled.differentiate(model.coefficients, u, y, [&](Index first, const Eigen::MatrixXd& d) { J.middleRows(first, d.rows()) = d; });
+    compiled.differentiate(model.coefficients, u, y,
+                           [&](Index first, const Eigen::MatrixXd& d) { J.middleRows(first, d.rows()) = d; });
     for (Index c = 0; c < 7; ++c) {
         Eigen::VectorXd moved = model.coefficients;
         moved[c] += 1e-6;
@@ -118,7 +119,8 @@ TEST_CASE("The terms of a NARX system are found among a hundred, one after the o
         const auto u = white(N, 0.4, normal);
         return PnlssRecord {u, recursion(u), 0, false};
     };
-    const auto fit = fitNarx(1000.0, {record(800), record(500)}, {record(400)}, {.outputLags = 3, .inputLags = 3, .degree = 3});
+    const auto fit = fitNarx(1000.0, {record(800), record(500)}, {record(400)},
+                             {.outputLags = 3, .inputLags = 3, .degree = 3});
     CHECK(fit.validationDb < -200.0);
     CHECK(fit.stable);
     REQUIRE(fit.steps.size() >= 7);
@@ -128,9 +130,9 @@ TEST_CASE("The terms of a NARX system are found among a hundred, one after the o
     for (Index k = 0; k < fit.model.parameters(); ++k) {
         double expected = 0.0;
         const Eigen::RowVectorXi e = fit.model.exponents.row(k);
-        for (Index j = 0; j < truth.parameters(); ++j)   // lags 3 and 2 of more
-            if (e.head(2) == truth.exponents.row(j).head(2) && e[2] == 0 && e[3] == truth.exponents(j, 2) && e.segment(4, 2).isZero()
-                && e[6] == truth.exponents(j, 3)) {
+        for (Index j = 0; j < truth.parameters(); ++j)  // lags 3 and 2 of more
+            if (e.head(2) == truth.exponents.row(j).head(2) && e[2] == 0 && e[3] == truth.exponents(j, 2)
+                && e.segment(4, 2).isZero() && e[6] == truth.exponents(j, 3)) {
                 expected = truth.coefficients[j];
                 ++found;
             }
@@ -169,7 +171,8 @@ TEST_CASE("A NARX fit of the Silverbox is told by its simulation")
     const Silverbox box;
     if (box.input.size() == 0)
         return;
-    const auto fit = fitNarx(box.rate, {box.multisines()}, {box.lastMultisine()}, {.outputLags = 2, .inputLags = 2, .maximumTerms = 20});
+    const auto fit = fitNarx(box.rate, {box.multisines()}, {box.lastMultisine()},
+                             {.outputLags = 2, .inputLags = 2, .maximumTerms = 20});
     const auto arrow = box.arrow();
     const double relative = std::pow(10.0, simulationErrorDb(fit.model, {arrow}) / 20.0);
     const double millivolts = 1e3 * relative * arrow.output.bottomRows(39000).norm() / std::sqrt(39000.0);
@@ -182,7 +185,8 @@ TEST_CASE("Records and options that no NARX model can be fitted to are refused")
 {
     Normal normal(9);
     const auto u = white(50, 1.0, normal);
-    const auto no = [&](Error::Kind kind, const char* what, const std::vector<PnlssRecord>& records, const NarxFitOptions& options) {
+    const auto no = [&](Error::Kind kind, const char* what, const std::vector<PnlssRecord>& records,
+                        const NarxFitOptions& options) {
         refused(kind, what, [&] { fitNarx(1000.0, records, {}, options); });
     };
     no(Error::Kind::usage, "lags", {{u, u, 0, false}}, {.outputLags = -1});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Duffing's and Van der Pol's oscillators (seed 4.1.3), integrated here by Runge and Kutta's rule, as polynomial state-space models.
+// Duffing's and Van der Pol's oscillators (seed 4.1.3), integrated here by Runge and Kutta's rule, as polynomial
+// state-space models.
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Linear/Problem.h"
 #include "Polynomial/RungeKutta.h"
@@ -33,7 +34,9 @@ Flow duffing()
 
 Flow vanDerPol(double epsilon)
 {
-    return [epsilon](const Vector2d& z, double u) { return Vector2d(z[1], u - z[0] + epsilon * (1.0 - z[0] * z[0]) * z[1]); };
+    return [epsilon](const Vector2d& z, double u) {
+        return Vector2d(z[1], u - z[0] + epsilon * (1.0 - z[0] * z[0]) * z[1]);
+    };
 }
 
 /// Positions at the samples of an input; the state goes on.
@@ -64,8 +67,8 @@ Vector2d stepped(const Pnlss& m, const Vector2d& x, double u)
     return m.linear.A * x + m.linear.B * u + m.E * p;
 }
 
-/// Lyapunov's largest exponent, 1/s: the mean growth of a small distance, brought back after every sample. @param next  a sample of any
-/// system
+/// Lyapunov's largest exponent, 1/s: the mean growth of a small distance, brought back after every sample. @param next
+/// a sample of any system
 template <class Next>
 double lyapunov(Next next, Vector2d z, const VectorXd& u, double T, Index transient)
 {
@@ -101,15 +104,16 @@ VectorXd multisineOf(Index N, double T, double low, double high, double rms, Nor
     return u * (rms * std::sqrt(static_cast<double>(N)) / u.norm());
 }
 
-/// A linear start: y(t+1) = a y(t) + b y(t-1) + c u(t) + d u(t-1) by least squares, with all monomials of the states' and input's next
-/// values.
+/// A linear start: y(t+1) = a y(t) + b y(t-1) + c u(t) + d u(t-1) by least squares, with all monomials of the states'
+/// and input's next values.
 Pnlss startOn(const std::vector<PnlssRecord>& records, double T, int degree)
 {
     Eigen::Matrix4d square = Eigen::Matrix4d::Zero();
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const auto& record : records)
         for (Index t = 1; t + 1 < record.output.rows(); ++t) {
-            const Eigen::Vector4d r(record.output(t, 0), record.output(t - 1, 0), record.input(t, 0), record.input(t - 1, 0));
+            const Eigen::Vector4d r(record.output(t, 0), record.output(t - 1, 0), record.input(t, 0),
+                                    record.input(t - 1, 0));
             square += r * r.transpose();
             right += r * record.output(t + 1, 0);
         }
@@ -121,7 +125,7 @@ Pnlss startOn(const std::vector<PnlssRecord>& records, double T, int degree)
     linear.C = Eigen::RowVector2d(1.0, 0.0);
     linear.D = Eigen::MatrixXd::Zero(1, 1);
     auto start = withTerms(linear, degree);
-    start.free.bottomRows(1).setConstant(false);   // the position is a state
+    start.free.bottomRows(1).setConstant(false);  // the position is a state
     return start;
 }
 
@@ -149,7 +153,7 @@ double apart(const VectorXd& a, const VectorXd& b)
     for (std::size_t k = 0; k < x.size(); ++k) {
         const auto below = std::lower_bound(y.begin(), y.end(), x[k]) - y.begin();
         const double here = static_cast<double>(k) / static_cast<double>(x.size()),
-            there = static_cast<double>(below) / static_cast<double>(y.size());
+                     there = static_cast<double>(below) / static_cast<double>(y.size());
         largest = std::max(largest, std::abs(here - there));
     }
     return largest;
@@ -162,7 +166,7 @@ double missed(const VectorXd& truth, const VectorXd& model, Index first, Index l
     return rms((truth - model).segment(first, last - first)) / rms(truth);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Duffing's oscillator at moderate levels is identified far below any measurement, level by level", "[slow]")
 {
@@ -194,10 +198,12 @@ TEST_CASE("Duffing's oscillator at moderate levels is identified far below any m
     }
 }
 
-TEST_CASE("Duffing's oscillator in chaos: the model predicts ten periods and has the oscillator's exponent and amplitudes", "[slow]")
+TEST_CASE(
+    "Duffing's oscillator in chaos: the model predicts ten periods and has the oscillator's exponent and amplitudes",
+    "[slow]")
 {
-    // The seed drives with 100 N and integrates by Euler's rule at 44.1 kHz, whose error is a negative damping as large as the
-    // oscillator's own. The equation itself answers 100 N with a period of its own, and 110 N with chaos.
+    // The seed drives with 100 N and integrates by Euler's rule at 44.1 kHz, whose error is a negative damping as large
+    // as the oscillator's own. The equation itself answers 100 N with a period of its own, and 110 N with chaos.
     const double T = 1.0 / 16000.0, f = 56.0;
     const auto flow = duffing();
     const auto truth = [&](const Vector2d& z, double u) { return advanced(flow, z, u, T, 4); };
@@ -219,7 +225,7 @@ TEST_CASE("Duffing's oscillator in chaos: the model predicts ten periods and has
 
     const auto drive = sine(110.0, f, T, 16000 * 41);
     z = Vector2d(1e-4, 0.0);
-    positions(flow, z, drive.head(16000), T);   // a whole number of periods
+    positions(flow, z, drive.head(16000), T);  // a whole number of periods
     const Vector2d begin = z;
     const VectorXd y = positions(flow, z, drive.tail(16000 * 40), T, 4);
     options.estimateInitialStates = true;
@@ -232,8 +238,8 @@ TEST_CASE("Duffing's oscillator in chaos: the model predicts ten periods and has
     REQUIRE(played.allFinite());
 
     const auto own = lyapunov(truth, begin, drive, T, 16000);
-    const auto found = lyapunov([&](const Vector2d& x, double u) { return stepped(fit.model, x, u); }, fit.initialStates[0], drive, T,
-                                16000);
+    const auto found = lyapunov([&](const Vector2d& x, double u) { return stepped(fit.model, x, u); },
+                                fit.initialStates[0], drive, T, 16000);
     Vector2d beside = begin + Vector2d(1e-6, 0.0);
     const VectorXd again = positions(flow, beside, drive.tail(16000 * 40), T, 4);
     CAPTURE(fit.estimationDb, own, found, missed(y, played, 0, 2857), missed(y, played, 320000, 640000));
@@ -242,8 +248,9 @@ TEST_CASE("Duffing's oscillator in chaos: the model predicts ten periods and has
     CHECK(fit.stable);
     CHECK(own > 15.0);
     CHECK(found == Approx(own).epsilon(0.15));
-    CHECK(missed(y, played, 0, 2857) < 2e-3);           // ten periods, in which a small error grows by e^4
-    CHECK(missed(y, played, 320000, 640000) > 0.1);     // no model keeps up for ever; another run of the oscillator does not either
+    CHECK(missed(y, played, 0, 2857) < 2e-3);  // ten periods, in which a small error grows by e^4
+    // no model keeps up for ever; another run of the oscillator does not either
+    CHECK(missed(y, played, 320000, 640000) > 0.1);
     CHECK(missed(y, again, 320000, 640000) > 0.1);
     CHECK(apart(y.cwiseAbs(), again.cwiseAbs()) < 0.01);
     CHECK(apart(y.cwiseAbs(), played.cwiseAbs()) < 0.01);
@@ -276,7 +283,8 @@ TEST_CASE("Van der Pol's oscillator is identified, and the model says that its l
     }
 }
 
-TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the oscillator's exponent and amplitudes", "[slow]")
+TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the oscillator's exponent and amplitudes",
+          "[slow]")
 {
     // epsilon 5, amplitude 5, w 2.466 (Parlitz and Lauterborn 1987)
     const double T = 0.02, f = 2.466 / (2.0 * pi);
@@ -285,7 +293,8 @@ TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the os
     // The seed's 8.53, 1.2 and 2 pi/10 is at most quasi-periodic.
     const auto seed = vanDerPol(8.53);
     CHECK(std::abs(lyapunov([&](const Vector2d& z, double u) { return advanced(seed, z, u, T, 8); }, Vector2d(1.0, 0.0),
-                            sine(1.2, 0.1, T, 400000), T, 50000)) < 0.02);
+                            sine(1.2, 0.1, T, 400000), T, 50000))
+          < 0.02);
 
     const auto drive = sine(5.0, f, T, 105000);
     Vector2d z(1.0, 0.0);
@@ -303,15 +312,17 @@ TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the os
     const VectorXd played = simulate(fit.model, u, fit.initialStates[0]);
     REQUIRE(played.allFinite());
     const auto own = lyapunov(truth, begin, u, T, 2000);
-    const auto found = lyapunov([&](const Vector2d& x, double v) { return stepped(fit.model, x, v); }, fit.initialStates[0], u, T, 2000);
+    const auto found = lyapunov([&](const Vector2d& x, double v) { return stepped(fit.model, x, v); },
+                                fit.initialStates[0], u, T, 2000);
     Vector2d beside = begin + Vector2d(1e-6, 0.0);
     const VectorXd again = positions(flow, beside, u, T, 4);
-    CAPTURE(fit.estimationDb, own, found, missed(y, played, 0, 500), missed(y, played, 50000, 100000), apart(y, played), apart(y, again));
+    CAPTURE(fit.estimationDb, own, found, missed(y, played, 0, 500), missed(y, played, 50000, 100000), apart(y, played),
+            apart(y, again));
     CHECK(fit.estimationDb < -75.0);
-    CHECK_FALSE(fit.stable);   // at rest it is not: it runs into its cycle
+    CHECK_FALSE(fit.stable);  // at rest it is not: it runs into its cycle
     CHECK(own > 0.05);
     CHECK(found == Approx(own).epsilon(0.15));
-    CHECK(missed(y, played, 0, 500) < 3e-4);   // four periods of the drive
+    CHECK(missed(y, played, 0, 500) < 3e-4);  // four periods of the drive
     CHECK(missed(y, played, 50000, 100000) > 0.3);
     CHECK(apart(y, again) < 0.04);
     CHECK(apart(y, played) < 0.04);

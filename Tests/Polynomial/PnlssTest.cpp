@@ -51,15 +51,15 @@ Eigen::MatrixXd noise(Index N, Index columns)
     return u;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Monomials are graded, then lexicographic, and as many as there are ways")
 {
     Exponents expected(7, 2);
     expected << 2, 0, 1, 1, 0, 2, 3, 0, 2, 1, 1, 2, 0, 3;
     CHECK(monomials(2, 2, 3) == expected);
-    CHECK(monomials(4, 2, 3).rows() == 30);    // (4+3 over 3) - 1 - 4
-    CHECK(monomials(77, 2, 3).rows() == 82160 - 78);   // (80 over 3) - 1 - 77
+    CHECK(monomials(4, 2, 3).rows() == 30);           // (4+3 over 3) - 1 - 4
+    CHECK(monomials(77, 2, 3).rows() == 82160 - 78);  // (80 over 3) - 1 - 77
     refused(Error::Kind::usage, "million", [] { monomials(100, 2, 5); });
     refused(Error::Kind::usage, "ascend", [] { monomials(3, 3, 2); });
 }
@@ -70,7 +70,8 @@ TEST_CASE("Monomials are read from words")
     Exponents expected(5, 4);
     expected << 3, 0, 0, 0, 0, 1, 1, 0, 1, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0;
     CHECK(read == expected);
-    for (const char* bad : {"", "x1,", "x", "x0", "x3", "u3", "y1", "x1^0", "x1^-2", "x1^99", "x1^2x2", "x1**x2", "x1^", "2"}) {
+    for (const char* bad :
+         {"", "x1,", "x", "x0", "x3", "u3", "y1", "x1^0", "x1^-2", "x1^99", "x1^2x2", "x1**x2", "x1^", "2"}) {
         CAPTURE(bad);
         refused(Error::Kind::usage, "cannot be read", [&] { monomialsNamed(bad, 2, 2); });
     }
@@ -78,7 +79,7 @@ TEST_CASE("Monomials are read from words")
 
 TEST_CASE("Masks keep what they say")
 {
-    const auto all = monomials(3, 2, 3);   // x1, x2, u
+    const auto all = monomials(3, 2, 3);  // x1, x2, u
     const auto states = allowed(TermMask::statesOnly, all, 2, 1);
     const auto pure = allowed(TermMask::noCrossProducts, all, 2, 1);
     const auto diagonal = allowed(TermMask::diagonal, all, 2, 1);
@@ -89,7 +90,7 @@ TEST_CASE("Masks keep what they say")
     CHECK(diagonal.row(2).count() == 4);
     CHECK(allowed(TermMask::full, all, 2, 1).all());
     const auto model = withTerms(drawn(2, 1, 1, 2).linear, 3, TermMask::diagonal);
-    CHECK(model.terms() == 4);   // those that no row uses are left out
+    CHECK(model.terms() == 4);  // those that no row uses are left out
     refused(Error::Kind::usage, "at least 2", [&] { withTerms(model.linear, 1); });
 }
 
@@ -100,12 +101,13 @@ TEST_CASE("The compiled recursion simulates as the definition does, and its Jaco
         TermMask mask;
         bool offset;
     };
-    for (const auto& s : {Shape {1, 1, 1, 3, TermMask::full, false}, Shape {2, 1, 1, 3, TermMask::full, true}, Shape {3, 1, 1, 3, TermMask::full, false},
-                          Shape {3, 2, 2, 2, TermMask::statesOnly, false}, Shape {4, 1, 2, 3, TermMask::diagonal, false},
-                          Shape {6, 1, 1, 2, TermMask::noCrossProducts, true}}) {
+    for (const auto& s :
+         {Shape {1, 1, 1, 3, TermMask::full, false}, Shape {2, 1, 1, 3, TermMask::full, true},
+          Shape {3, 1, 1, 3, TermMask::full, false}, Shape {3, 2, 2, 2, TermMask::statesOnly, false},
+          Shape {4, 1, 2, 3, TermMask::diagonal, false}, Shape {6, 1, 1, 2, TermMask::noCrossProducts, true}}) {
         INFO(s.n << " states, " << s.m << " inputs, " << s.p << " outputs, degree " << s.degree);
         const auto model = drawn(s.n, s.m, s.p, s.degree, s.mask, s.offset);
-        const Index N = 601;   // more than one block, and no multiple of four
+        const Index N = 601;  // more than one block, and no multiple of four
         const auto u = noise(N, s.m);
         const Eigen::VectorXd x0 = Eigen::VectorXd::LinSpaced(s.n, -0.2, 0.3);
         const Recursion recursion(model, true);
@@ -158,7 +160,9 @@ TEST_CASE("A guided recursion and its Jacobian follow the measured output")
     CHECK(outputs(10, 0) == Approx(plain(0, 0)));
     CHECK(outputs(10, 0) != Approx(one(1, 0)));
     Eigen::MatrixXd J(300, recursion.parameters() + 3);
-    recursion.differentiate(model, u, states, [&](Index first, std::vector<Eigen::MatrixXd>& d) { J.middleRows(first, d[0].rows()) = d[0]; }, &guide);
+    recursion.differentiate(
+        model, u, states,
+        [&](Index first, std::vector<Eigen::MatrixXd>& d) { J.middleRows(first, d[0].rows()) = d[0]; }, &guide);
     const auto values = recursion.valuesOf(model);
     for (Index c = 0; c < recursion.parameters(); ++c) {
         auto moved = model;
@@ -206,8 +210,8 @@ TEST_CASE("A model that runs away is stopped at its bound")
 
 namespace {
 
-/// The Duffing oscillator of seed 4.10 with its example's figures, by Euler's rule. The cubic term belongs to the displacement, where the
-/// seed's printed state-space form has the velocity.
+/// The Duffing oscillator of seed 4.10 with its example's figures, by Euler's rule. The cubic term belongs to the
+/// displacement, where the seed's printed state-space form has the velocity.
 struct Duffing {
     double Ts, m = 14.35e-3, r = 0.786, k = 1852.0, q2 = 3.33e5;
 
@@ -249,7 +253,7 @@ struct Duffing {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The Duffing oscillator of the seed is such a model")
 {
@@ -258,10 +262,12 @@ TEST_CASE("The Duffing oscillator of the seed is such a model")
     const auto strong = simulate(coarse.model(), u);
     CHECK((strong - coarse.direct(u)).norm() < 1e-9 * strong.norm());
     CHECK(strong.cwiseAbs().maxCoeff() > 1e-3);
-    // At 100 N the stiffened spring is too fast for Euler's rule at 44.1 kHz, which feeds it energy until it runs away: the recursion says so.
+    // At 100 N the stiffened spring is too fast for Euler's rule at 44.1 kHz, which feeds it energy until it runs away:
+    // the recursion says so.
     const auto loud = coarse.drive(100.0, 1.0);
     Eigen::MatrixXd states, outputs;
-    CHECK_FALSE(Recursion(coarse.model(), false).run(coarse.model(), loud, Eigen::Vector2d::Zero(), 1e6, states, outputs));
+    CHECK_FALSE(
+        Recursion(coarse.model(), false).run(coarse.model(), loud, Eigen::Vector2d::Zero(), 1e6, states, outputs));
     // Ten times as fast it is bounded.
     const Duffing fine {1.0 / 441000.0};
     const auto y = simulate(fine.model(), fine.drive(100.0, 0.5));
@@ -289,7 +295,7 @@ Pnlss vanDerPol(double e, double Ts)
     return model;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The Van der Pol oscillator of the seed is such a model, unstable at rest and bounded")
 {
@@ -298,7 +304,7 @@ TEST_CASE("The Van der Pol oscillator of the seed is such a model, unstable at r
     CHECK_FALSE(isStable(model.linear));
     const Index N = static_cast<Index>(120.0 / Ts);
     const auto y = simulate(model, Eigen::MatrixXd::Zero(N, 1), Eigen::Vector2d(1.0, 0.0));
-    CHECK(y.bottomRows(N / 2).cwiseAbs().maxCoeff() == Approx(2.014).margin(0.01));   // near 2 for any e
+    CHECK(y.bottomRows(N / 2).cwiseAbs().maxCoeff() == Approx(2.014).margin(0.01));  // near 2 for any e
     // The period of a relaxation oscillation (Dorodnitsyn 1947)
     std::vector<double> up;
     for (Index t = N / 4; t + 1 < N; ++t)

@@ -15,4 +15,4 @@ State advanced(const Flow& flow, State z, double u, double T, int steps)
     return z;
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

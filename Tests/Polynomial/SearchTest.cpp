@@ -14,7 +14,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Rosenbrock's valley, e = (b (y - x^2), 1 - x), which is the narrower the larger b is; and a place beyond which nothing is finite.
+/// Rosenbrock's valley, e = (b (y - x^2), 1 - x), which is the narrower the larger b is; and a place beyond which
+/// nothing is finite.
 class Valley final : public SearchProblem {
 public:
     Valley(double steepness, bool bends) : b_(steepness), bends_(bends) {}
@@ -53,7 +54,7 @@ private:
     bool bends_;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A search finds the end of a narrow curved valley, and sooner where it knows how the valley bends")
 {

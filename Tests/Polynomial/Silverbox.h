@@ -12,7 +12,7 @@ namespace excursion::test {
 /// The Silverbox benchmark, means removed: input and output in V at 1e7 / 2^14 Hz.
 struct Silverbox {
     static constexpr double rate = 1e7 / 16384;
-    Eigen::VectorXd input, output;   ///< empty, with a visible warning, when the data is not there
+    Eigen::VectorXd input, output;  ///< empty, with a visible warning, when the data is not there
 
     Silverbox()
     {
@@ -47,4 +47,4 @@ struct Silverbox {
     PnlssRecord arrow() const { return record(0, 40000, 1000); }
 };
 
-} // namespace excursion::test
+}  // namespace excursion::test

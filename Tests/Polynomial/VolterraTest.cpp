@@ -19,7 +19,8 @@ constexpr double rate = 1000.0;
 
 Complex z(double f) { return std::polar(1.0, 2.0 * std::numbers::pi * f / rate); }
 
-/// x(t+1) = a x + b u + terms, y = c x + terms of one state and input; coefficients of (x^i u^j) in the state and in the output equation.
+/// x(t+1) = a x + b u + terms, y = c x + terms of one state and input; coefficients of (x^i u^j) in the state and in
+/// the output equation.
 struct Term {
     int i, j;
     double state, output;
@@ -66,7 +67,7 @@ Pnlss drawnResonance(std::uint64_t seed, bool offset)
     return model;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Volterra kernels of one state are those found by hand")
 {
@@ -97,7 +98,8 @@ TEST_CASE("Volterra kernels of one state are those found by hand")
     near(bilinear.response({f1, f2})[0], c * 0.5 * e * (G(f1) + G(f2)) / (z(f1 + f2) - a));
 
     // A constant: x0 = a x0 + k + e x0^2; around it the pole is a + 2 e x0, the second kernel as above.
-    const double k = 0.05, x0 = ((1.0 - a) - std::sqrt((1.0 - a) * (1.0 - a) - 4.0 * e * k)) / (2.0 * e), pole = a + 2.0 * e * x0;
+    const double k = 0.05, x0 = ((1.0 - a) - std::sqrt((1.0 - a) * (1.0 - a) - 4.0 * e * k)) / (2.0 * e),
+                 pole = a + 2.0 * e * x0;
     const Volterra shifted(scalar(a, b, c, {{0, 0, k, 0.0}, {2, 0, e, 0.0}}));
     CHECK(shifted.rest()[0] == Approx(x0).epsilon(1e-12));
     CHECK(shifted.offset()[0] == Approx(c * x0).epsilon(1e-12));
@@ -112,7 +114,7 @@ TEST_CASE("Harmonics and intermodulation of two small tones are what the kernels
     INFO("seed " << seed);
     const auto model = drawnResonance(seed, offset);
     const Volterra kernels(model);
-    const Index N = 1000;   // 1 Hz a line
+    const Index N = 1000;  // 1 Hz a line
     const int a = 37, b = 101;
     const double A = 4e-4, B = 3e-4, phaseA = 0.4, phaseB = -1.1;
     Eigen::MatrixXd u(N, 1);
@@ -140,8 +142,17 @@ TEST_CASE("Harmonics and intermodulation of two small tones are what the kernels
         std::vector<int> lines;
         double permutations;
     };
-    for (const auto& [lines, permutations] : {Case {{a}, 1}, {{b}, 1}, {{a, a}, 1}, {{b, b}, 1}, {{a, b}, 2}, {{b, -a}, 2}, {{a, a, a}, 1},
-                                              {{a, a, b}, 3}, {{b, b, -a}, 3}, {{b, -a, -a}, 3}, {{b, b, b}, 1}}) {
+    for (const auto& [lines, permutations] : {Case {{a}, 1},
+                                              {{b}, 1},
+                                              {{a, a}, 1},
+                                              {{b, b}, 1},
+                                              {{a, b}, 2},
+                                              {{b, -a}, 2},
+                                              {{a, a, a}, 1},
+                                              {{a, a, b}, 3},
+                                              {{b, b, -a}, 3},
+                                              {{b, -a, -a}, 3},
+                                              {{b, b, b}, 1}}) {
         int line = 0;
         for (const int l : lines)
             line += l;
@@ -182,7 +193,7 @@ TEST_CASE("What a truncated series leaves falls with the power of the amplitude 
 TEST_CASE("Kernels in time and in frequency are transforms of one another, and their sum is the series")
 {
     auto model = drawnResonance(8, true);
-    model.linear.A *= 0.6;   // short memory
+    model.linear.A *= 0.6;  // short memory
     const Volterra kernels(model);
     const auto series = volterraSeries(model, 60, 60, 30);
     REQUIRE(series.isValid());
@@ -197,7 +208,8 @@ TEST_CASE("Kernels in time and in frequency are transforms of one another, and t
     for (int i = 0; i < 30; ++i)
         for (int j = 0; j < 30; ++j)
             for (int k = 0; k < 30; ++k)
-                H3 += series.third[static_cast<std::size_t>(i)](j, k) * std::pow(z(f1), -i) * std::pow(z(f2), -j) * std::pow(z(f3), -k);
+                H3 += series.third[static_cast<std::size_t>(i)](j, k) * std::pow(z(f1), -i) * std::pow(z(f2), -j)
+                      * std::pow(z(f3), -k);
     CHECK(std::abs(H1 - kernels.response({f1})[0]) < 1e-9 * std::abs(H1));
     CHECK(std::abs(H2 - kernels.response({f1, f2})[0]) < 1e-9 * std::abs(H2));
     CHECK(std::abs(H3 - kernels.response({f3, f1, f2})[0]) < 1e-5 * std::abs(H3));
@@ -216,7 +228,7 @@ TEST_CASE("Kernels in time and in frequency are transforms of one another, and t
     two.linear.D = model.linear.D.replicate(1, 2);
     two.exponents = Exponents::Zero(model.terms(), 4);
     two.exponents.leftCols(2) = model.exponents.leftCols(2);
-    two.exponents.col(3) = model.exponents.col(2);   // the monomials know the second input only
+    two.exponents.col(3) = model.exponents.col(2);  // the monomials know the second input only
     const Volterra both(two);
     CHECK(both.response({f1, f2}, {1, 1})[0] == kernels.response({f1, f2})[0]);
     const Complex mixed = both.response({f1, f2}, {0, 1})[0];
@@ -229,7 +241,9 @@ TEST_CASE("Models without Volterra kernels are told")
 {
     refused(Error::Kind::data, "not stable", [] { Volterra {scalar(1.01, 1.0, 1.0, {{2, 0, 0.1, 0.0}})}; });
     // x = x/2 + 1 + x^2 has no real solution
-    refused(Error::Kind::numerical, "rests", [] { Volterra {scalar(0.5, 1.0, 1.0, {{0, 0, 1.0, 0.0}, {2, 0, 1.0, 0.0}})}; });
+    refused(Error::Kind::numerical, "rests", [] {
+        Volterra {scalar(0.5, 1.0, 1.0, {{0, 0, 1.0, 0.0}, {2, 0, 1.0, 0.0}})};
+    });
     const auto model = scalar(0.5, 1.0, 1.0, {{2, 0, 0.1, 0.0}});
     const Volterra kernels(model);
     refused(Error::Kind::usage, "orders", [&] { kernels.response({}); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All classes of models side by side on drivers that another program simulates, and what a model without physics is told to have found.
+// All classes of models side by side on drivers that another program simulates, and what a model without physics is
+// told to have found.
 #include "Bench/Draw.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/Identify.h"
@@ -34,10 +35,11 @@ Measurement takeOf(std::uint64_t seed, const char* hidden, const std::vector<Qua
 
 const RankedModel& named(const Ranking& ranking, const std::string& name)
 {
-    return *std::find_if(ranking.models.begin(), ranking.models.end(), [&](const RankedModel& m) { return m.name == name; });
+    return *std::find_if(ranking.models.begin(), ranking.models.end(),
+                         [&](const RankedModel& m) { return m.name == name; });
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Classes of models are ranked by what they leave of records that they have not seen", "[slow]")
 {
@@ -50,12 +52,13 @@ TEST_CASE("Classes of models are ranked by what they leave of records that they 
     for (const auto& model : ranking.models) {
         CAPTURE(model.name, model.trouble, model.description, model.estimationDb, model.validationDb, model.parameters);
         CHECK(model.trouble.empty());
-        CHECK((model.stable || model.name == "narx"));   // whose linear part may be unstable, and is told so
+        CHECK((model.stable || model.name == "narx"));  // whose linear part may be unstable, and is told so
         CHECK(model.load > 0.0);
         CHECK(model.load < 1.0);
         CHECK(model.fitSeconds > 0.0);
     }
-    CHECK(std::is_sorted(ranking.models.begin(), ranking.models.end(), [](const auto& a, const auto& b) { return a.validationDb < b.validationDb; }));
+    CHECK(std::is_sorted(ranking.models.begin(), ranking.models.end(),
+                         [](const auto& a, const auto& b) { return a.validationDb < b.validationDb; }));
     REQUIRE(ranking.noiseDb);
     // Two classes can be right, and are to within the noise; what has no feedback, or no effects, is not.
     CHECK(named(ranking, "driver-with-effects").validationDb < *ranking.noiseDb + 3.0);
@@ -76,7 +79,7 @@ TEST_CASE("A ranking of what cannot be ranked is refused, and a class that does 
     const auto ranking = rank(take, options);
     REQUIRE(ranking.models.size() == 2);
     CHECK(ranking.models.front().name == "linear");
-    CHECK(ranking.models.front().validationDb < *ranking.noiseDb + 3.0);   // nothing is hidden
+    CHECK(ranking.models.front().validationDb < *ranking.noiseDb + 3.0);  // nothing is hidden
     CHECK(ranking.models.back().trouble == "The class is one of a current under a voltage.");
     options.classes = {"oracle"};
     CHECK_THROWS_AS(rank(take, options), Error);
@@ -110,6 +113,8 @@ TEST_CASE("What a polynomial model has found without physics is told as the law 
     CHECK(found.leftDb < found.baseDb - 15.0);
 
     const auto other = takeOf(22, "", {Quantity::voltage, Quantity::displacement});
-    CHECK_THROWS_AS(agreement(other, Quantity::displacement, [](const Eigen::MatrixXd& u) -> Eigen::MatrixXd { return u / 0.0; }), Error);
+    CHECK_THROWS_AS(
+        agreement(other, Quantity::displacement, [](const Eigen::MatrixXd& u) -> Eigen::MatrixXd { return u / 0.0; }),
+        Error);
     CHECK_THROWS_AS(agreement(other, Quantity::pressure, [](const Eigen::MatrixXd& u) { return u; }), Error);
 }

@@ -47,12 +47,13 @@ std::vector<double> burst(double rate, double amplitude)
     std::vector<double> u(8000);
     for (std::size_t t = 0; t < u.size(); ++t) {
         const double s = static_cast<double>(t) / rate, bell = (static_cast<double>(t) - 3500.0) / 800.0;
-        u[t] = amplitude * std::exp(-0.5 * bell * bell) * (std::sin(2.0 * std::numbers::pi * 55.0 * s) + 0.5 * std::sin(2.0 * std::numbers::pi * 240.0 * s));
+        u[t] = amplitude * std::exp(-0.5 * bell * bell)
+               * (std::sin(2.0 * std::numbers::pi * 55.0 * s) + 0.5 * std::sin(2.0 * std::numbers::pi * 240.0 * s));
     }
     return u;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The coefficients of a driver's expansion are those that a person derives")
 {
@@ -67,7 +68,8 @@ TEST_CASE("The coefficients of a driver's expansion are those that a person deri
     const auto linear = linearize(model);
     // The loops of Le(x) follow the current and, without weight, move nothing.
     const auto& A = expanded.form.linear.A;
-    CHECK((A.topLeftCorner<3, 3>() - linear.A.topLeftCorner<3, 3>()).norm() < 1e-5 * linear.A.topLeftCorner<3, 3>().norm());
+    CHECK((A.topLeftCorner<3, 3>() - linear.A.topLeftCorner<3, 3>()).norm()
+          < 1e-5 * linear.A.topLeftCorner<3, 3>().norm());
     CHECK(A.topRightCorner(3, A.cols() - 3).norm() < 1e-9 * linear.A.norm());
     CHECK((expanded.form.linear.B.col(0).head<3>() - linear.B.head<3>()).norm() < 1e-5 * linear.B.norm());
 
@@ -96,30 +98,34 @@ TEST_CASE("The coefficients of a driver's expansion are those that a person deri
     CHECK_THROWS_AS(expand(model, Quantity::current, {.degree = 3, .reach = 2.0}), Error);
 }
 
-TEST_CASE("A driver's expansion moves as the driver does, the closer the less it is driven, with memories and any output", "[slow]")
+TEST_CASE(
+    "A driver's expansion moves as the driver does, the closer the less it is driven, with memories and any output",
+    "[slow]")
 {
     const double rate = 48000.0;
     const auto errorOf = [&](const Model& model, const FractionalPnlss& expanded, Quantity output, double amplitude) {
         const auto u = burst(rate, amplitude);
         const auto driver = simulate(model, u, rate, {1e-7, 64});
         const auto& y = driver.find(output)->samples;
-        const Eigen::Map<const Eigen::VectorXd> truth(y.data(), static_cast<Index>(y.size())), input(u.data(), static_cast<Index>(u.size()));
+        const Eigen::Map<const Eigen::VectorXd> truth(y.data(), static_cast<Index>(y.size())),
+            input(u.data(), static_cast<Index>(u.size()));
         return (simulate(expanded, input, FractionalGrid {rate, 4, {}}) - truth).norm() / truth.norm();
     };
     for (const auto* effect : catalogue()) {
         if (!effect->felt())
-            continue;   // it moves nothing, but the spot that the laser sees
+            continue;  // it moves nothing, but the spot that the laser sees
         CAPTURE(effect->id());
         const auto model = withStrong(midbass(), *effect);
         for (const auto output : {Quantity::current, Quantity::acceleration}) {
             CAPTURE(name(output));
             const auto expanded = expand(model, output);
-            // A resistance that grows like |v| has no Taylor expansion to speak of; over all that is visited the best polynomial is nearer.
+            // A resistance that grows like |v| has no Taylor expansion to speak of; over all that is visited the best
+            // polynomial is nearer.
             if (effect->law() && effect->law()->argument == "v") {
                 const double best = errorOf(model, expand(model, output, {.degree = 3, .reach = 1.0}), output, 10.0);
                 CAPTURE(best);
                 CHECK(best < 0.03);
-                CHECK_FALSE(errorOf(model, expanded, output, 10.0) < 2.0 * best);   // Taylor's runs away
+                CHECK_FALSE(errorOf(model, expanded, output, 10.0) < 2.0 * best);  // Taylor's runs away
                 continue;
             }
             // Nor has a hysteresis, which turns with the sign of v however small the motion.
@@ -148,7 +154,8 @@ TEST_CASE("A discretized expansion comes closer to the continuous one the faster
         const auto u = burst(48000.0, 1.0);
         std::vector<double> held;
         for (const double value : u)
-            held.insert(held.end(), static_cast<std::size_t>(rate / 48000.0), value);   // the input itself stays the same
+            // the input itself stays the same
+            held.insert(held.end(), static_cast<std::size_t>(rate / 48000.0), value);
         const Eigen::Map<const Eigen::VectorXd> input(held.data(), static_cast<Index>(held.size()));
         const auto discrete = discretized(expanded, rate);
         REQUIRE(discrete.isValid());

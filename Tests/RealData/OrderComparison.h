@@ -26,7 +26,8 @@ inline std::vector<std::filesystem::path> measuredDrivers()
             "impedance/SB15NRX2C30-4_SB26STCN-4_Woofer.zma"};
 }
 
-/// Its impedance from 10 Hz to 20 kHz on at most 180 lines that are evenly spread in log f; all lines count by their relative error.
+/// Its impedance from 10 Hz to 20 kHz on at most 180 lines that are evenly spread in log f; all lines count by their
+/// relative error.
 inline FrequencyData measuredImpedance(const std::filesystem::path& file)
 {
     const auto take = std::get<Spectra>(readTake(file));
@@ -42,7 +43,7 @@ inline FrequencyData measuredImpedance(const std::filesystem::path& file)
         next = take.frequency[k] * std::pow(2000.0, 1.0 / 180.0);
     }
     data.value = Eigen::Map<const Eigen::VectorXcd>(value.data(), static_cast<Eigen::Index>(value.size()));
-    data.deviation = 1e-9 * data.value.cwiseAbs();   // no model may think that it has met the noise
+    data.deviation = 1e-9 * data.value.cwiseAbs();  // no model may think that it has met the noise
     return data;
 }
 
@@ -86,11 +87,12 @@ struct OrderFamily {
     }
 };
 
-/// Integer order 1 .. highest, order 1/2 and free order 1 .. highest and 1 .. highestFree, and resonances with R + L s and with R + L
-/// s^alpha.
+/// Integer order 1 .. highest, order 1/2 and free order 1 .. highest and 1 .. highestFree, and resonances with R + L s
+/// and with R + L s^alpha.
 inline std::vector<OrderFamily> compareOrders(const FrequencyData& data, int highest, int highestFree)
 {
-    std::vector<OrderFamily> families {{"integer", {}}, {"half", {}}, {"free", {}}, {"R + L s", {}}, {"R + L s^alpha", {}}};
+    std::vector<OrderFamily> families {
+        {"integer", {}}, {"half", {}}, {"free", {}}, {"R + L s", {}}, {"R + L s^alpha", {}}};
     const auto judge = [&data](const FractionalStateSpace& model) {
         const auto response = respond(model, data.frequency);
         std::size_t k = 0;
@@ -119,10 +121,10 @@ inline std::vector<OrderFamily> compareOrders(const FrequencyData& data, int hig
         if (!free)
             mixed.alpha = 1.0;
         const auto fit = fitMixedImpedance(data, mixed);
-        families[free ? 4 : 3].members.push_back({free ? 6 : 5, meanRelativeDb(data, [&](double f) { return fit.model.at(f); }),
-                                                  fit.model.alpha, true});
+        families[free ? 4 : 3].members.push_back(
+            {free ? 6 : 5, meanRelativeDb(data, [&](double f) { return fit.model.at(f); }), fit.model.alpha, true});
     }
     return families;
 }
 
-} // namespace excursion::test
+}  // namespace excursion::test

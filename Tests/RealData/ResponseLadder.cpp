@@ -50,7 +50,8 @@ void checkExponent(const Model& model, double others)
     CHECK(std::abs(figures[1].value - others) < 2.0 * figures[1].standardError);
 }
 
-/// rms of |Z - Z_measured|/|Z_measured| at every measured frequency below `highest`, counted again without the engine's grid.
+/// rms of |Z - Z_measured|/|Z_measured| at every measured frequency below `highest`, counted again without the engine's
+/// grid.
 double plainError(const Model& model, const Spectra& take, double highest)
 {
     const auto &u = take.find(Quantity::voltage)->values, &i = take.find(Quantity::current)->values;
@@ -65,7 +66,7 @@ double plainError(const Model& model, const Spectra& take, double highest)
     return 100.0 * std::sqrt(sum / octaves);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow]")
 {
@@ -108,7 +109,7 @@ TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its 
         CHECK(percent(ladder.rungs[0]) == Approx(21.0).margin(3.0));
         CHECK(percent(ladder.rungs[1]) <= 2.8);
         CHECK(plainError(ladder.rungs[1].model, std::get<Spectra>(take), 20001.0) <= 2.8);
-        CHECK(percent(ladder.rungs.back()) <= 1.2);   // with creep and the modes of the cone, which follow
+        CHECK(percent(ladder.rungs.back()) <= 1.2);  // with creep and the modes of the cone, which follow
         CHECK_FALSE(ladder.model().has("vented-box"));
         const auto& model = ladder.rungs[1].model;
         checkParameters(model);
@@ -132,17 +133,19 @@ TEST_CASE("A designer's impedance files end in a sane verdict", "[slow]")
     struct Expected {
         const char* file;
         bool onePeak;
-        double left, last;   // percent, with eddy currents and in the end
+        double left, last;  // percent, with eddy currents and in the end
     };
-    // The last has three humps, an octave between the dips, as two chambers with a port each make them: the heavier port is the box, the lighter one a
-    // side resonance. The curve itself is so rough that a state-space model of order 12 leaves 3.3 % of it.
+    // The last has three humps, an octave between the dips, as two chambers with a port each make them: the heavier
+    // port is the box, the lighter one a side resonance. The curve itself is so rough that a state-space model of order
+    // 12 leaves 3.3 % of it.
     for (const auto& [file, onePeak, left, last] :
          {Expected {"Morel_CAW938_caw938.zma", true, 1.95, 1.3}, Expected {"Morel_CAW938_sb26adc.zma", true, 0.95, 0.3},
-          Expected {"Sealed_SIG120_DX25TG59_Woofer.zma", true, 1.9, 1.9}, Expected {"SB15NRX2C30-4_SB26STCN-4_Woofer.zma", false, 100.0, 4.3}}) {
+          Expected {"Sealed_SIG120_DX25TG59_Woofer.zma", true, 1.9, 1.9},
+          Expected {"SB15NRX2C30-4_SB26STCN-4_Woofer.zma", false, 100.0, 4.3}}) {
         INFO(file);
         const auto ladder = improve(readTake(folder / file));
         REQUIRE_FALSE(ladder.rungs.empty());
-        CHECK(ladder.verdict == Verdict::unknownEffect);   // the noise is not known, so it never says complete
+        CHECK(ladder.verdict == Verdict::unknownEffect);  // the noise is not known, so it never says complete
         CHECK_THAT(ladder.sentence, Catch::Contains("The moving mass is held at"));
         for (const auto& rung : ladder.rungs)
             checkParameters(rung.model);
@@ -163,13 +166,14 @@ TEST_CASE("Woofers in vented boxes are told from tweeters, mids and closed boxes
         return;
     struct Expected {
         const char* file;
-        double tuning, left;   // Hz, percent; no tuning where there is no port
+        double tuning, left;  // Hz, percent; no tuning where there is no port
     };
-    for (const auto& [file, tuning, left] : {Expected {"Dayton_DC160-8_and_Vifa_DX25TG59-04_Woofer.zma", 44.0, 1.0},
-                                             Expected {"Morel_638_378_bigger_Woofer.zma", 31.9, 2.3},
-                                             Expected {"SB12PFCR25-4_and_SB21RDCN-4_woofer.zma", 48.8, 2.5},
-                                             Expected {"SB12PFCR25-4_and_SB21RDCN-4_tweeter.zma", 0.0, 0.4},
-                                             Expected {"Morel_638_378_bigger_Tweeter.zma", 0.0, 1.5}, Expected {"koan-3way_mid.zma", 0.0, 1.9}}) {
+    for (const auto& [file, tuning, left] :
+         {Expected {"Dayton_DC160-8_and_Vifa_DX25TG59-04_Woofer.zma", 44.0, 1.0},
+          Expected {"Morel_638_378_bigger_Woofer.zma", 31.9, 2.3},
+          Expected {"SB12PFCR25-4_and_SB21RDCN-4_woofer.zma", 48.8, 2.5},
+          Expected {"SB12PFCR25-4_and_SB21RDCN-4_tweeter.zma", 0.0, 0.4},
+          Expected {"Morel_638_378_bigger_Tweeter.zma", 0.0, 1.5}, Expected {"koan-3way_mid.zma", 0.0, 1.9}}) {
         INFO(file);
         const auto ladder = improve(readTake(folder / file));
         const auto* box = ladder.model().find("vented-box");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Silverbox, an electronic Duffing oscillator (Wigren and Schoukens 2013): the ladder sees the multisines only and is then
-// asked about the arrow, noise that grows to 1.3 times what the multisines reached.
+// The Silverbox, an electronic Duffing oscillator (Wigren and Schoukens 2013): the ladder sees the multisines only and
+// is then asked about the arrow, noise that grows to 1.3 times what the multisines reached.
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Driver/Simulate.h"
@@ -16,8 +16,9 @@ using namespace excursion::test;
 
 namespace {
 
-constexpr std::size_t arrowEnd = 40500, multisineEnd = 127400;   // the input is silent at both
-constexpr std::size_t initialWindow = 50;                        // of the benchmark: may tell the state at the start, is not scored
+constexpr std::size_t arrowEnd = 40500, multisineEnd = 127400;  // the input is silent at both
+// of the benchmark: may tell the state at the start, is not scored
+constexpr std::size_t initialWindow = 50;
 
 ImportOptions silverbox()
 {
@@ -35,8 +36,8 @@ std::vector<double> run(const Model& model, std::span<const double> input, doubl
     return trajectory.displacement;
 }
 
-/// What is left of the arrow, V rms. At its start the circuit still rings a little; while the signal is that small it is linear, so the
-/// ringing is that of an undriven oscillator whose two constants the first samples tell.
+/// What is left of the arrow, V rms. At its start the circuit still rings a little; while the signal is that small it
+/// is linear, so the ringing is that of an undriven oscillator whose two constants the first samples tell.
 double arrowError(const Model& model, const Measurement& all)
 {
     const auto &u = all.find(Quantity::force)->samples, &y = all.find(Quantity::displacement)->samples;
@@ -60,7 +61,7 @@ double arrowError(const Model& model, const Measurement& all)
     return std::sqrt(sum / static_cast<double>(arrowEnd - initialWindow));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The ladder climbs the Silverbox and extrapolates to the arrow", "[slow]")
 {
@@ -79,7 +80,7 @@ TEST_CASE("The ladder climbs the Silverbox and extrapolates to the arrow", "[slo
     for (const auto& rung : ladder.rungs)
         millivolts.push_back(1e3 * arrowError(rung.model, all));
     CAPTURE(millivolts);
-    CHECK(millivolts[0] == Approx(14.4).margin(0.5));   // a linear model
+    CHECK(millivolts[0] == Approx(14.4).margin(0.5));  // a linear model
     CHECK(millivolts[1] <= 0.45);
     CHECK(millivolts.back() <= 0.35);
     // A model without a coil can be kept and read again.

@@ -36,15 +36,16 @@ StateSpace resonance(double f0, double z, double sampleRate = 0.0)
     return model;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("Poles stand at their frequency and angle, in continuous and in discrete time, above the border exactly when they are stable")
+TEST_CASE("Poles stand at their frequency and angle, in continuous and in discrete time, above the border exactly when "
+          "they are stable")
 {
     for (const double rate : {0.0, 48000.0}) {
         const auto plot = rootsPlot(resonance(80.0, 0.25, rate));
         CAPTURE(rate);
         REQUIRE(plot.series[0].title == "poles");
-        REQUIRE(plot.series[0].x.size() == 2);   // one of the pair, and the gap
+        REQUIRE(plot.series[0].x.size() == 2);  // one of the pair, and the gap
         CHECK(plot.series[0].x[0] == Approx(80.0).epsilon(1e-9));
         CHECK(plot.series[0].y[0] == Approx(180.0 - std::acos(0.25) * 180.0 / pi).epsilon(1e-9));
     }
@@ -72,13 +73,15 @@ TEST_CASE("Poles stand at their frequency and angle, in continuous and in discre
 
 TEST_CASE("The first cut of the gain surface is the frequency response, and on the ray of a pole the gain has no bound")
 {
-    const auto model = resonance(80.0, std::cos(pi / 4.0));   // its poles lie on the ray of 135 degrees
+    const auto model = resonance(80.0, std::cos(pi / 4.0));  // its poles lie on the ray of 135 degrees
     const auto plot = gainSurfacePlot(model);
     REQUIRE(plot.series.size() == 4);
     const auto response = respond(model, plot.series[0].x);
     for (std::size_t k = 0; k < response.size(); ++k)
         CHECK(plot.series[0].y[k] == Approx(20.0 * std::log10(std::abs(response[k](0, 0)))).margin(1e-6));
-    const auto largest = [&](std::size_t ray) { return *std::max_element(plot.series[ray].y.begin(), plot.series[ray].y.end()); };
+    const auto largest = [&](std::size_t ray) {
+        return *std::max_element(plot.series[ray].y.begin(), plot.series[ray].y.end());
+    };
     CHECK(largest(0) < 1.0);
     CHECK(largest(2) > 25.0);
     const auto sampled = gainSurfacePlot(resonance(80.0, 0.25, 8000.0));
@@ -88,22 +91,49 @@ TEST_CASE("The first cut of the gain surface is the frequency response, and on t
 TEST_CASE("Every document that has a page makes one, and others are refused by what they are")
 {
     const auto page = [](const nlohmann::json& document) { return documentHtml(JsonField(document, "", "test.json")); };
-    const auto linear = nlohmann::json(toJson(NamedStateSpace {"driver", {"voltage"}, {"current"}, resonance(80.0, 0.25), 0.0}));
-    const auto fractional = nlohmann::json(toJson(NamedFractionalStateSpace {"coil", {"current"}, {"voltage"}, {0.5, resonance(80.0, 0.25)}}));
-    nlohmann::json entry {{"order", 2}, {"errorDb", -20.0}, {"weightedErrorDb", -22.0}, {"validationDb", nullptr}, {"stable", true}};
-    nlohmann::json sweep {{"format", "excursion-identification"}, {"version", 1}, {"sentence", "order 2 <it> is"}, {"chosen", 2}, {"model", linear}};
+    const auto linear = nlohmann::json(
+        toJson(NamedStateSpace {"driver", {"voltage"}, {"current"}, resonance(80.0, 0.25), 0.0}));
+    const auto fractional = nlohmann::json(
+        toJson(NamedFractionalStateSpace {"coil", {"current"}, {"voltage"}, {0.5, resonance(80.0, 0.25)}}));
+    nlohmann::json entry {
+        {"order", 2}, {"errorDb", -20.0}, {"weightedErrorDb", -22.0}, {"validationDb", nullptr}, {"stable", true}};
+    nlohmann::json sweep {{"format", "excursion-identification"},
+                          {"version", 1},
+                          {"sentence", "order 2 <it> is"},
+                          {"chosen", 2},
+                          {"model", linear}};
     sweep["orders"] = {entry, entry};
     auto other = sweep;
     other["format"] = "excursion-fractional-identification";
     other["model"] = fractional;
     other["orders"][0]["curve"] = {{0.4, 30.0}, {0.5, 10.0}, {0.6, 20.0}};
-    const nlohmann::json fit {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"estimationDb", -40.0}, {"validationDb", nullptr}, {"stable", true},
-                              {"stopped", "the error no longer falls"}, {"history", {-20.0, -35.0, -40.0}}, {"model", {{"format", "excursion-pnlss"}, {"linear", linear}}}};
-    const nlohmann::json good {{"class", "linear"}, {"description", "order 3"}, {"parameters", 7}, {"estimationDb", -30.0}, {"validationDb", -29.0}, {"load", 0.001}, {"stable", true}};
-    const nlohmann::json ranking {{"format", "excursion-ranking"}, {"version", 1}, {"sentence", "s"}, {"input", "voltage"}, {"output", "current"}, {"noiseDb", -70.0},
+    const nlohmann::json fit {{"format", "excursion-pnlss-fit"},
+                              {"version", 1},
+                              {"estimationDb", -40.0},
+                              {"validationDb", nullptr},
+                              {"stable", true},
+                              {"stopped", "the error no longer falls"},
+                              {"history", {-20.0, -35.0, -40.0}},
+                              {"model", {{"format", "excursion-pnlss"}, {"linear", linear}}}};
+    const nlohmann::json good {{"class", "linear"},     {"description", "order 3"}, {"parameters", 7},
+                               {"estimationDb", -30.0}, {"validationDb", -29.0},    {"load", 0.001},
+                               {"stable", true}};
+    const nlohmann::json ranking {{"format", "excursion-ranking"},
+                                  {"version", 1},
+                                  {"sentence", "s"},
+                                  {"input", "voltage"},
+                                  {"output", "current"},
+                                  {"noiseDb", -70.0},
                                   {"models", {good, {{"class", "narx"}, {"trouble", "ran & away"}}}}};
-    const nlohmann::json halves {{"format", "excursion-motor-cone"}, {"version", 1}, {"sentence", "told <it> all"}, {"motorErrorDb", -50.0}, {"coneErrorDb", -40.0},
-                                 {"errorDb", -39.0}, {"stable", true}, {"motor", linear}, {"cone", linear}};
+    const nlohmann::json halves {{"format", "excursion-motor-cone"},
+                                 {"version", 1},
+                                 {"sentence", "told <it> all"},
+                                 {"motorErrorDb", -50.0},
+                                 {"coneErrorDb", -40.0},
+                                 {"errorDb", -39.0},
+                                 {"stable", true},
+                                 {"motor", linear},
+                                 {"cone", linear}};
     try {
         for (const auto& document : {linear, fractional, sweep, other, fit, ranking, halves}) {
             CAPTURE(document.at("format").get<std::string>());

@@ -38,7 +38,7 @@ std::size_t count(const std::string& text, const std::string& what)
     return n;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("The report is one page that needs nothing else", "[report]")
 {
@@ -52,8 +52,8 @@ TEST_CASE("The report is one page that needs nothing else", "[report]")
     for (const auto* outside : {"<script", "<link", "src=", "url(", "href=\"http", "@import"})
         CHECK(html.find(outside) == std::string::npos);
     CHECK(html.find("&lt;script&gt;alert(1)") != std::string::npos);
-    CHECK(html.find("rgb(") == std::string::npos);   // every colour is the page's
-    CHECK_FALSE(std::regex_search(html, std::regex("\\bnan\\b")));   // a word: resonances are no numbers
+    CHECK(html.find("rgb(") == std::string::npos);                  // every colour is the page's
+    CHECK_FALSE(std::regex_search(html, std::regex("\\bnan\\b")));  // a word: resonances are no numbers
     for (const auto& rung : file.ladder.rungs)
         if (!rung.added.empty())
             CHECK(html.find(escapeHtml(effectTitle(rung.added))) != std::string::npos);
@@ -83,8 +83,9 @@ TEST_CASE("Empty and unusual data is drawn without complaint", "[report]")
     odd.x = {"it's 'quoted'\n\\ {x}_2 `date`", "Hz", true, 0.0, 0.0, {}};
     odd.y = {"y", "", true, 0.0, 0.0, {}};
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    odd.series = {{"'", Role::measured, {0.0, 1.0, 2.0, nan, 4.0}, {1.0, -1.0, 3.0, 4.0, 5.0}, {}, {}, Series::Shape::line, 0},
-                  {"void", Role::error, {nan}, {nan}, {}, {}, Series::Shape::line, 0}};
+    odd.series = {
+        {"'", Role::measured, {0.0, 1.0, 2.0, nan, 4.0}, {1.0, -1.0, 3.0, 4.0, 5.0}, {}, {}, Series::Shape::line, 0},
+        {"void", Role::error, {nan}, {nan}, {}, {}, Series::Shape::line, 0}};
     const auto pictures = draw({empty, odd});
     REQUIRE(pictures.size() == 2);
     CHECK(pictures[1].find("`date`") != std::string::npos);
@@ -96,7 +97,9 @@ TEST_CASE("Numbers are written as an engineer does", "[report]")
     CHECK(engineering(2.66e-4, "H", 3) == "266\u202f\u00b5H");
     CHECK(engineering(0.0132, "m^2", 3) == "132\u202fcm\u00b2");
     CHECK(engineering(1852.0, "N/m") == "1852\u202fN/m");
-    CHECK(engineering(-3.3, "ohm", 2) == "\u2212" "3.3\u202f\u03a9");
+    CHECK(engineering(-3.3, "ohm", 2)
+          == "\u2212"
+             "3.3\u202f\u03a9");
     CHECK(engineering(0.74, "1", 2) == "0.74");
     CHECK(engineering(std::numeric_limits<double>::quiet_NaN(), "V") == "unknown");
     CHECK(engineering(0.9999, "m", 2) == "1.0\u202fm");
@@ -106,6 +109,8 @@ TEST_CASE("Numbers are written as an engineer does", "[report]")
     CHECK(nominal(100.0, "V") == "100\u202fV");
     CHECK(withError(0.01435, 3.1e-5, "kg") == "14.350 \u00b1 0.031\u202fg");
     CHECK(withError(0.01435, std::numeric_limits<double>::quiet_NaN(), "kg") == "14.35\u202fg");
-    CHECK(decibels(-61.04) == "\u2212" "61.0\u202fdB");
+    CHECK(decibels(-61.04)
+          == "\u2212"
+             "61.0\u202fdB");
     CHECK(fixedText(-0.01, 1) == "0.0");
 }

@@ -22,7 +22,7 @@ std::vector<double> period(int N = 4096)
     return multisine(o, chooseLines(o), 0);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A delayed cosine is the cosine later, by any real number of samples")
 {
@@ -78,7 +78,7 @@ TEST_CASE("The delay of an aperiodic record is found from averaged segments")
     std::vector<double> u(100000);
     for (auto& value : u)
         value = white(random);
-    const auto y = delayed(u, 12.4);   // wraps around only at the ends
+    const auto y = delayed(u, 12.4);  // wraps around only at the ends
     const auto found = estimateDelay(u, y);
     CHECK(found.samples == Approx(12.4).margin(0.01));
 }

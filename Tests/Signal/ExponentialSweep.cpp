@@ -42,15 +42,17 @@ TEST_CASE("Each harmonic of a synchronized sweep is the sweep itself, earlier")
 TEST_CASE("The spectrum of a sweep is what quadrature of a sweep with far ends gives")
 {
     // The window opens and closes over decades of frequency: its ripple is far below what is compared.
-    const ExponentialSweep sweep({.sampleRate = 48000.0, .bandLow = 10.0, .bandHigh = 4000.0, .seconds = 2.0, .peak = 1.7});
+    const ExponentialSweep sweep(
+        {.sampleRate = 48000.0, .bandLow = 10.0, .bandHigh = 4000.0, .seconds = 2.0, .peak = 1.7});
     const double L = sweep.rate(), pi = std::numbers::pi;
     for (const double f : {60.0, 231.7, 700.0}) {
-        const double from = L * std::log(0.1), to = L * std::log(400.0), dt = 1e-6 * 20;   // 1 Hz .. 4 kHz
+        const double from = L * std::log(0.1), to = L * std::log(400.0), dt = 1e-6 * 20;  // 1 Hz .. 4 kHz
         std::complex<double> sum;
         for (double t = from; t < to; t += dt) {
             const double position = (t - from) / (to - from);
-            const double window = position < 0.3 ? 0.5 - 0.5 * std::cos(pi * position / 0.3)
-                                : position > 0.85 ? 0.5 - 0.5 * std::cos(pi * (1 - position) / 0.15) : 1.0;
+            const double window = position < 0.3    ? 0.5 - 0.5 * std::cos(pi * position / 0.3)
+                                  : position > 0.85 ? 0.5 - 0.5 * std::cos(pi * (1 - position) / 0.15)
+                                                    : 1.0;
             sum += window * 1.7 * std::sin(2 * pi * 10.0 * L * std::exp(t / L)) * std::polar(dt, -2 * pi * f * t);
         }
         CHECK(std::abs(sum - sweep.spectrum(f)) < 1e-5 * std::abs(sum));

@@ -33,11 +33,12 @@ double rms(const std::vector<double>& x)
     return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size()));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("A multisine has its rms, no mean, its lines and nothing else")
 {
-    const auto grid = GENERATE(Grid::full, Grid::odd, Grid::oddOdd, Grid::oddRandom, Grid::R10, Grid::R20, Grid::R40, Grid::R80);
+    const auto grid = GENERATE(Grid::full, Grid::odd, Grid::oddOdd, Grid::oddRandom, Grid::R10, Grid::R20, Grid::R40,
+                               Grid::R80);
     const auto shape = GENERATE(Shape::white, Shape::pink, Shape::red);
     const auto o = options(grid, shape);
     const auto lines = chooseLines(o);
@@ -51,7 +52,8 @@ TEST_CASE("A multisine has its rms, no mean, its lines and nothing else")
     double worstLine = 0, worstSilence = 0;
     for (std::size_t k = 0; k < U.size(); ++k)
         if (std::binary_search(lines.begin(), lines.end(), static_cast<int>(k)))
-            worstLine = std::max(worstLine, std::abs(std::abs(U[k]) / reference * std::pow(double(k) / lines.front(), exponent) - 1));
+            worstLine = std::max(
+                worstLine, std::abs(std::abs(U[k]) / reference * std::pow(double(k) / lines.front(), exponent) - 1));
         else
             worstSilence = std::max(worstSilence, std::abs(U[k]) / reference);
     CHECK(worstLine < 1e-10);
@@ -67,7 +69,7 @@ TEST_CASE("Each grid has the lines that its name says")
         CHECK(k % 2 == 1);
     for (const int k : chooseLines(options(Grid::oddOdd)))
         CHECK(k % 4 == 1);
-    CHECK(chooseLines(options(Grid::full)).size() == 1024 - 3 + 1);   // lines 3 (35 Hz) to 1024 (12 kHz)
+    CHECK(chooseLines(options(Grid::full)).size() == 1024 - 3 + 1);  // lines 3 (35 Hz) to 1024 (12 kHz)
 
     auto o = options(Grid::R10);
     o.bandLow = 0;
@@ -88,7 +90,7 @@ TEST_CASE("An odd-random grid leaves out one line of each group, the same in all
               == 1);
     const auto silent = oddDetectionLines(lines);
     CHECK(silent.size() + lines.size() <= odd.size());
-    CHECK(silent.size() + lines.size() >= odd.size() - 2);   // a group may miss its outer line
+    CHECK(silent.size() + lines.size() >= odd.size() - 2);  // a group may miss its outer line
 
     auto other = o;
     other.seed = 43;
@@ -151,8 +153,9 @@ TEST_CASE("An excitation plan plays levels, realizations and periods in order")
     auto quiet = at(0, 2, 1);
     for (auto& x : quiet)
         x *= 4;
-    CHECK(quiet == at(1, 2, 0));   // a factor of four is exact
-    const double peak = std::abs(*std::max_element(u.begin(), u.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    CHECK(quiet == at(1, 2, 0));  // a factor of four is exact
+    const double peak = std::abs(
+        *std::max_element(u.begin(), u.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
     CHECK(plan.channels[0].fullScale >= peak);
     CHECK(plan.channels[0].fullScale < 2 * peak);
 

@@ -12,7 +12,7 @@ using namespace excursion;
 TEST_CASE("Upsampling a sine gives the sine between the samples, without delay")
 {
     const int factor = GENERATE(2, 3, 4, 8);
-    const double cycles = GENERATE(0.001, 0.1234567, 0.4);   // a sample
+    const double cycles = GENERATE(0.001, 0.1234567, 0.4);  // a sample
     const auto sine = [&](double n) { return std::sin(2 * std::numbers::pi * cycles * n + 0.3); };
     std::vector<double> x(6000);
     for (std::size_t n = 0; n < x.size(); ++n)

@@ -52,7 +52,8 @@ double overNoise(const Comparison& comparison)
 {
     double worst = -std::numeric_limits<double>::infinity();
     for (const auto& channel : comparison.channels)
-        worst = std::max(worst, channel.total.db - channel.total.noiseFloorDb.value_or(std::numeric_limits<double>::infinity()));
+        worst = std::max(worst, channel.total.db
+                                    - channel.total.noiseFloorDb.value_or(std::numeric_limits<double>::infinity()));
     return worst;
 }
 
@@ -82,8 +83,8 @@ double power(const std::vector<double>& samples)
 }
 
 /// What is missing without one effect of several, in the channel that shows it best, over the noise.
-double shownBy(const std::string& effect, const bench::Draw& drawn, const std::map<Quantity, std::vector<double>>& whole, std::uint64_t seed,
-               bench::DrawOptions options)
+double shownBy(const std::string& effect, const bench::Draw& drawn,
+               const std::map<Quantity, std::vector<double>>& whole, std::uint64_t seed, bench::DrawOptions options)
 {
     std::erase_if(*options.hidden, [&](const bench::HiddenEffect& h) { return h.id == effect; });
     const auto without = played(bench::draw(seed, options).speaker, drawn.setup);
@@ -141,7 +142,7 @@ void improveAndJudge(Outcome& outcome)
     outcome.laws = coverage(ladder.model(), drawn.speaker, outcome);
 }
 
-} // namespace
+}  // namespace
 
 bool Outcome::nothingAdded() const
 {
@@ -180,4 +181,4 @@ Outcome run(const Case& what)
     return outcome;
 }
 
-} // namespace excursion::study
+}  // namespace excursion::study

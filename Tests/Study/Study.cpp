@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How often is the diagnosis right? Random loudspeakers with one hidden effect or several, and controls with none, are measured on the virtual
-// bench, improved, and compared with the truth.
+// How often is the diagnosis right? Random loudspeakers with one hidden effect or several, and controls with none, are
+// measured on the virtual bench, improved, and compared with the truth.
 #include "Study/Summary.h"
 
 #include "Bench/Draw.h"
@@ -25,7 +25,8 @@ struct Several {
 };
 
 /// A take that hides one effect gets them in turn, one that hides more draws them from its seed.
-std::vector<std::string> hiddenIn(std::uint64_t seed, std::size_t turn, std::vector<std::string> effects, const Several& several)
+std::vector<std::string> hiddenIn(std::uint64_t seed, std::size_t turn, std::vector<std::string> effects,
+                                  const Several& several)
 {
     if (several.most <= 1)
         return {effects[turn % effects.size()]};
@@ -41,18 +42,21 @@ std::vector<std::string> hiddenIn(std::uint64_t seed, std::size_t turn, std::vec
 }
 
 /// The controls follow with seeds of their own.
-std::vector<Case> cases(const std::vector<std::string>& effects, const Several& several, int takes, int controls, std::uint64_t firstSeed, double seconds,
-                        unsigned threads)
+std::vector<Case> cases(const std::vector<std::string>& effects, const Several& several, int takes, int controls,
+                        std::uint64_t firstSeed, double seconds, unsigned threads)
 {
     std::vector<Case> result;
     for (int n = 0; n < takes + controls; ++n) {
         const auto seed = firstSeed + static_cast<std::uint64_t>(n);
-        result.push_back({seed, n < takes ? hiddenIn(seed, static_cast<std::size_t>(n), effects, several) : std::vector<std::string> {}, seconds, threads});
+        result.push_back(
+            {seed,
+             n < takes ? hiddenIn(seed, static_cast<std::size_t>(n), effects, several) : std::vector<std::string> {},
+             seconds, threads});
     }
     return result;
 }
 
-} // namespace
+}  // namespace
 
 int main(int argc, char** argv)
 {
@@ -62,18 +66,30 @@ int main(int argc, char** argv)
     Several several;
     std::string json, demand;
     std::vector<std::string> hide = bench::drawnEffects();
-    CLI::App app {"Draws random takes of virtual loudspeakers with one hidden effect or several (and controls with none), improves each, and "
+    CLI::App app {"Draws random takes of virtual loudspeakers with one hidden effect or several (and controls with "
+                  "none), improves each, and "
                   "says how often the diagnosis was right."};
     app.add_option("--takes", takes, "with a hidden effect")->check(CLI::NonNegativeNumber)->capture_default_str();
     app.add_option("--controls", controls, "without one")->check(CLI::NonNegativeNumber)->capture_default_str();
-    app.add_option("--hide", hide, "the effects that take turns")->delimiter(',')->check(CLI::IsMember(bench::effectIds()))->capture_default_str();
-    app.add_option("--fewest", several.fewest, "effects that a take hides at once")->check(CLI::Range(1, 13))->capture_default_str();
-    app.add_option("--most", several.most, "effects that a take hides at once; with more than one they are drawn")->check(CLI::Range(1, 13))->capture_default_str();
+    app.add_option("--hide", hide, "the effects that take turns")
+        ->delimiter(',')
+        ->check(CLI::IsMember(bench::effectIds()))
+        ->capture_default_str();
+    app.add_option("--fewest", several.fewest, "effects that a take hides at once")
+        ->check(CLI::Range(1, 13))
+        ->capture_default_str();
+    app.add_option("--most", several.most, "effects that a take hides at once; with more than one they are drawn")
+        ->check(CLI::Range(1, 13))
+        ->capture_default_str();
     app.add_option("--first-seed", firstSeed, "of the first take; the others follow")->capture_default_str();
     app.add_option("--seconds", seconds, "about, of each take")->check(CLI::Range(0.5, 120.0))->capture_default_str();
-    app.add_option("--jobs", jobs, "takes at once; with more than one, each fit has one thread")->check(CLI::Range(1, 64))->capture_default_str();
+    app.add_option("--jobs", jobs, "takes at once; with more than one, each fit has one thread")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
     app.add_option("--json", json, "file for all results, kept up to date while the study runs");
-    app.add_option("--demand", demand, "exit with 1 unless the shares reach their targets: of the diagnosis, or all, the bands of the laws too")
+    app.add_option(
+           "--demand", demand,
+           "exit with 1 unless the shares reach their targets: of the diagnosis, or all, the bands of the laws too")
         ->check(CLI::IsMember({"diagnosis", "all"}));
     CLI11_PARSE(app, argc, argv);
     several.most = std::max(several.most, several.fewest);
@@ -96,7 +112,8 @@ int main(int argc, char** argv)
             std::printf("%s\n", line(outcome).c_str());
             std::fflush(stdout);
             outcomes.push_back(std::move(outcome));
-            std::sort(outcomes.begin(), outcomes.end(), [](const Outcome& a, const Outcome& b) { return a.what.seed < b.what.seed; });
+            std::sort(outcomes.begin(), outcomes.end(),
+                      [](const Outcome& a, const Outcome& b) { return a.what.seed < b.what.seed; });
             if (!json.empty())
                 writeJson(toJson(summarize(outcomes), outcomes), json);
         }

@@ -34,7 +34,7 @@ std::string row(const char* what, const Share& share, double target)
     return result + "\n";
 }
 
-} // namespace
+}  // namespace
 
 bool Summary::diagnosed() const
 {
@@ -45,7 +45,7 @@ bool Summary::reached() const { return diagnosed() && inBand.value() >= 0.85; }
 
 double Summary::f1() const
 {
-    const int parts = shown + found + falselyAdded;   // added ones that do not show are neither right nor wrong
+    const int parts = shown + found + falselyAdded;  // added ones that do not show are neither right nor wrong
     return parts > 0 ? 2.0 * found / parts : 1.0;
 }
 
@@ -65,7 +65,8 @@ Summary summarize(const std::vector<Outcome>& outcomes)
                     summary.foundOf[o.what.hidden[n]].add(added);
                 }
             }
-            summary.falselyAdded += static_cast<int>(std::count_if(o.added.begin(), o.added.end(), [&](const std::string& id) { return !o.hides(id); }));
+            summary.falselyAdded += static_cast<int>(
+                std::count_if(o.added.begin(), o.added.end(), [&](const std::string& id) { return !o.hides(id); }));
         } else if (o.standsDb >= standsOutDb) {
             summary.named.add(o.named());
             summary.alone.add(o.explained());
@@ -100,11 +101,13 @@ std::string line(const Outcome& o)
             hidden += formatted(" (%.0f dB)", o.showDb[n]);
     }
     auto result = formatted("%s seed %-4llu %-9s %5.1f kHz noise %5.1f dB, hidden ", o.explained() ? "ok   " : "WRONG",
-                            static_cast<unsigned long long>(o.what.seed), o.driver.c_str(), o.sampleRate / 1000.0, o.noiseDb)
-                + (o.control() ? "nothing" : hidden) + ": ";
+                            static_cast<unsigned long long>(o.what.seed), o.driver.c_str(), o.sampleRate / 1000.0,
+                            o.noiseDb)
+                  + (o.control() ? "nothing" : hidden) + ": ";
     if (!o.failure.empty())
         return result + "failed: " + o.failure;
-    result += formatted("stands %5.1f dB, first %s, added %s", o.standsDb, o.first.empty() ? "-" : o.first.c_str(), joined(o.added).c_str());
+    result += formatted("stands %5.1f dB, first %s, added %s", o.standsDb, o.first.empty() ? "-" : o.first.c_str(),
+                        joined(o.added).c_str());
     if (!o.withdrawn.empty())
         result += ", withdrawn " + joined(o.withdrawn);
     result += formatted(", %s, final %.2f dB", o.verdict.c_str(), o.finalDb);
@@ -120,8 +123,9 @@ std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
     result += row("  ... and the only one added", s.alone, 0.0);
     result += row("hidden effect first, where it does not", s.faint, 0.0);
     if (s.shown > 0) {
-        result += formatted("  of several hidden effects %d of %d that show were added, %d beside them that are not there: F1 %.3f\n", s.found, s.shown,
-                            s.falselyAdded, s.f1());
+        result += formatted(
+            "  of several hidden effects %d of %d that show were added, %d beside them that are not there: F1 %.3f\n",
+            s.found, s.shown, s.falselyAdded, s.f1());
         for (const auto& [effect, share] : s.foundOf)
             result += row(("  " + effect).c_str(), share, 0.0);
     }
@@ -144,7 +148,9 @@ std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
 nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outcomes)
 {
     using Json = nlohmann::ordered_json;
-    const auto share = [](const Share& part) { return Json {{"share", part.value()}, {"count", part.count}, {"of", part.of}}; };
+    const auto share = [](const Share& part) {
+        return Json {{"share", part.value()}, {"count", part.count}, {"of", part.of}};
+    };
     Json document {{"format", "excursion-study"}, {"version", 1}};
     document["named"] = share(s.named);
     document["namedAlone"] = share(s.alone);
@@ -160,15 +166,25 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
     document["medianTimeRatio"] = s.medianTimeRatio;
     document["takes"] = Json::array();
     for (const auto& o : outcomes) {
-        Json take {{"seed", o.what.seed},         {"hidden", o.what.hidden},     {"driver", o.driver},
-                   {"sampleRate", o.sampleRate},  {"noiseDb", o.noiseDb},        {"strengths", o.strengths},
-                   {"seconds", o.takeSeconds},    {"first", o.first},            {"added", o.added},
-                   {"withdrawn", o.withdrawn},    {"verdict", o.verdict},        {"standsDb", numberOrNull(o.standsDb)},
-                   {"finalDb", numberOrNull(o.finalDb)},       {"improveSeconds", o.improveSeconds}};
+        Json take {{"seed", o.what.seed},
+                   {"hidden", o.what.hidden},
+                   {"driver", o.driver},
+                   {"sampleRate", o.sampleRate},
+                   {"noiseDb", o.noiseDb},
+                   {"strengths", o.strengths},
+                   {"seconds", o.takeSeconds},
+                   {"first", o.first},
+                   {"added", o.added},
+                   {"withdrawn", o.withdrawn},
+                   {"verdict", o.verdict},
+                   {"standsDb", numberOrNull(o.standsDb)},
+                   {"finalDb", numberOrNull(o.finalDb)},
+                   {"improveSeconds", o.improveSeconds}};
         if (o.whole())
             take["showDb"] = o.showDb;
         for (const auto& law : o.laws)
-            take["laws"].push_back({{"effect", law.effect}, {"hidden", law.hidden}, {"points", law.points}, {"inside", law.inside}});
+            take["laws"].push_back(
+                {{"effect", law.effect}, {"hidden", law.hidden}, {"points", law.points}, {"inside", law.inside}});
         if (!o.failure.empty())
             take["failure"] = o.failure;
         document["takes"].push_back(std::move(take));
@@ -176,4 +192,4 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
     return document;
 }
 
-} // namespace excursion::study
+}  // namespace excursion::study

@@ -17,7 +17,7 @@ namespace excursion {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double normalOf95 = 1.96;   // standard deviations of half a 95 % band
+constexpr double normalOf95 = 1.96;  // standard deviations of half a 95 % band
 constexpr std::size_t fewestForOutliers = 5, fewestForGolden = 3;
 
 struct Figured {
@@ -27,7 +27,7 @@ struct Figured {
 /// The table as it grows: a quantity is there once a unit has named it, in the order of the first unit that does.
 class Table {
 public:
-    explicit Table(std::size_t units) : units_(units) { }
+    explicit Table(std::size_t units) : units_(units) {}
 
     void put(std::size_t unit, const std::string& name, const std::string& unitName, Figured figure,
              bool ofDriver = true)
@@ -308,7 +308,7 @@ UnitResult resultOf(const Unit& unit)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<std::string> UnitResult::standsOutBy() const
 {
@@ -332,8 +332,8 @@ bool Quantities::drifts() const
 
 const Quantities* Collection::find(const std::string& name) const
 {
-    const auto found =
-        std::find_if(quantities.begin(), quantities.end(), [&](const Quantities& q) { return q.name == name; });
+    const auto found = std::find_if(quantities.begin(), quantities.end(),
+                                    [&](const Quantities& q) { return q.name == name; });
     return found == quantities.end() ? nullptr : &*found;
 }
 
@@ -361,7 +361,7 @@ Collection collect(const Units& units, const CollectOptions& options)
                       {figure.value * figure.perUnit, figure.standardError * figure.perUnit});
         for (auto& law : lawTables(*models[k], 201)) {
             if (law.name.starts_with("Cms"))
-                continue;   // the reciprocal of K(x)
+                continue;  // the reciprocal of K(x)
             auto found = std::find_if(all.laws.begin(), all.laws.end(),
                                       [&](const LawsOfUnits& l) { return l.name == law.name; });
             if (found == all.laws.end())
@@ -391,4 +391,4 @@ Collection collect(const Units& units, const CollectOptions& options)
     return all;
 }
 
-} // namespace excursion
+}  // namespace excursion

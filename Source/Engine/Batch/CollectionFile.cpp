@@ -62,7 +62,7 @@ Json quantityJson(const Quantities& q)
             {"standardErrors", numbersOrNulls(q.standardError)}};
 }
 
-} // namespace
+}  // namespace
 
 Json toJson(const Collection& all)
 {
@@ -139,4 +139,4 @@ std::map<std::string, Limits> readLimits(const std::filesystem::path& path)
     return limits;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -17,4 +17,4 @@ nlohmann::ordered_json toJson(const Collection&);
 /// [Hz]" and, where any is known, its standard error "fs error".
 std::string collectionCsv(const Collection&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -53,4 +53,4 @@ Trend trendOf(const std::vector<double>& values)
     return {slope, std::sqrt(left / (count - 2.0) / across)};
 }
 
-} // namespace excursion
+}  // namespace excursion

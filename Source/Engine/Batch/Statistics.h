@@ -13,8 +13,8 @@ double robustSpread(const std::vector<double>& values);
 
 /// The least-squares line value = a + slope k through the finite values, k = 0, 1, 2, ... their places.
 struct Trend {
-    double slope, standardError;   ///< NaN for fewer than four values
+    double slope, standardError;  ///< NaN for fewer than four values
 };
 Trend trendOf(const std::vector<double>& values);
 
-} // namespace excursion
+}  // namespace excursion

@@ -50,7 +50,7 @@ std::vector<fs::path> foldersIn(const fs::path& place)
     return folders;
 }
 
-} // namespace
+}  // namespace
 
 bool nameBefore(const std::string& a, const std::string& b)
 {
@@ -69,7 +69,7 @@ bool nameBefore(const std::string& a, const std::string& b)
     }
     if ((i == a.size()) != (j == b.size()))
         return i == a.size();
-    return a < b;   // the same but for zeros ahead of a number
+    return a < b;  // the same but for zeros ahead of a number
 }
 
 Units readUnits(const std::vector<fs::path>& places, const ReadUnitsOptions& options)
@@ -127,4 +127,4 @@ Units readUnits(const std::vector<fs::path>& places, const ReadUnitsOptions& opt
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,10 +11,10 @@ namespace excursion {
 
 /// One loudspeaker of a batch: the ladder that was made of it.
 struct Unit {
-    std::string name;   ///< of the folder that holds the ladder
+    std::string name;  ///< of the folder that holds the ladder
     LadderFile file;
 
-    bool measured() const { return !file.ladder.rungs.empty(); }   ///< its take was fit for use
+    bool measured() const { return !file.ladder.rungs.empty(); }  ///< its take was fit for use
 };
 
 /// A ladder that could not be read, or a folder that has none.
@@ -30,9 +30,9 @@ struct Units {
 enum class UnitOrder { byName, asGiven };
 
 struct ReadUnitsOptions {
-    UnitOrder order = UnitOrder::byName;   ///< by name: digits in it count as numbers, so that 9 comes before 10, and
-                                           ///< times as ISO 8601 writes them in order
-    bool goOn = false;                     ///< what cannot be read is told in `unread`; else it throws
+    UnitOrder order = UnitOrder::byName;  ///< by name: digits in it count as numbers, so that 9 comes before 10, and
+                                          ///< times as ISO 8601 writes them in order
+    bool goOn = false;                    ///< what cannot be read is told in `unread`; else it throws
 };
 
 /// Reads ladders as improve() leaves them.
@@ -45,4 +45,4 @@ Units readUnits(const std::vector<std::filesystem::path>& places, const ReadUnit
 /// Whether one name comes before another one, digits as numbers.
 bool nameBefore(const std::string&, const std::string&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -43,8 +43,9 @@ std::vector<std::string> remarksOn(const ScaledModel& given)
     if (model.electrical() && !given.areaIsGuessed && !model.path.parameters[0].free)
         remarks.emplace_back("The area of the cone was given, and has no error here.");
     if (const double at = model.electrical() ? resistanceFrequency(model) : 0.0; at > 0.0)
-        remarks.emplace_back("Re is the resistance of the blocked coil at " + frequencyText(at)
-                             + ", the lowest frequency of the take: below it the take does not tell Re from losses in the iron.");
+        remarks.emplace_back(
+            "Re is the resistance of the blocked coil at " + frequencyText(at)
+            + ", the lowest frequency of the take: below it the take does not tell Re from losses in the iron.");
     constexpr double sheetFrequency = 1000.0;
     if (model.electrical() && bandOf(model).second < sheetFrequency)
         remarks.emplace_back("The model was measured below 1 kHz: there Le is a guess.");
@@ -60,7 +61,7 @@ std::vector<std::string> remarksOn(const ScaledModel& given)
     return remarks;
 }
 
-} // namespace
+}  // namespace
 
 Datasheet datasheetOf(const ScaledModel& given, double bandLow, double bandHigh, int lawPoints)
 {
@@ -115,8 +116,8 @@ std::string parametersCsv(const Datasheet& sheet)
         return text;
     for (const auto& form : sheet.inductance->forms) {
         for (const auto& p : form.parameters)
-            text +=
-                form.id + " " + p.name + "," + csvNumber(p.value) + ",," + p.unit + "," + csvText(form.formula) + "\n";
+            text += form.id + " " + p.name + "," + csvNumber(p.value) + ",," + p.unit + "," + csvText(form.formula)
+                    + "\n";
         text += form.id + " error," + csvNumber(form.errorPercent) + ",,%,"
                 + csvText("rms of |Z - Z_model|/|Z_model| from " + csvNumber(sheet.inductance->low) + " to "
                           + csvNumber(sheet.inductance->high) + " Hz")
@@ -145,4 +146,4 @@ std::string lawsCsv(const Datasheet& sheet)
     return text;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,12 +16,12 @@ namespace excursion {
 
 /// What a designer takes out of a model for other programs.
 struct Datasheet {
-    std::string driver;   ///< its name; may be empty
+    std::string driver;  ///< its name; may be empty
     std::vector<DatasheetFigure> thieleSmall;
-    std::optional<LossyInductance> inductance;   ///< none without a coil
+    std::optional<LossyInductance> inductance;  ///< none without a coil
     std::vector<LawTable> laws;
-    std::optional<StrokeLimits> stroke;   ///< none where the motion is a guess
-    std::vector<std::string> remarks;     ///< whole sentences: what the numbers rest on
+    std::optional<StrokeLimits> stroke;  ///< none where the motion is a guess
+    std::vector<std::string> remarks;    ///< whole sentences: what the numbers rest on
 };
 
 /// @param bandLow, bandHigh  of lossyInductance()
@@ -39,4 +39,4 @@ std::string parametersCsv(const Datasheet&);
 /// "limit".
 std::string lawsCsv(const Datasheet&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -14,7 +14,7 @@
 namespace excursion {
 namespace {
 
-constexpr Eigen::Index current = 0, velocity = 2;   // states as in Dynamics: (i, x, v, memories)
+constexpr Eigen::Index current = 0, velocity = 2;  // states as in Dynamics: (i, x, v, memories)
 
 /// All states but those.
 std::vector<Eigen::Index> statesWithout(Eigen::Index count, std::initializer_list<Eigen::Index> left)
@@ -26,7 +26,7 @@ std::vector<Eigen::Index> statesWithout(Eigen::Index count, std::initializer_lis
     return states;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<std::complex<double>> blockedImpedance(const Model& model, const std::vector<double>& frequency)
 {
@@ -48,9 +48,9 @@ std::vector<std::complex<double>> blockedImpedance(const Model& model, const std
 double resistanceFrequency(const Model& model)
 {
     constexpr double known = 0.02;
-    const auto& Re = model.baseParameter("Re");   // the first of all parameters
+    const auto& Re = model.baseParameter("Re");  // the first of all parameters
     const double error = model.covariance.size() > 0 ? std::sqrt(model.covariance(0, 0)) : 0.0;
-    if (model.components.size() < 2 || error <= known * std::abs(Re.value))   // not a number: not known
+    if (model.components.size() < 2 || error <= known * std::abs(Re.value))  // not a number: not known
         return 0.0;
     const double low = model.components.back().extent.lowFrequency;
     const double there = blockedImpedance(model, {low}).front().real();
@@ -77,7 +77,7 @@ OpenCoilMechanics::At OpenCoilMechanics::at(double omega) const
     system.diagonal().array() += std::complex<double>(0.0, omega);
     const auto solver = system.partialPivLu();
     const Eigen::VectorXcd z = solver.solve(B_.cast<std::complex<double>>()),
-                           dz = -solver.solve(z);   // d/ds (s I - A)^-1 B
+                           dz = -solver.solve(z);  // d/ds (s I - A)^-1 B
     constexpr Eigen::Index cone = velocity - 1;
     return {1.0 / z[cone], -dz[cone] / (z[cone] * z[cone])};
 }
@@ -94,4 +94,4 @@ Model withoutEnclosure(Model model)
     return model;
 }
 
-} // namespace excursion
+}  // namespace excursion

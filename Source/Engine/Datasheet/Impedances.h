@@ -27,10 +27,10 @@ public:
     explicit OpenCoilMechanics(const Model&);
 
     struct At {
-        std::complex<double> impedance;   ///< Z(s), N s/m
-        std::complex<double> slope;       ///< dZ/ds, kg
+        std::complex<double> impedance;  ///< Z(s), N s/m
+        std::complex<double> slope;      ///< dZ/ds, kg
     };
-    At at(double omega) const;   ///< at s = j omega
+    At at(double omega) const;  ///< at s = j omega
 
 private:
     Eigen::MatrixXd A_;
@@ -40,4 +40,4 @@ private:
 /// The model without what belongs to its box.
 Model withoutEnclosure(Model);
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,7 +11,7 @@
 namespace excursion {
 namespace {
 
-constexpr double defaultArea = 0.01;   // m^2, of Radiation
+constexpr double defaultArea = 0.01;  // m^2, of Radiation
 
 bool massIsHeld(const Model& model) { return model.electrical() && !model.baseParameter("m").free; }
 
@@ -35,7 +35,7 @@ void requirePositive(const std::optional<double>& value, const char* what)
         throw Error(Error::Kind::usage, std::string("The ") + what + " must be a positive number.");
 }
 
-} // namespace
+}  // namespace
 
 Model withMotion(Model model, double factor)
 {
@@ -96,4 +96,4 @@ ScaledModel withKnown(Model model, const KnownScale& known)
     return {std::move(model), guessed, noArea};
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,9 +9,9 @@ namespace excursion {
 
 /// What a person knows of a driver from elsewhere, in SI units.
 struct KnownScale {
-    std::optional<double> mass {};          ///< kg, of all that moves
-    std::optional<double> forceFactor {};   ///< N/A
-    std::optional<double> coneArea {};      ///< m^2
+    std::optional<double> mass {};         ///< kg, of all that moves
+    std::optional<double> forceFactor {};  ///< N/A
+    std::optional<double> coneArea {};     ///< m^2
 };
 
 /// A model with what is known put in, and what of it is a guess still.
@@ -36,4 +36,4 @@ Model withMotion(Model, double factor);
 /// take has shown itself, and for numbers that are not positive
 ScaledModel withKnown(Model, const KnownScale&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -29,7 +29,8 @@ std::vector<LawTable> lawTables(const ScaledModel& given, int points)
         std::swap(table.low95, table.high95);
         for (std::size_t k = 0; k < table.at.size(); ++k)
             if (!(law.value[k]
-                  > law.halfWidth[k])) {   // the band of the stiffness holds zero: that of the compliance has no end
+                  // the band of the stiffness holds zero: that of the compliance has no end
+                  > law.halfWidth[k])) {
                 table.low95[k] = 1.0 / (law.value[k] + law.halfWidth[k]);
                 table.high95[k] = std::numeric_limits<double>::quiet_NaN();
             }
@@ -38,4 +39,4 @@ std::vector<LawTable> lawTables(const ScaledModel& given, int points)
     return tables;
 }
 
-} // namespace excursion
+}  // namespace excursion

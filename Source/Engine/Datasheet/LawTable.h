@@ -10,8 +10,8 @@ namespace excursion {
 
 /// A large-signal law over what the take visited, with the ends of its 95 % band (NaN: unknown).
 struct LawTable {
-    std::string name;                           ///< "Bl(x)", "K(x)", "Cms(x)", "Le(x)", "Le(i)", "Rms(v)"
-    std::string unit, argument, argumentUnit;   ///< SI
+    std::string name;                          ///< "Bl(x)", "K(x)", "Cms(x)", "Le(x)", "Le(i)", "Rms(v)"
+    std::string unit, argument, argumentUnit;  ///< SI
     std::vector<double> at, value, low95, high95;
 };
 
@@ -20,4 +20,4 @@ struct LawTable {
 /// @param points  at least 3; an odd number has one at rest
 std::vector<LawTable> lawTables(const ScaledModel&, int points = 41);
 
-} // namespace excursion
+}  // namespace excursion

@@ -21,7 +21,7 @@ using std::numbers::pi;
 struct FormKind {
     const char* id;
     const char* formula;
-    std::vector<std::pair<const char*, const char*>> parameters;   ///< name, unit
+    std::vector<std::pair<const char*, const char*>> parameters;  ///< name, unit
     Complex (*law)(const std::vector<double>&, double omega);
 };
 
@@ -78,7 +78,7 @@ const FormKind& kindNamed(const std::string& id)
 struct Target {
     double Re;
     std::vector<double> omega;
-    std::vector<Complex> whole;   ///< with Re
+    std::vector<Complex> whole;  ///< with Re
 
     Complex lossy(std::size_t k) const { return whole[k] - Re; }
 };
@@ -107,7 +107,7 @@ std::vector<std::vector<double>> startsOf(const FormKind& kind, const Target& ta
     }
     const auto turn = [&](double share) {
         return low * std::pow(high / low, share);
-    };   // the w at which a cell turns from L to R
+    };  // the w at which a cell turns from L to R
     for (const double first : {0.0, 0.3, 0.6, 0.9}) {
         const double L2 = 0.5 * atBottom;
         if (id == "lr2")
@@ -136,7 +136,8 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
     const auto at = [&](const Eigen::VectorXd& y) {
         auto values = start;
         for (Eigen::Index k = 0; k < count; ++k)
-            values[static_cast<std::size_t>(k)] *= std::exp(y[k] - 1.0);   // the search divides by |y|: its start is 1
+            // the search divides by |y|: its start is 1
+            values[static_cast<std::size_t>(k)] *= std::exp(y[k] - 1.0);
         return values;
     };
     const auto residual = [&](const Eigen::VectorXd& y) {
@@ -167,7 +168,7 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
         }
         return std::isfinite(sum.cost);
     };
-    constexpr double reach = 16.0;   // no parameter goes farther than exp(reach)
+    constexpr double reach = 16.0;  // no parameter goes farther than exp(reach)
     Eigen::VectorXd y = Eigen::VectorXd::Ones(count);
     minimize(evaluate, y, Eigen::VectorXd::Constant(count, 1.0 - reach), Eigen::VectorXd::Constant(count, 1.0 + reach),
              {200, 1e-12});
@@ -205,7 +206,7 @@ LossyForm fitted(const FormKind& kind, const Target& target)
     return form;
 }
 
-} // namespace
+}  // namespace
 
 std::complex<double> impedanceOf(const LossyForm& form, double omega)
 {
@@ -230,8 +231,9 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
     const auto band = bandOf(model);
     LossyInductance result;
     result.high = high > 0.0 ? high : band.second;
-    result.low =
-        low > 0.0 ? low : std::min(std::max(band.first, 3.0 * resonanceOf(model.base().parameters)), 0.1 * result.high);
+    result.low = low > 0.0
+                     ? low
+                     : std::min(std::max(band.first, 3.0 * resonanceOf(model.base().parameters)), 0.1 * result.high);
     if (!(result.high >= 2.0 * result.low) || !std::isfinite(result.high))
         throw Error(
             Error::Kind::usage,
@@ -260,4 +262,4 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,19 +12,19 @@ namespace excursion {
 
 /// The lossy inductance of a coil in a form that other programs take, fitted to Z_blocked - Re.
 struct LossyForm {
-    std::string id;                   ///< "lr2", "lr3", "semi-inductance", "wright", "thorborg-futtrup"
-    std::string formula;              ///< in plain ASCII
-    std::vector<Figure> parameters;   ///< SI; a K's unit is that of K w^n in ohm
-    double errorPercent = 0.0;   ///< rms of |Z_form - Z|/|Z| of the whole blocked impedance, Re with it, over log f
-    double worstDb = 0.0;        ///< largest | 20 log10 |Z_form/Z| |
+    std::string id;                  ///< "lr2", "lr3", "semi-inductance", "wright", "thorborg-futtrup"
+    std::string formula;             ///< in plain ASCII
+    std::vector<Figure> parameters;  ///< SI; a K's unit is that of K w^n in ohm
+    double errorPercent = 0.0;       ///< rms of |Z_form - Z|/|Z| of the whole blocked impedance, Re with it, over log f
+    double worstDb = 0.0;            ///< largest | 20 log10 |Z_form/Z| |
 };
 
 struct LossyInductance {
-    double low = 0.0, high = 0.0;   ///< Hz, the band of the fit
-    double Re = 0.0;                ///< ohm, in every form
-    bool lossless = false;          ///< the model's inductance is Le alone: there is nothing to fit
-    double Le = 0.0;                ///< H, of a lossless one
-    std::vector<LossyForm> forms;   ///< in the order of the list above
+    double low = 0.0, high = 0.0;  ///< Hz, the band of the fit
+    double Re = 0.0;               ///< ohm, in every form
+    bool lossless = false;         ///< the model's inductance is Le alone: there is nothing to fit
+    double Le = 0.0;               ///< H, of a lossless one
+    std::vector<LossyForm> forms;  ///< in the order of the list above
 };
 
 /// Fits to the model's blocked-coil impedance on 24 points an octave, all parameters positive,
@@ -46,4 +46,4 @@ std::complex<double> impedanceOf(const LossyForm&, double omega);
 /// file does not say.
 std::pair<double, double> bandOf(const Model&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -54,11 +54,11 @@ void refer(Frf& frf, double distance)
 {
     for (auto& value : frf.value)
         value *= sheetVoltage * distance / sheetPressure;
-    frf.noiseVariance.clear();   // no file of a curve has them
+    frf.noiseVariance.clear();  // no file of a curve has them
     frf.totalVariance.clear();
 }
 
-} // namespace
+}  // namespace
 
 std::vector<double> curveFrequencies(double low, double high)
 {
@@ -86,7 +86,8 @@ Frf soundCurve(const ScaledModel& given, const std::vector<double>& frequency)
 {
     const auto& model = given.model;
     requireCoil(model.electrical());
-    const bool followsArea = model.path.parameters[0].free;   // then both are a guess alike, and the sound was measured
+    // then both are a guess alike, and the sound was measured
+    const bool followsArea = model.path.parameters[0].free;
     if (given.motionIsGuessed && !followsArea)
         throw Error(Error::Kind::data, "The take shows neither the sound nor the moving mass, so the sound cannot be "
                                        "told; give the mass or Bl, and the area of the cone.");
@@ -143,4 +144,4 @@ Frf soundCurve(const Measurement& take, double level)
     return frf;
 }
 
-} // namespace excursion
+}  // namespace excursion

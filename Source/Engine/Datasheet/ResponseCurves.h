@@ -32,4 +32,4 @@ Measurement playedAt(const Model&, double level, double low, double high, const 
 Frf impedanceCurve(const Measurement&, double level = 0.0);
 Frf soundCurve(const Measurement&, double level = 0.0);
 
-} // namespace excursion
+}  // namespace excursion

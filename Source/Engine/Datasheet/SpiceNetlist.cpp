@@ -42,7 +42,7 @@ std::string inComment(const std::string& text)
 
 class Writer {
 public:
-    explicit Writer(const Network& network) : network_(network) { }
+    explicit Writer(const Network& network) : network_(network) {}
 
     void coil()
     {
@@ -59,8 +59,8 @@ public:
                 line('L', from, to, part.kind == Network::Kind::cell ? part.inductance : part.value);
             from = to;
         }
-        text +=
-            "* Motor: u = Bl v and F = Bl i, Bl = " + number(network_.forceFactor) + " N/A. Vi measures the current.\n";
+        text += "* Motor: u = Bl v and F = Bl i, Bl = " + number(network_.forceFactor)
+                + " N/A. Vi measures the current.\n";
         text += "Vi " + from + " motor 0\nEbl motor minus cone 0 " + number(network_.forceFactor) + "\nFbl 0 cone Vi "
                 + number(network_.forceFactor) + "\n";
     }
@@ -108,7 +108,7 @@ private:
     int nodes_ = 0, parts_ = 0;
 };
 
-} // namespace
+}  // namespace
 
 std::string spiceNetlist(const Model& model, const std::string& name)
 {
@@ -145,4 +145,4 @@ std::string spiceNetlist(const Model& model, const std::string& name)
     return text;
 }
 
-} // namespace excursion
+}  // namespace excursion

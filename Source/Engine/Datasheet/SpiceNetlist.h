@@ -15,4 +15,4 @@ namespace excursion {
 /// @param name  of the subcircuit; what SPICE would not take is replaced
 std::string spiceNetlist(const Model&, const std::string& name);
 
-} // namespace excursion
+}  // namespace excursion

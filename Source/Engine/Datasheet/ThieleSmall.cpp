@@ -99,7 +99,7 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
         Le = blockedImpedance(model, {sheetFrequency}).front().imag() / (2.0 * pi * sheetFrequency);
         Qes = omega * mass * Re / (Bl * Bl);
         Qts = 1.0 / (1.0 / Qms + 1.0 / Qes);
-        const double perVolt = density / (2.0 * pi) * Bl * area / (Re * mass);   // Pa at 1 m
+        const double perVolt = density / (2.0 * pi) * Bl * area / (Re * mass);  // Pa at 1 m
         eta0 = density / (2.0 * pi * speedOfSound) * std::pow(Bl * area / mass, 2) / Re;
         watt = levelOf(perVolt * std::sqrt(Re));
         volts = levelOf(perVolt * sheetVoltage);
@@ -112,7 +112,7 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
 /// Whether a number is another one for a model that could be as well.
 bool differs(double a, double b) { return std::abs(a - b) > 1e-6 * std::abs(a); }
 
-} // namespace
+}  // namespace
 
 std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
 {
@@ -120,7 +120,7 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
     const double resistanceAt = model.electrical() ? resistanceFrequency(model) : 0.0;
     const auto of = [resistanceAt](const Model& m) { return numbersOf(m, resistanceAt); };
     const auto numbers = of(model), errors = standardErrorsOf(model, of);
-    constexpr double other = 1.25;   // any factor but 1
+    constexpr double other = 1.25;  // any factor but 1
     auto otherArea = model;
     otherArea.path.parameters[0].value *= other;
     const auto ifMoved = of(withMotion(model, other)), ifWider = of(otherArea);
@@ -136,9 +136,9 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
             figure.why = "the take does not tell the area of the cone; give it";
         } else {
             figure.value = numbers[n];
-            figure.standardError =
-                errors[n] > 0.0 ? errors[n]
-                                : std::numeric_limits<double>::quiet_NaN();   // of what was given it is not known
+            figure.standardError = errors[n] > 0.0
+                                       ? errors[n]
+                                       : std::numeric_limits<double>::quiet_NaN();  // of what was given it is not known
         }
     }
     return figures;
@@ -152,4 +152,4 @@ const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>& figures, 
     throw std::out_of_range(std::string(symbol));
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,19 +10,22 @@
 namespace excursion {
 
 /// What the sound of a datasheet is referred to.
-inline constexpr double sheetVoltage = 2.83;     ///< V
-inline constexpr double sheetPressure = 20e-6;   ///< Pa, of 0 dB
+inline constexpr double sheetVoltage = 2.83;    ///< V
+inline constexpr double sheetPressure = 20e-6;  ///< Pa, of 0 dB
 
 /// A number of a datasheet.
 struct DatasheetFigure {
-    std::string symbol;                                                ///< "fs", "Qts", "Vas"
-    std::string unit;                                                  ///< of `value`, SI: "m^3"; "1" of a pure number
-    std::string sheetUnit;                                             ///< as datasheets have it: "l"
-    double perUnit = 1.0;                                              ///< the number in a datasheet is value * perUnit
-    std::string meaning;                                               ///< "equivalent volume"
-    double value = std::numeric_limits<double>::quiet_NaN();           ///< NaN: cannot be said
-    double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: not known
-    std::string why {};                                                ///< why it cannot be said; empty where it can
+    std::string symbol;  ///< "fs", "Qts", "Vas"
+    /// of `value`, SI: "m^3"; "1" of a pure number
+    std::string unit;
+    std::string sheetUnit;  ///< as datasheets have it: "l"
+    /// the number in a datasheet is value * perUnit
+    double perUnit = 1.0;
+    std::string meaning;                                              ///< "equivalent volume"
+    double value = std::numeric_limits<double>::quiet_NaN();          ///< NaN: cannot be said
+    double standardError = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not known
+    /// why it cannot be said; empty where it can
+    std::string why {};
 };
 
 /// Thiele/Small parameters of the driver without its box, for small signals, at the resonance as the whole linear model
@@ -44,4 +47,4 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel&);
 /// The figure of that symbol; throws std::out_of_range.
 const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>&, std::string_view symbol);
 
-} // namespace excursion
+}  // namespace excursion

@@ -15,11 +15,11 @@ namespace excursion {
 namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
-using Simulated = std::vector<std::vector<Spectrum>>;   ///< [section][channel]; empty where the model runs away
+using Simulated = std::vector<std::vector<Spectrum>>;  ///< [section][channel]; empty where the model runs away
 
 double db(double power, double reference)
 {
-    constexpr double least = 1e-12;   // what the simulation cannot tell from nothing
+    constexpr double least = 1e-12;  // what the simulation cannot tell from nothing
     return 10.0 * std::log10(std::max(power / std::max(reference, 1e-300), least));
 }
 
@@ -36,13 +36,15 @@ struct Band {
     std::size_t first = 0, end = 0;
 };
 
-/// Thirds of an octave over the lines, each at least so many lines wide; what would be less at the end belongs to the last.
+/// Thirds of an octave over the lines, each at least so many lines wide; what would be less at the end belongs to the
+/// last.
 std::vector<Band> bandsOver(std::size_t first, std::size_t end)
 {
     constexpr std::size_t fewest = 8;
     std::vector<Band> bands;
     for (auto low = first; low < end;) {
-        auto high = std::max(static_cast<std::size_t>(std::ceil(static_cast<double>(low) * std::cbrt(2.0))), low + fewest);
+        auto high = std::max(static_cast<std::size_t>(std::ceil(static_cast<double>(low) * std::cbrt(2.0))),
+                             low + fewest);
         if (high + fewest > end)
             high = end;
         bands.push_back({low, high});
@@ -106,7 +108,8 @@ private:
     /// Whether the stimulus has power on a line; where nothing is known it may have on any.
     bool isPlayed(std::size_t k) const
     {
-        return section_.excited.empty() || std::binary_search(section_.excited.begin(), section_.excited.end(), static_cast<int>(k));
+        return section_.excited.empty()
+               || std::binary_search(section_.excited.begin(), section_.excited.end(), static_cast<int>(k));
     }
 
     double onSilentLines(const Played& y, const Band& band) const
@@ -136,7 +139,7 @@ private:
         for (auto k = band.first; k < band.end; ++k)
             if (isPlayed(k))
                 sum += std::norm(y.odd[k] - g * y.linear[k]);
-        return lines > 1.0 ? sum * lines / (lines - 1.0) : 0.0;   // g has taken its share of one line
+        return lines > 1.0 ? sum * lines / (lines - 1.0) : 0.0;  // g has taken its share of one line
     }
 
     const Section& section_;
@@ -148,7 +151,8 @@ private:
 /// Plays variants of a model.
 class Player {
 public:
-    Player(const Model& model, const Record& record, const std::vector<std::size_t>& sections) : record_(record), sections_(sections)
+    Player(const Model& model, const Record& record, const std::vector<std::size_t>& sections)
+        : record_(record), sections_(sections)
     {
         for (const auto section : sections)
             stimuli_.emplace_back(record, section);
@@ -159,7 +163,7 @@ public:
             record_.units.insert(record_.units.begin(), "A");
         }
         record_.wanderDb.assign(record_.channels.size(), std::nullopt);
-        for (auto& s : record_.sections) {   // nothing is compared
+        for (auto& s : record_.sections) {  // nothing is compared
             s.measured.assign(record_.channels.size(), Spectrum(s.window / 2 + 1, 0.0));
             s.deviation.assign(record_.channels.size(), std::vector<double>(s.window / 2 + 1, 1.0));
             s.inputVariance.clear();
@@ -240,7 +244,8 @@ private:
         }
     };
 
-    Powers powersIn(std::size_t band, std::size_t c, const std::vector<std::vector<Played>>& played, const std::vector<std::vector<Played>>& whole) const
+    Powers powersIn(std::size_t band, std::size_t c, const std::vector<std::vector<Played>>& played,
+                    const std::vector<std::vector<Played>>& whole) const
     {
         Powers sum;
         for (std::size_t n = 0; n < sections_.size(); ++n) {
@@ -248,18 +253,23 @@ private:
             const auto &y = played[n][c], &reference = whole[n][c];
             const double even = powerOf(y.even, at.first, at.end);
             const auto [level, expected] = stimuli_[n].levels(y, at);
-            sum += {even, stimuli_[n].oddPower(y, at), powerOf(reference.even, at.first, at.end) + powerOf(reference.odd, at.first, at.end),
-                    level, expected, even + powerOf(y.odd, at.first, at.end)};
+            sum += {even,
+                    stimuli_[n].oddPower(y, at),
+                    powerOf(reference.even, at.first, at.end) + powerOf(reference.odd, at.first, at.end),
+                    level,
+                    expected,
+                    even + powerOf(y.odd, at.first, at.end)};
         }
         return sum;
     }
 
-    ChannelDistortion judge(std::size_t c, const std::vector<std::vector<Played>>& played, const std::vector<std::vector<Played>>& whole) const
+    ChannelDistortion judge(std::size_t c, const std::vector<std::vector<Played>>& played,
+                            const std::vector<std::vector<Played>>& whole) const
     {
         ChannelDistortion result;
         result.quantity = record_.channels[c];
         Powers all;
-        const auto& stimulus = stimuli_.front();   // one shape
+        const auto& stimulus = stimuli_.front();  // one shape
         for (std::size_t band = 0; band < stimulus.bands().size(); ++band) {
             const auto here = powersIn(band, c, played, whole);
             all += here;
@@ -273,15 +283,16 @@ private:
         result.evenDb = db(all.even, all.reference);
         result.oddDb = db(all.odd, all.reference);
         result.gainDb = db(all.played, all.expected);
-        result.rms = std::sqrt(2.0 * all.own / static_cast<double>(sections_.size())) / static_cast<double>(record_.sections[sections_.front()].window);
+        result.rms = std::sqrt(2.0 * all.own / static_cast<double>(sections_.size()))
+                     / static_cast<double>(record_.sections[sections_.front()].window);
         return result;
     }
 
-    static constexpr double tolerance = 1e-5;   // distortion is told down to -100 dB
+    static constexpr double tolerance = 1e-5;  // distortion is told down to -100 dB
 
     Record record_;
     std::vector<std::size_t> sections_;
-    std::vector<Stimulus> stimuli_;   ///< one a section
+    std::vector<Stimulus> stimuli_;  ///< one a section
 };
 
 /// The linear part with that effect.
@@ -294,7 +305,7 @@ Model alone(const Model& model, std::string_view effect)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<std::size_t> loudestSections(const Record& record)
 {
@@ -309,13 +320,15 @@ std::vector<std::size_t> loudestSections(const Record& record)
     return result;
 }
 
-DistortionByEffect distortionByEffect(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const Progress& progress)
+DistortionByEffect distortionByEffect(const Model& model, const Record& record,
+                                      const std::vector<std::size_t>& sections, const Progress& progress)
 {
     const Player player(model, record, sections);
     const auto linear = player.simulated(linearPart(model));
     const auto whole = player.play(model, linear);
     if (!whole)
-        throw Error(Error::Kind::numerical, "The model runs away when it is simulated on this take; fit it to the take first.");
+        throw Error(Error::Kind::numerical,
+                    "The model runs away when it is simulated on this take; fit it to the take first.");
     DistortionByEffect result;
     for (const auto n : sections)
         result.level += rmsOf(record.sections[n].input) / static_cast<double>(sections.size());
@@ -326,7 +339,8 @@ DistortionByEffect distortionByEffect(const Model& model, const Record& record, 
         EffectDistortion one;
         one.effect = effect.id();
         const auto without = withoutEffect(model, one.effect);
-        one.without = player.judge(player.play(without, effect.linear() ? player.simulated(linearPart(without)) : linear), whole);
+        one.without = player.judge(
+            player.play(without, effect.linear() ? player.simulated(linearPart(without)) : linear), whole);
         if (!effect.linear())
             one.alone = player.judge(player.play(alone(model, one.effect), linear), whole);
         result.effects.push_back(std::move(one));
@@ -334,4 +348,4 @@ DistortionByEffect distortionByEffect(const Model& model, const Record& record, 
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

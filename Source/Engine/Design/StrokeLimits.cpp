@@ -14,11 +14,11 @@
 namespace excursion {
 namespace {
 
-constexpr int points = 401;   // of a law over the range, odd: rest is one of them
+constexpr int points = 401;  // of a law over the range, odd: rest is one of them
 
 /// A curve over [-X, X], given at equally spaced places.
 struct Curve {
-    std::vector<double> x, y, error;   ///< error: standard error of y, NaN unknown
+    std::vector<double> x, y, error;  ///< error: standard error of y, NaN unknown
     std::size_t rest() const { return x.size() / 2; }
 };
 
@@ -65,11 +65,13 @@ Curve inPercent(Curve curve, bool reciprocal)
     return curve;
 }
 
-/// Impedance of the coil held fast at x, for small currents: with the rates of current and memories (i, m) linear in them,
+/// Impedance of the coil held fast at x, for small currents: with the rates of current and memories (i, m) linear in
+/// them,
 ///     1/Z = (1 0 ...) (j w I - A)^-1 B.
 std::complex<double> blockedImpedance(const Model& model, const Dynamics<double>& dynamics, double x, double frequency)
 {
-    const double small = 1e-3 * model.components.back().extent.current;   // what the take visited, once there is an effect
+    // what the take visited, once there is an effect
+    const double small = 1e-3 * model.components.back().extent.current;
     const auto order = static_cast<std::size_t>(dynamics.order());
     std::vector<std::size_t> states {0};
     for (std::size_t k = 3; k < order; ++k)
@@ -82,7 +84,8 @@ std::complex<double> blockedImpedance(const Model& model, const Dynamics<double>
         dynamics.rates(z.data(), u, dz.data());
         return dz;
     };
-    // A difference to both sides is exact for what is linear, and leaves third powers of a small current where it is not.
+    // A difference to both sides is exact for what is linear, and leaves third powers of a small current where it is
+    // not.
     Eigen::MatrixXcd system(n, n);
     Eigen::VectorXcd drive(n);
     const auto above = rates(1, 0.0, 1.0), below = rates(1, 0.0, -1.0);
@@ -112,9 +115,10 @@ std::optional<Curve> impedanceChange(const Model& model, double range, double fr
     constexpr int coarse = 41;
     for (int n = 0; n < coarse; ++n) {
         curve.x.push_back(range * (2.0 * n / (coarse - 1) - 1.0));
-        curve.y.push_back(100.0 * std::abs(blockedImpedance(model, dynamics, curve.x.back(), frequency) - rest) / std::abs(rest));
+        curve.y.push_back(100.0 * std::abs(blockedImpedance(model, dynamics, curve.x.back(), frequency) - rest)
+                          / std::abs(rest));
     }
-    constexpr double something = 0.1;   // %
+    constexpr double something = 0.1;  // %
     if (*std::max_element(curve.y.begin(), curve.y.end()) < something)
         return std::nullopt;
     return curve;
@@ -154,7 +158,7 @@ Estimate asymmetryOf(const Curve& K)
     return {200.0 * (in - out) / sum, 400.0 * std::hypot(out * K.error.front(), in * K.error.back()) / (sum * sum)};
 }
 
-} // namespace
+}  // namespace
 
 std::optional<double> StrokeLimit::stroke() const
 {
@@ -202,9 +206,9 @@ StrokeLimits strokeLimits(const Model& model)
     const double percentPerMetre = 100.0 * std::numbers::sqrt2 * std::numbers::pi * result.tone / speedOfSound;
     const double X = 100.0 * allowed / percentPerMetre, atEnd = percentPerMetre * result.range;
     StrokeLimit doppler {"Doppler shift", "makes 10 % distortion", {}, {}, atEnd, atEnd};
-    doppler.inward = doppler.outward = X;   // geometry: it holds beyond the range, too
+    doppler.inward = doppler.outward = X;  // geometry: it holds beyond the range, too
     result.limits.push_back(doppler);
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

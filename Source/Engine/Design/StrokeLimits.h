@@ -9,13 +9,16 @@
 
 namespace excursion {
 
-/// How far the coil may go before something has changed by as much as designers allow for about 10 % distortion (IEC 62458; Klippel,
-/// "Assessment of voice coil peak displacement Xmax", JAES 51, 2003). Nothing is said beyond the visited range.
+/// How far the coil may go before something has changed by as much as designers allow for about 10 % distortion (IEC
+/// 62458; Klippel, "Assessment of voice coil peak displacement Xmax", JAES 51, 2003). Nothing is said beyond the
+/// visited range.
 struct StrokeLimit {
-    std::string name;                         ///< "force factor Bl(x)", "compliance 1/K(x)", "impedance", "Doppler shift"
-    std::string criterion;                    ///< "falls to 82 %"
-    std::optional<double> inward, outward;    ///< m, both positive; none where the criterion is not met within the range
-    double inwardEnd = 0.0, outwardEnd = 0.0; ///< what is judged at the two ends of the range, %
+    /// "force factor Bl(x)", "compliance 1/K(x)", "impedance", "Doppler shift"
+    std::string name;
+    std::string criterion;  ///< "falls to 82 %"
+    /// m, both positive; none where the criterion is not met within the range
+    std::optional<double> inward, outward;
+    double inwardEnd = 0.0, outwardEnd = 0.0;  ///< what is judged at the two ends of the range, %
 
     /// m, the shorter of both sides; none where neither is met.
     std::optional<double> stroke() const;
@@ -27,13 +30,15 @@ struct Estimate {
 };
 
 struct StrokeLimits {
-    double range = 0.0;                 ///< m, visited to either side
-    double resonance = 0.0;             ///< Hz, of the base
-    double tone = 0.0;                  ///< Hz, at which impedance and Doppler shift are judged: 8.5 times the resonance
-    std::vector<StrokeLimit> limits;    ///< of the laws that the model has; the Doppler shift always
+    double range = 0.0;      ///< m, visited to either side
+    double resonance = 0.0;  ///< Hz, of the base
+    /// Hz, at which impedance and Doppler shift are judged: 8.5 times the resonance
+    double tone = 0.0;
+    std::vector<StrokeLimit> limits;  ///< of the laws that the model has; the Doppler shift always
 
-    /// Half the sum of the two places where Bl is as large as at that end of the range where it is larger: the middle of the gap as seen from
-    /// where the coil rests, m, positive outward. None without Bl(x), or where Bl rises to an end of the range.
+    /// Half the sum of the two places where Bl is as large as at that end of the range where it is larger: the middle
+    /// of the gap as seen from where the coil rests, m, positive outward. None without Bl(x), or where Bl rises to an
+    /// end of the range.
     std::optional<Estimate> gapCentre;
 
     /// 2 (K(-X) - K(X))/(K(-X) + K(X)) at the end X of the range, %: positive where the suspension is stiffer inward.
@@ -45,4 +50,4 @@ struct StrokeLimits {
 
 StrokeLimits strokeLimits(const Model&);
 
-} // namespace excursion
+}  // namespace excursion

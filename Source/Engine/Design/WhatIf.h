@@ -8,8 +8,8 @@
 
 namespace excursion {
 
-/// What a designer asks of a model once it agrees with the measurement: which effect makes how much of the distortion, how far the coil may
-/// go, and what to change.
+/// What a designer asks of a model once it agrees with the measurement: which effect makes how much of the distortion,
+/// how far the coil may go, and what to change.
 struct WhatIf {
     DistortionByEffect distortion;
     StrokeLimits stroke;
@@ -27,7 +27,8 @@ double distortionDb(const ChannelDistortion&);
 /// By how many dB a channel's distortion falls without that effect; NaN where that loudspeaker runs away.
 double fallWithout(const DistortionByEffect&, const EffectDistortion&, Quantity);
 
-/// One paragraph: what makes most of the distortion, what limits the stroke, and what to change in the driver. Plain ASCII.
+/// One paragraph: what makes most of the distortion, what limits the stroke, and what to change in the driver. Plain
+/// ASCII.
 std::string advice(const WhatIf&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -14,4 +14,4 @@ nlohmann::ordered_json toJson(const WhatIf&);
 nlohmann::ordered_json toJson(const StrokeLimits&);
 WhatIf whatIfFromJson(const JsonField&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -78,8 +78,8 @@ ErrorKinds kindsOf(const Record& record, const std::vector<std::size_t>& section
 }
 
 /// Rms per band of 1/24 octave (one line where lines are sparser), averaged over the level's sections.
-ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& sections, const std::vector<SectionFit>& fits,
-                         std::size_t c, int level)
+ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& sections,
+                         const std::vector<SectionFit>& fits, std::size_t c, int level)
 {
     constexpr double bandsPerOctave = 24.0;
     ErrorSpectrum spectrum;
@@ -91,9 +91,12 @@ ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& s
         return spectrum;
     const auto& shape = record.sections[sections[used.front()]];
     const auto [first, last] = record.lineRange(shape);
-    const double scale = 2.0 / (static_cast<double>(shape.window) * static_cast<double>(shape.window)) / static_cast<double>(used.size());
+    const double scale = 2.0 / (static_cast<double>(shape.window) * static_cast<double>(shape.window))
+                         / static_cast<double>(used.size());
     for (std::size_t k = first; k <= last;) {
-        const auto end = std::min(last + 1, std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * std::exp2(1.0 / bandsPerOctave))));
+        const auto end = std::min(
+            last + 1,
+            std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * std::exp2(1.0 / bandsPerOctave))));
         double measured = 0.0, model = 0.0, error = 0.0, noise = 0.0;
         for (const auto n : used) {
             const auto& section = record.sections[sections[n]];
@@ -104,17 +107,19 @@ ErrorSpectrum spectrumOf(const Record& record, const std::vector<std::size_t>& s
                 noise += section.deviation[c][j] * section.deviation[c][j];
             }
         }
-        spectrum.frequency.push_back(record.frequency(shape, k) * std::sqrt(static_cast<double>(end - 1) / static_cast<double>(k)));
+        spectrum.frequency.push_back(record.frequency(shape, k)
+                                     * std::sqrt(static_cast<double>(end - 1) / static_cast<double>(k)));
         spectrum.measured.push_back(std::sqrt(scale * measured));
         spectrum.model.push_back(std::sqrt(scale * model));
         spectrum.error.push_back(std::sqrt(scale * error));
-        spectrum.noise.push_back(record.noiseKnown ? std::sqrt(scale * noise) : std::numeric_limits<double>::quiet_NaN());
+        spectrum.noise.push_back(record.noiseKnown ? std::sqrt(scale * noise)
+                                                   : std::numeric_limits<double>::quiet_NaN());
         k = end;
     }
     return spectrum;
 }
 
-} // namespace
+}  // namespace
 
 std::string inWords(const ErrorKinds& kinds)
 {
@@ -150,15 +155,18 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
     const auto fits = outputError(model, record, sections, {}, run, progress);
     for (const auto& fit : fits)
         if (!fit.finite)
-            throw Error(Error::Kind::numerical, "The model runs away when it is simulated on this take; fit it to the take first.");
+            throw Error(Error::Kind::numerical,
+                        "The model runs away when it is simulated on this take; fit it to the take first.");
 
     Comparison result;
     result.levels = record.levels.empty() ? std::vector<double> {0.0} : record.levels;
     result.noiseKnown = record.noiseKnown;
-    result.validated = std::any_of(record.sections.begin(), record.sections.end(), [](const Section& s) { return s.validation; });
+    result.validated = std::any_of(record.sections.begin(), record.sections.end(),
+                                   [](const Section& s) { return s.validation; });
     // What is slow, or still relaxes when the periods begin that count, differs from period to period by itself.
-    const bool drifts = std::any_of(model.components.begin(), model.components.end(),
-                                    [](const Component& part) { return part.effect->slow() || part.effect->relaxes(); });
+    const bool drifts = std::any_of(model.components.begin(), model.components.end(), [](const Component& part) {
+        return part.effect->slow() || part.effect->relaxes();
+    });
     NormalEquations everything;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         ChannelComparison channel;
@@ -209,7 +217,8 @@ std::vector<Waveform> waveforms(const Model& model, const Record& record, int le
         run.substeps = substepsFor(model, record);
         const auto fit = outputError(model, record, {n}, {}, run).front();
         if (!fit.finite)
-            throw Error(Error::Kind::numerical, "The model runs away when it is simulated on this take; fit it to the take first.");
+            throw Error(Error::Kind::numerical,
+                        "The model runs away when it is simulated on this take; fit it to the take first.");
         const auto [first, last] = record.lineRange(section);
         const auto inTime = [&, first = first, last = last](std::vector<std::complex<double>> lines) {
             for (std::size_t k = 0; k < lines.size(); ++k)
@@ -218,7 +227,8 @@ std::vector<Waveform> waveforms(const Model& model, const Record& record, int le
             return inverseFft(lines, section.window);
         };
         for (std::size_t c = 0; c < record.channels.size(); ++c)
-            result.push_back({record.channels[c], record.units[c], record.sampleRate, inTime(section.measured[c]), inTime(fit.predicted[c])});
+            result.push_back({record.channels[c], record.units[c], record.sampleRate, inTime(section.measured[c]),
+                              inTime(fit.predicted[c])});
         break;
     }
     return result;
@@ -256,4 +266,4 @@ Comparison compare(const Model& model, const Spectra& spectra)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

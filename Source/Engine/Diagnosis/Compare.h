@@ -11,21 +11,21 @@
 
 namespace excursion {
 
-/// How far a model's channel is from the measurement: relative rms error (seed 4.26) and the rms of the noise against the same
-/// reference, dB. `chi` is the mean of |error|^2/sigma^2 over the lines: 1 when only noise is left.
+/// How far a model's channel is from the measurement: relative rms error (seed 4.26) and the rms of the noise against
+/// the same reference, dB. `chi` is the mean of |error|^2/sigma^2 over the lines: 1 when only noise is left.
 struct ErrorLevel {
     double db = 0.0;
-    std::optional<double> noiseFloorDb;   ///< empty when the take cannot tell its noise
+    std::optional<double> noiseFloorDb;  ///< empty when the take cannot tell its noise
     double chi = 0.0;
 };
 
 /// What kind of error is left, as powers relative to the measured channel, dB. Needs known excited lines; grids without
 /// detection lines leave `odd` empty, as odd distortion then hides under the excited lines.
 struct ErrorKinds {
-    std::optional<double> linear;   ///< on excited lines
-    std::optional<double> odd;      ///< on odd lines that are not excited
-    std::optional<double> even;     ///< on even lines that are not excited
-    std::optional<double> noise;    ///< expected on as many lines by the scatter over the periods
+    std::optional<double> linear;  ///< on excited lines
+    std::optional<double> odd;     ///< on odd lines that are not excited
+    std::optional<double> even;    ///< on even lines that are not excited
+    std::optional<double> noise;   ///< expected on as many lines by the scatter over the periods
 };
 
 /// "excited lines at -41.0 dB, odd detection lines at -60.2 dB, even ones at ...": empty where nothing is known.
@@ -40,20 +40,21 @@ struct ErrorSpectrum {
 ///     voltage = Z_e(jw) e_i + Bl j w e_x,   force = (K + Rms s + m s^2 + ...) e_x - Bl e_i,
 /// from the errors e of current and displacement (or what the channels give of it), sorted by the simulated x, v and i.
 struct ResidualCurve {
-    std::string residual;              ///< "force" or "voltage"
-    std::string unit;                  ///< "N" or "V"
-    std::string against;               ///< "x", "v" or "i"
+    std::string residual;  ///< "force" or "voltage"
+    std::string unit;      ///< "N" or "V"
+    std::string against;   ///< "x", "v" or "i"
     std::string againstUnit;
-    std::vector<double> argument, mean, scatter;   ///< mean and standard deviation in each bin
-    double db = 0.0;                   ///< the residual's rms over that of what drives: the voltage, the force Bl i
+    std::vector<double> argument, mean, scatter;  ///< mean and standard deviation in each bin
+    double db = 0.0;  ///< the residual's rms over that of what drives: the voltage, the force Bl i
 };
 
 struct ChannelComparison {
     Quantity quantity = Quantity::current;
     std::string unit;
-    ErrorLevel total;                       ///< all validation sections
-    std::optional<double> wanderDb;         ///< of the take (Wander.h); none where the model has an effect that drifts, or where it is not known
-    std::vector<ErrorLevel> byLevel;        ///< one a level of the excitation
+    ErrorLevel total;  ///< all validation sections
+    /// of the take (Wander.h); none where the model has an effect that drifts, or where it is not known
+    std::optional<double> wanderDb;
+    std::vector<ErrorLevel> byLevel;  ///< one a level of the excitation
     std::vector<ErrorKinds> kindsByLevel;
     std::vector<ErrorSpectrum> spectrumByLevel;
 };
@@ -64,40 +65,41 @@ using ErrorByChannel = std::map<Quantity, ErrorLevel>;
 std::string titleOf(const ChannelComparison&);
 
 struct Comparison {
-    std::vector<double> levels;             ///< V rms; one entry 0 when the take has no levels
+    std::vector<double> levels;  ///< V rms; one entry 0 when the take has no levels
     std::vector<ChannelComparison> channels;
-    std::vector<ResidualCurve> residuals;   ///< at the loudest level
-    double chi = 0.0;                       ///< over all channels and levels
+    std::vector<ResidualCurve> residuals;  ///< at the loudest level
+    double chi = 0.0;                      ///< over all channels and levels
     bool noiseKnown = false;
-    bool validated = false;                 ///< on sections that no fit saw
+    bool validated = false;  ///< on sections that no fit saw
 };
 
 /// The error of each channel over all levels.
 ErrorByChannel errorByChannel(const Comparison&);
 
 struct CompareOptions {
-    int substeps = 0;          ///< 0: chosen
-    bool spectra = true;       ///< fill spectra, kinds and residual curves
+    int substeps = 0;     ///< 0: chosen
+    bool spectra = true;  ///< fill spectra, kinds and residual curves
 };
 
 /// Compares a model with the validation sections of a record (all sections when none was held out).
 /// Throws Error (numerical) when the simulation runs away.
 Comparison compare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
 
-/// A channel against time, as measured and as the model plays it, over the window that is compared; the unit is the channel's.
+/// A channel against time, as measured and as the model plays it, over the window that is compared; the unit is the
+/// channel's.
 struct Waveform {
     Quantity quantity = Quantity::current;
     std::string unit;
-    double sampleRate = 0.0;   ///< Hz
+    double sampleRate = 0.0;  ///< Hz
     std::vector<double> measured, model;
 };
 
-/// The first validation section of that level, one waveform a channel. Lines that are not compared are left out of both.
-/// Throws Error (numerical) when the simulation runs away.
+/// The first validation section of that level, one waveform a channel. Lines that are not compared are left out of
+/// both. Throws Error (numerical) when the simulation runs away.
 std::vector<Waveform> waveforms(const Model&, const Record&, int level);
 
-/// Compares the linear part of a model with a take that is a frequency response only; one level, no noise, spectra filled
-/// with the magnitudes of the responses.
+/// Compares the linear part of a model with a take that is a frequency response only; one level, no noise, spectra
+/// filled with the magnitudes of the responses.
 Comparison compare(const Model&, const Spectra&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -53,7 +53,8 @@ Json channelJson(const ChannelComparison& channel, const std::vector<double>& le
         Json level {{"rms", k < levels.size() ? numberOrNull(levels[k]) : Json(nullptr)},
                     {"error", toJson(channel.byLevel[k])}};
         level["kinds"] = k < channel.kindsByLevel.size() ? toJson(channel.kindsByLevel[k]) : Json(nullptr);
-        level["spectrum"] = k < channel.spectrumByLevel.size() ? spectrumJson(channel.spectrumByLevel[k]) : Json(nullptr);
+        level["spectrum"] = k < channel.spectrumByLevel.size() ? spectrumJson(channel.spectrumByLevel[k])
+                                                               : Json(nullptr);
         list.push_back(std::move(level));
     }
     return document;
@@ -65,7 +66,7 @@ ChannelComparison channelFrom(const JsonField& field)
     channel.quantity = quantityFromJson(field.at("quantity"));
     channel.unit = field.at("unit").text();
     channel.total = errorLevelFromJson(field.at("error"));
-    if (field.has("wanderDb"))   // files from before have none
+    if (field.has("wanderDb"))  // files from before have none
         channel.wanderDb = field.at("wanderDb").number();
     for (const auto& level : field.at("levels").items()) {
         channel.byLevel.push_back(errorLevelFromJson(level.at("error")));
@@ -79,10 +80,14 @@ ChannelComparison channelFrom(const JsonField& field)
 
 Json residualJson(const ResidualCurve& r)
 {
-    return {{"residual", r.residual},       {"unit", r.unit},
-            {"against", r.against},         {"againstUnit", r.againstUnit},
-            {"at", curveJson(r.argument)},  {"mean", curveJson(r.mean)},
-            {"scatter", curveJson(r.scatter)}, {"db", numberOrNull(r.db)}};
+    return {{"residual", r.residual},
+            {"unit", r.unit},
+            {"against", r.against},
+            {"againstUnit", r.againstUnit},
+            {"at", curveJson(r.argument)},
+            {"mean", curveJson(r.mean)},
+            {"scatter", curveJson(r.scatter)},
+            {"db", numberOrNull(r.db)}};
 }
 
 ResidualCurve residualFrom(const JsonField& field)
@@ -95,12 +100,12 @@ ResidualCurve residualFrom(const JsonField& field)
     r.argument = field.at("at").numbers();
     r.mean = curveFrom(field.at("mean"), r.argument.size());
     r.scatter = curveFrom(field.at("scatter"), r.argument.size());
-    if (field.has("db"))   // files from before have none
+    if (field.has("db"))  // files from before have none
         r.db = field.at("db").numberOrNaN();
     return r;
 }
 
-} // namespace
+}  // namespace
 
 Json toJson(const ErrorKinds& kinds)
 {
@@ -112,8 +117,8 @@ Json toJson(const ErrorKinds& kinds)
 
 ErrorKinds errorKindsFromJson(const JsonField& field)
 {
-    return {field.at("linear").optionalNumber(), field.at("odd").optionalNumber(),
-            field.at("even").optionalNumber(), field.at("noise").optionalNumber()};
+    return {field.at("linear").optionalNumber(), field.at("odd").optionalNumber(), field.at("even").optionalNumber(),
+            field.at("noise").optionalNumber()};
 }
 
 Json toJson(const ErrorLevel& error)
@@ -195,4 +200,4 @@ Comparison comparisonFromJson(const JsonField& field)
     return comparison;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -33,4 +33,4 @@ std::map<Quantity, double> decibelsFromJson(const JsonField&);
 nlohmann::ordered_json toJson(const ErrorKinds&);
 ErrorKinds errorKindsFromJson(const JsonField&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -17,23 +17,30 @@
 namespace excursion {
 namespace {
 
-/// Whether nothing but noise is left in a channel: line by line, and in power, as a few lines with much of it hardly count among thousands.
+/// Whether nothing but noise is left in a channel: line by line, and in power, as a few lines with much of it hardly
+/// count among thousands.
 bool isNoise(const ChannelComparison& channel)
 {
-    constexpr double mostLines = 1.6, mostDb = 3.0;   // 2 dB of mean squared error over the noise's
-    return channel.total.chi <= mostLines && channel.total.db <= channel.total.noiseFloorDb.value_or(-std::numeric_limits<double>::infinity()) + mostDb
-        && !channel.wanderDb;
+    constexpr double mostLines = 1.6, mostDb = 3.0;  // 2 dB of mean squared error over the noise's
+    return channel.total.chi <= mostLines
+           && channel.total.db <= channel.total.noiseFloorDb.value_or(-std::numeric_limits<double>::infinity()) + mostDb
+           && !channel.wanderDb;
 }
 
 bool isNoise(const Comparison& comparison)
 {
-    return comparison.noiseKnown && std::all_of(comparison.channels.begin(), comparison.channels.end(), [](const auto& c) { return isNoise(c); });
+    return comparison.noiseKnown
+           && std::all_of(comparison.channels.begin(), comparison.channels.end(),
+                          [](const auto& c) { return isNoise(c); });
 }
 
 /// What of a mean squared residual is not noise; never quite zero, as two models at the noise are equally good.
 class Excess {
 public:
-    explicit Excess(const Comparison& comparison) : noiseKnown_(comparison.noiseKnown), least_(isNoise(comparison) ? 0.02 : 0.002) {}
+    explicit Excess(const Comparison& comparison)
+        : noiseKnown_(comparison.noiseKnown), least_(isNoise(comparison) ? 0.02 : 0.002)
+    {
+    }
     double operator()(double chi) const { return noiseKnown_ ? std::max(chi - 1.0, least_) : std::max(chi, 1e-12); }
 
 private:
@@ -41,8 +48,9 @@ private:
     double least_;
 };
 
-/// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that can. Of these the ones
-/// come first that the catalogue as a whole speaks for: others only borrow what belongs to one that is not in yet.
+/// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that
+/// can. Of these the ones come first that the catalogue as a whole speaks for: others only borrow what belongs to one
+/// that is not in yet.
 bool better(const RankedEffect& a, const RankedEffect& b)
 {
     if (a.significant != b.significant)
@@ -55,7 +63,8 @@ bool better(const RankedEffect& a, const RankedEffect& b)
     return triedA ? a.confirmedChi < b.confirmedChi : a.predictedChi < b.predictedChi;
 }
 
-/// Confidence of the tried effects: the first is sure when it explains at least half of the excess and the second leaves much more.
+/// Confidence of the tried effects: the first is sure when it explains at least half of the excess and the second
+/// leaves much more.
 void judge(std::vector<RankedEffect>& ranking, double chi, const Excess& excess, Diagnosis& diagnosis)
 {
     const double before = excess(chi);
@@ -67,7 +76,8 @@ void judge(std::vector<RankedEffect>& ranking, double chi, const Excess& excess,
         double rival = before;
         for (std::size_t j = 0; j < ranking.size(); ++j)
             if (j != k)
-                rival = std::min(rival, excess(ranking[j].confirmedChi > 0.0 ? ranking[j].confirmedChi : ranking[j].predictedChi));
+                rival = std::min(
+                    rival, excess(ranking[j].confirmedChi > 0.0 ? ranking[j].confirmedChi : ranking[j].predictedChi));
         const double explained = std::clamp(1.0 - left / before, 0.0, 1.0);
         entry.confidence = std::min(1.0, 2.0 * explained) * rival / (rival + left);
     }
@@ -97,8 +107,8 @@ std::string sentenceFor(const Diagnosis& d)
     return "";
 }
 
-/// How little the catalogue would leave of the excess with all its effects, in the channel that it explains best. Channels that
-/// hold less than a hundredth of the largest excess have no say.
+/// How little the catalogue would leave of the excess with all its effects, in the channel that it explains best.
+/// Channels that hold less than a hundredth of the largest excess have no say.
 double leastLeft(const std::vector<double>& before, const std::vector<double>& after)
 {
     const double largest = *std::max_element(before.begin(), before.end()) - 1.0;
@@ -114,7 +124,8 @@ bool outdone(const std::vector<RankedEffect>& ranking, const Excess& excess)
 {
     constexpr double far = 4.0;
     return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& other) {
-        return !other.significant && other.confirmedChi > 0.0 && far * excess(other.confirmedChi) < excess(ranking.front().confirmedChi);
+        return !other.significant && other.confirmedChi > 0.0
+               && far * excess(other.confirmedChi) < excess(ranking.front().confirmedChi);
     });
 }
 
@@ -129,7 +140,7 @@ Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& co
     return isNoise(comparison) ? Verdict::complete : Verdict::unknownEffect;
 }
 
-} // namespace
+}  // namespace
 
 std::string_view name(Verdict verdict)
 {
@@ -155,7 +166,8 @@ bool DiagnoseOptions::isValid(std::string* reason) const
 
 const RankedEffect* Diagnosis::find(std::string_view effect) const
 {
-    const auto found = std::find_if(ranking.begin(), ranking.end(), [&](const RankedEffect& r) { return r.effect == effect; });
+    const auto found = std::find_if(ranking.begin(), ranking.end(),
+                                    [&](const RankedEffect& r) { return r.effect == effect; });
     return found == ranking.end() ? nullptr : &*found;
 }
 
@@ -200,7 +212,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
         // It is not wrong by twenty times, though: the work is spared when another has already left so much less.
         const bool promising = falls(scores.chi, candidate.chi, 0.5 * options.significantFall)
-                            && excess(candidate.chi) < 20.0 * bestLeft;
+                               && excess(candidate.chi) < 20.0 * bestLeft;
         if (promising && tried < options.trials) {
             const double share = 0.7 / options.trials, begun = 0.3 + share * tried++;
             progress.at(begun, "trying " + entry.effect);
@@ -225,11 +237,11 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
     judge(diagnosis.ranking, before.chi, excess, diagnosis);
-    constexpr double smallestShare = 0.15;   // of what is not noise; less is a symptom of something else
-    constexpr double mostLeft = 0.15;        // by all effects together
+    constexpr double smallestShare = 0.15;  // of what is not noise; less is a symptom of something else
+    constexpr double mostLeft = 0.15;       // by all effects together
     diagnosis.verdict = verdictOf(diagnosis.ranking, before, smallestShare);
-    // An effect that explains a part which others would explain as well, while all of them together cannot explain the rest, may share a symptom
-    // with something unknown.
+    // An effect that explains a part which others would explain as well, while all of them together cannot explain the
+    // rest, may share a symptom with something unknown.
     if (diagnosis.verdict == Verdict::missingEffect && before.noiseKnown) {
         const auto& first = diagnosis.ranking.front();
         if (!first.vote.standsAlone() && excess(first.confirmedChi) > mostLeft * excess(before.chi)) {
@@ -241,19 +253,21 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     if (diagnosis.verdict != Verdict::missingEffect)
         diagnosis.indistinguishable.clear();
     if (!diagnosis.indistinguishable.empty())
-        diagnosis.measureNext = whatParts(diagnosis.ranking.front().model, diagnosis.find(diagnosis.indistinguishable.front())->model, record);
+        diagnosis.measureNext = whatParts(diagnosis.ranking.front().model,
+                                          diagnosis.find(diagnosis.indistinguishable.front())->model, record);
     diagnosis.sentence = sentenceFor(diagnosis);
     progress.at(1.0, "diagnosed");
     return diagnosis;
 }
 
-Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress, const Step* next)
+Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress,
+                   const Step* next)
 {
     Diagnosis diagnosis;
     const auto before = compare(model, spectra);
     diagnosis.error = errorByChannel(before);
     diagnosis.remainder = remainderOf(before);
-    constexpr int coarse = 24;   // points an octave: enough to tell what is there
+    constexpr int coarse = 24;  // points an octave: enough to tell what is there
     const auto targets = responsesOf(spectra), few = thinned(targets, coarse);
     const auto cost = [&](const Model& m) { return std::pow(10.0, responseErrorDb(m, targets) / 10.0); };
     const double now = cost(model);
@@ -282,10 +296,14 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
             entry.model = std::move(trials[n]);
         }
         for (const auto& target : targets)
-            entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(entry.model, target);
+            entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(
+                entry.model, target);
         entry.predictedChi = entry.confirmedChi;
-        // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be sure of them.
-        entry.significant = known || (entry.confirmedChi < 0.8 * now && isSeen(entry.model, entry.model.components.size() - 1));
+        // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be
+        // sure of them.
+        entry.significant = known
+                            || (entry.confirmedChi < 0.8 * now
+                                && isSeen(entry.model, entry.model.components.size() - 1));
         if (known)
             entry.vote = next->vote;
         entry.reason = reasonFor(*effect, entry.model, before, entry.confirmedErrorDb);
@@ -293,14 +311,18 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
     if (next)
-        std::stable_partition(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const RankedEffect& r) { return r.effect == next->added; });
+        std::stable_partition(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                              [&](const RankedEffect& r) { return r.effect == next->added; });
     judge(diagnosis.ranking, now, Excess(before), diagnosis);
     if (!diagnosis.indistinguishable.empty())
-        diagnosis.measureNext = "Measure in time, with multisines of several levels: distortion and the motion of the cone tell more than responses do.";
-    const bool found = next || (!diagnosis.ranking.empty() && diagnosis.ranking.front().significant && !outdone(diagnosis.ranking, Excess(before)));
+        diagnosis.measureNext = "Measure in time, with multisines of several levels: distortion and the motion of the "
+                                "cone tell more than responses do.";
+    const bool found = next
+                       || (!diagnosis.ranking.empty() && diagnosis.ranking.front().significant
+                           && !outdone(diagnosis.ranking, Excess(before)));
     diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
     diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
     return diagnosis;
 }
 
-} // namespace excursion
+}  // namespace excursion

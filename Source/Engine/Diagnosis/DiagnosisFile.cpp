@@ -41,7 +41,7 @@ RankedEffect rankedFrom(const JsonField& field)
         ranked.confirmedErrorDb = decibelsFromJson(field.at("confirmedErrorDb"));
         ranked.confirmedChi = field.at("confirmedChi").numberOrNaN();
     }
-    if (field.has("uniqueDb"))   // not told of a frequency response, nor by files from before
+    if (field.has("uniqueDb"))  // not told of a frequency response, nor by files from before
         ranked.vote.uniqueDb = field.at("uniqueDb").numberOrNaN();
     if (field.has("inconsistency"))
         ranked.vote.inconsistency = field.at("inconsistency").numberOrNaN();
@@ -50,7 +50,7 @@ RankedEffect rankedFrom(const JsonField& field)
     return ranked;
 }
 
-} // namespace
+}  // namespace
 
 Json toJson(const std::vector<Problem>& problems)
 {
@@ -84,7 +84,8 @@ std::vector<Problem> problemsFromJson(const JsonField& field)
 
 Verdict verdictFromJson(const JsonField& field)
 {
-    constexpr std::array verdicts {Verdict::missingEffect, Verdict::complete, Verdict::unknownEffect, Verdict::badMeasurement};
+    constexpr std::array verdicts {Verdict::missingEffect, Verdict::complete, Verdict::unknownEffect,
+                                   Verdict::badMeasurement};
     std::vector<std::string> known;
     for (const auto verdict : verdicts)
         known.emplace_back(name(verdict));
@@ -131,10 +132,10 @@ Diagnosis diagnosisFromJson(const JsonField& field)
         diagnosis.ranking.push_back(rankedFrom(item));
     diagnosis.indistinguishable = textsFromJson(field.at("indistinguishable"));
     diagnosis.measureNext = field.at("measureNext").text();
-    if (field.has("remainder"))   // files from before have none
+    if (field.has("remainder"))  // files from before have none
         diagnosis.remainder = remainderFromJson(field.at("remainder"));
     diagnosis.problems = problemsFromJson(field.at("problems"));
     return diagnosis;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -21,4 +21,4 @@ std::vector<Problem> problemsFromJson(const JsonField&);
 Verdict verdictFromJson(const JsonField&);
 std::vector<std::string> textsFromJson(const JsonField&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -21,10 +21,10 @@ void requireOnce(const std::vector<std::string>& effects)
             throw Error(Error::Kind::usage, "The effect \"" + id + "\" is named twice.");
 }
 
-} // namespace
+}  // namespace
 
-Model fitEffects(Record& record, const std::vector<std::string>& effects, const FitOptions& options, FitSummary* summary,
-                 const Progress& progress)
+Model fitEffects(Record& record, const std::vector<std::string>& effects, const FitOptions& options,
+                 FitSummary* summary, const Progress& progress)
 {
     requireOnce(effects);
     for (const auto& id : effects)
@@ -63,7 +63,8 @@ Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects
         if (const auto why = whyUnseen(effect, seenIn(spectra)); !why.empty())
             throw Error(Error::Kind::usage, why);
         if (!addByResponse(model, effect, targets).usable)
-            throw Error(Error::Kind::numerical, "The effect \"" + id + "\" could not be fitted to the frequency response.");
+            throw Error(Error::Kind::numerical,
+                        "The effect \"" + id + "\" could not be fitted to the frequency response.");
     }
     const auto run = refineByResponse(model, targets);
     if (summary)
@@ -71,4 +72,4 @@ Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects
     return model;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,8 +9,8 @@
 namespace excursion {
 namespace {
 
-/// By how many times what an effect removed exceeds what is left in the end, in the channel where it did best; channels that held less
-/// than a hundredth of the largest excess have no say.
+/// By how many times what an effect removed exceeds what is left in the end, in the channel where it did best; channels
+/// that held less than a hundredth of the largest excess have no say.
 double worth(const Comparison& before, const Comparison& after, const Comparison& last)
 {
     double largest = 0.0, best = 0.0;
@@ -31,8 +31,8 @@ bool stoodAlone(const Rung& before, const Rung& rung)
     return ranked && ranked->vote.standsAlone();
 }
 
-/// When something unknown is left in the end, effects that removed little more than that may have explained a symptom of it: they are
-/// taken back.
+/// When something unknown is left in the end, effects that removed little more than that may have explained a symptom
+/// of it: they are taken back.
 void withdrawDoubtful(Ladder& ladder)
 {
     if (ladder.verdict != Verdict::unknownEffect || !ladder.rungs.back().comparison.noiseKnown)
@@ -40,7 +40,8 @@ void withdrawDoubtful(Ladder& ladder)
     constexpr double convincing = 3.0;
     const Comparison last = ladder.rungs.back().comparison;
     while (ladder.rungs.size() > 1 && !stoodAlone(ladder.rungs[ladder.rungs.size() - 2], ladder.rungs.back())
-           && worth(ladder.rungs[ladder.rungs.size() - 2].comparison, ladder.rungs.back().comparison, last) < convincing) {
+           && worth(ladder.rungs[ladder.rungs.size() - 2].comparison, ladder.rungs.back().comparison, last)
+                  < convincing) {
         ladder.withdrawn.push_back(ladder.rungs.back().added);
         ladder.rungs.pop_back();
     }
@@ -48,7 +49,7 @@ void withdrawDoubtful(Ladder& ladder)
         ladder.sentence = foundInWords(ladder) + unexplained(ladder.rungs.back().diagnosis.remainder);
 }
 
-} // namespace
+}  // namespace
 
 Ladder improve(const Take& take, const ImproveOptions& options, const Progress& progress)
 {
@@ -67,22 +68,23 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
     const double searched = inTime ? begun : 0.7;
     if (!inTime && work.addTogether(progress.part(begun, searched)))
         tell();
-    const double share = (done - searched) / static_cast<double>(catalogue().size());   // of a rung: none has an effect twice
+    // of a rung: none has an effect twice
+    const double share = (done - searched) / static_cast<double>(catalogue().size());
     while (work.ladder().verdict == Verdict::missingEffect) {
         const double at = searched + share * static_cast<double>(work.ladder().rungs.size() - 1);
         const auto part = progress.part(at, at + share);
         if (!inTime || !work.addTogether(part.part(0.0, 0.7))) {
-            tell();   // its diagnosis stands
+            tell();  // its diagnosis stands
             work.add(work.ladder().rungs.back().diagnosis.ranking.front().effect, part.part(0.7, 1.0));
         }
     }
     tell();
     auto ladder = work.ladder();
     withdrawDoubtful(ladder);
-    if (inTime)   // the diagnosis of a frequency response has told them
+    if (inTime)  // the diagnosis of a frequency response has told them
         ladder.sentence += caveatsOf(ladder.model());
     progress.at(1.0, "done");
     return ladder;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -30,7 +30,8 @@ Model first(const Spectra& spectra, const ImproveOptions& options, FitSummary& s
     return fitEffects(spectra, options.with, &summary);
 }
 
-void tryOne(Model& model, const Record& record, const Effect& effect, const FitOptions& options, const Progress& progress)
+void tryOne(Model& model, const Record& record, const Effect& effect, const FitOptions& options,
+            const Progress& progress)
 {
     tryEffect(model, record, effect, options, progress);
 }
@@ -38,14 +39,16 @@ void tryOne(Model& model, const Record& record, const Effect& effect, const FitO
 void tryOne(Model& model, const Spectra& spectra, const Effect& effect, const FitOptions&, const Progress&)
 {
     if (!addByResponse(model, effect, responsesOf(spectra)).usable)
-        throw Error(Error::Kind::numerical, "The effect \"" + effect.id() + "\" could not be fitted to the frequency response.");
+        throw Error(Error::Kind::numerical,
+                    "The effect \"" + effect.id() + "\" could not be fitted to the frequency response.");
 }
 
 /// The effects as they were added; the fit that follows makes the covariance anew.
 void putInOrder(Model& model, const std::vector<std::string>& effects)
 {
     const auto place = [&](const Component& c) { return std::find(effects.begin(), effects.end(), c.effect->id()); };
-    std::stable_sort(model.components.begin() + 1, model.components.end(), [&](const Component& a, const Component& b) { return place(a) < place(b); });
+    std::stable_sort(model.components.begin() + 1, model.components.end(),
+                     [&](const Component& a, const Component& b) { return place(a) < place(b); });
     model.covariance.resize(0, 0);
 }
 
@@ -61,7 +64,7 @@ FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const
     return summary;
 }
 
-} // namespace
+}  // namespace
 
 Improvement::Improvement(const Take& take, const ImproveOptions& options, const Progress& progress) : options_(options)
 {
@@ -92,7 +95,7 @@ void Improvement::begin(const Progress& progress)
     if (!report_.fitForUse())
         throw Error(Error::Kind::data, "The take is not fit for use: " + report_.verdict());
     Rung rung;
-    auto data = data_;   // is adapted to the model; should the work be cancelled, nothing has happened
+    auto data = data_;  // is adapted to the model; should the work be cancelled, nothing has happened
     rung.model = std::visit([&](auto& d) { return first(d, options_, rung.fit, progress.part(0.0, 0.4)); }, data);
     data_ = std::move(data);
     ladder_.rungs.clear();
@@ -113,16 +116,18 @@ bool Improvement::addTogether(const Progress& progress)
 
 bool Improvement::addSteps(const Spectra& spectra, const Progress& progress)
 {
-    const auto steps = stepsByResponse(ladder_.model(), spectra, options_.diagnose.fit.threads, progress.part(0.0, 0.6));
+    const auto steps = stepsByResponse(ladder_.model(), spectra, options_.diagnose.fit.threads,
+                                       progress.part(0.0, 0.6));
     for (std::size_t n = 0; n < steps.size(); ++n) {
         const double count = static_cast<double>(steps.size()), done = static_cast<double>(n);
         auto last = std::move(ladder_.rungs.back());
         ladder_.rungs.pop_back();
-        last.diagnosis = diagnose(last.model, spectra, options_.diagnose, progress.part(0.6 + 0.3 * done / count, 0.6 + 0.3 * (done + 1.0) / count), &steps[n]);
+        last.diagnosis = diagnose(last.model, spectra, options_.diagnose,
+                                  progress.part(0.6 + 0.3 * done / count, 0.6 + 0.3 * (done + 1.0) / count), &steps[n]);
         keep(std::move(last));
         Rung rung;
         rung.added = steps[n].added;
-        rung.model = ladder_.rungs.back().diagnosis.ranking.front().model;   // the step's, or what leaves less
+        rung.model = ladder_.rungs.back().diagnosis.ranking.front().model;  // the step's, or what leaves less
         auto order = ladder_.rungs.back().model.effectIds();
         order.push_back(rung.added);
         putInOrder(rung.model, order);
@@ -141,7 +146,8 @@ bool Improvement::addSteps(const Spectra& spectra, const Progress& progress)
 bool Improvement::addWhole(const Record& record, const Progress& progress)
 {
     const auto& base = ladder_.rungs.back();
-    const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(), [](const RankedEffect& r) { return r.vote.backs(); });
+    const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(),
+                                      [](const RankedEffect& r) { return r.vote.backs(); });
     if (!hasPeriods(record) || backed < 2)
         return false;
     const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.5));
@@ -152,7 +158,7 @@ bool Improvement::addWhole(const Record& record, const Progress& progress)
         return false;
     auto last = std::move(rungs.back());
     rungs.pop_back();
-    ladder_.rungs.pop_back();   // comes again, with its diagnosis
+    ladder_.rungs.pop_back();  // comes again, with its diagnosis
     for (auto& rung : rungs)
         keep(std::move(rung));
     push(std::move(last), progress.part(0.8, 1.0));
@@ -176,8 +182,11 @@ void Improvement::add(const std::string& id, const Progress& progress)
     if (ranked && !ranked->model.components.empty())
         rung.model = ranked->model;
     else
-        std::visit([&](const auto& d) { tryOne(rung.model, d, effect, options_.diagnose.fit, progress.part(0.0, 0.25)); }, data_);
-    rung.fit = std::visit([&](const auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data_);
+        std::visit(
+            [&](const auto& d) { tryOne(rung.model, d, effect, options_.diagnose.fit, progress.part(0.0, 0.25)); },
+            data_);
+    rung.fit = std::visit(
+        [&](const auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data_);
     push(std::move(rung), progress.part(0.5, 1.0));
 }
 
@@ -186,7 +195,8 @@ void Improvement::push(Rung rung, const Progress& progress)
 {
     const auto judge = [&](const Progress& part) {
         rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
-        rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, part); }, data_);
+        rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, part); },
+                                    data_);
     };
     judge(progress.part(0.0, 0.5));
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
@@ -194,7 +204,8 @@ void Improvement::push(Rung rung, const Progress& progress)
         record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable
         && (rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.costPerResidual < nearNoise))) {
         auto better = rung.model;
-        if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, true, progress.part(0.5, 0.7)); run.usable) {
+        if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, true, progress.part(0.5, 0.7));
+            run.usable) {
             rung.model = std::move(better);
             rung.fit = run;
             judge(progress.part(0.7, 1.0));
@@ -214,7 +225,8 @@ void Improvement::concludeFromLast()
 {
     const auto& diagnosis = ladder_.rungs.back().diagnosis;
     ladder_.verdict = diagnosis.verdict;
-    ladder_.sentence = (diagnosis.verdict == Verdict::unknownEffect ? foundInWords(ladder_) : std::string()) + diagnosis.sentence;
+    ladder_.sentence = (diagnosis.verdict == Verdict::unknownEffect ? foundInWords(ladder_) : std::string())
+                       + diagnosis.sentence;
 }
 
 void Improvement::undo()
@@ -233,4 +245,4 @@ std::vector<Waveform> Improvement::waveforms(int level) const
     return excursion::waveforms(ladder_.model(), *record, level);
 }
 
-} // namespace excursion
+}  // namespace excursion

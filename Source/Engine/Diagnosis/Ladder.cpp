@@ -23,8 +23,11 @@ std::string foundInWords(const Ladder& ladder)
 {
     std::string text;
     for (std::size_t n = 1; n < ladder.rungs.size(); ++n)
-        text += (n == 1 ? "Found: " : n + 1 == ladder.rungs.size() ? " and " : ", ") + effectNamed(ladder.rungs[n].added).title();
+        text += (n == 1                         ? "Found: "
+                 : n + 1 == ladder.rungs.size() ? " and "
+                                                : ", ")
+                + effectNamed(ladder.rungs[n].added).title();
     return text.empty() ? text : text + ". ";
 }
 
-} // namespace excursion
+}  // namespace excursion

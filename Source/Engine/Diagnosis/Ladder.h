@@ -15,10 +15,10 @@ namespace excursion {
 
 /// One step of the ladder: an effect was added (none at the first), everything was refitted.
 struct Rung {
-    std::string added;                              ///< effect id; empty at the start
-    std::map<Quantity, double> predictedErrorDb;    ///< by the diagnosis that proposed it
-    Comparison comparison;                          ///< after the fit, on validation data
-    Diagnosis diagnosis;                            ///< of this rung's model: what to add next, or why to stop
+    std::string added;                            ///< effect id; empty at the start
+    std::map<Quantity, double> predictedErrorDb;  ///< by the diagnosis that proposed it
+    Comparison comparison;                        ///< after the fit, on validation data
+    Diagnosis diagnosis;                          ///< of this rung's model: what to add next, or why to stop
     Model model;
     FitSummary fit;
 };
@@ -28,19 +28,20 @@ struct Ladder {
     std::string sentence;
     std::vector<Rung> rungs;
     std::vector<Problem> problems;
-    std::vector<std::string> withdrawn;   ///< effects that were tried and taken back, as what they left was as large as what they explained
+    /// effects that were tried and taken back, as what they left was as large as what they explained
+    std::vector<std::string> withdrawn;
 
     const Model& model() const { return rungs.back().model; }
 };
 
 /// The first part of a verdict: an effect of the last model.
 struct KnownEffect {
-    std::string effect;                 ///< id
-    std::optional<double> confidence;   ///< of the diagnosis that proposed it; none where it was put in by hand
+    std::string effect;                ///< id
+    std::optional<double> confidence;  ///< of the diagnosis that proposed it; none where it was put in by hand
 };
 std::vector<KnownEffect> knownEffects(const Ladder&);
 
 /// "Found: Stiffness K(x) and Force factor Bl(x). " Empty where the ladder found nothing.
 std::string foundInWords(const Ladder&);
 
-} // namespace excursion
+}  // namespace excursion

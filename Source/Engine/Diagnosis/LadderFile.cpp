@@ -51,12 +51,9 @@ Json levelsJson(const Comparison& comparison)
 
 Json fitJson(const FitSummary& fit)
 {
-    return {{"usable", fit.usable},
-            {"converged", fit.converged},
-            {"iterations", fit.iterations},
-            {"reason", fit.reason},
-            {"substeps", fit.substeps},
-            {"costPerResidual", numberOrNull(fit.costPerResidual)}};
+    return {{"usable", fit.usable},         {"converged", fit.converged},
+            {"iterations", fit.iterations}, {"reason", fit.reason},
+            {"substeps", fit.substeps},     {"costPerResidual", numberOrNull(fit.costPerResidual)}};
 }
 
 FitSummary fitFrom(const JsonField& field)
@@ -183,18 +180,19 @@ ResponseTarget asImpedance(ResponseTarget response)
 
 std::optional<WhatIf> whatIfOn(const Model& model, const Record& record, const Progress& progress)
 {
-    if (std::all_of(model.components.begin(), model.components.end(), [](const Component& c) { return c.effect->linear(); }))
+    if (std::all_of(model.components.begin(), model.components.end(),
+                    [](const Component& c) { return c.effect->linear(); }))
         return std::nullopt;
     try {
         return whatIf(model, record, progress);
     } catch (const Error& e) {
         if (e.kind() != Error::Kind::numerical)
             throw;
-        return std::nullopt;   // the ladder stands without it
+        return std::nullopt;  // the ladder stands without it
     }
 }
 
-} // namespace
+}  // namespace
 
 TakeSummary summarize(const Take& take, const std::string& path)
 {
@@ -234,7 +232,7 @@ LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& p
 {
     Take take = given;
     if (auto* measurement = std::get_if<Measurement>(&take))
-        completeExcitation(*measurement);   // as the ladder was made of it
+        completeExcitation(*measurement);  // as the ladder was made of it
     LadderFile file;
     file.take = summarize(take, path);
     if (!ladder.rungs.empty()) {
@@ -254,15 +252,16 @@ LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& p
 
 Json toJson(const LadderFile& file)
 {
-    Json document {{"format", ladderFormat},
-                   {"version", ladderVersion},
-                   {"verdict", name(file.ladder.verdict)},
-                   {"sentence", file.ladder.sentence},
-                   {"problems", toJson(file.ladder.problems)},
-                   {"withdrawn", file.ladder.withdrawn},
-                   {"known", knownJson(file.ladder)},
-                   {"remainder", file.ladder.rungs.empty() ? Json(nullptr) : toJson(file.ladder.rungs.back().diagnosis.remainder)},
-                   {"take", takeJson(file.take)}};
+    Json document {
+        {"format", ladderFormat},
+        {"version", ladderVersion},
+        {"verdict", name(file.ladder.verdict)},
+        {"sentence", file.ladder.sentence},
+        {"problems", toJson(file.ladder.problems)},
+        {"withdrawn", file.ladder.withdrawn},
+        {"known", knownJson(file.ladder)},
+        {"remainder", file.ladder.rungs.empty() ? Json(nullptr) : toJson(file.ladder.rungs.back().diagnosis.remainder)},
+        {"take", takeJson(file.take)}};
     document["rungs"] = Json::array();
     for (std::size_t k = 0; k < file.ladder.rungs.size(); ++k)
         document["rungs"].push_back(rungJson(file.ladder.rungs[k], k > 0 ? &file.ladder.rungs[k - 1] : nullptr));
@@ -287,7 +286,7 @@ LadderFile ladderFromJson(const nlohmann::json& document, const std::string& whe
         file.ladder.rungs.push_back(rungFrom(rung));
     for (const auto& response : root.at("responses").items())
         file.responses.push_back(responseFrom(response));
-    if (root.has("whatIf"))   // ladders of before have none
+    if (root.has("whatIf"))  // ladders of before have none
         file.whatIf = whatIfFromJson(root.at("whatIf"));
     return file;
 }
@@ -296,4 +295,4 @@ LadderFile readLadder(const std::filesystem::path& path) { return ladderFromJson
 
 void writeLadder(const LadderFile& file, const std::filesystem::path& path) { writeJson(toJson(file), path); }
 
-} // namespace excursion
+}  // namespace excursion

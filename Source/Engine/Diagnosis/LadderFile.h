@@ -16,27 +16,29 @@ namespace excursion {
 
 /// What the take was, in words and numbers that a report shows.
 struct TakeSummary {
-    std::string path;                    ///< as it was given
-    std::string driver;                  ///< its name; empty when not told
-    double sampleRate = 0.0;             ///< Hz; 0 for a frequency response
+    std::string path;         ///< as it was given
+    std::string driver;       ///< its name; empty when not told
+    double sampleRate = 0.0;  ///< Hz; 0 for a frequency response
     double seconds = 0.0;
-    std::vector<std::string> channels;   ///< "voltage", ...
-    std::vector<double> levels;          ///< V rms
-    int realizations = 0, periods = 0;   ///< 0 when the take has no such structure
+    std::vector<std::string> channels;  ///< "voltage", ...
+    std::vector<double> levels;         ///< V rms
+    int realizations = 0, periods = 0;  ///< 0 when the take has no such structure
 };
 TakeSummary summarize(const Take&, const std::string& path);
 
-/// A ladder with all that a report needs, so that `report` can be run again without the take. Format "excursion-ladder",
-/// version 1 (Docs/Formats.md).
+/// A ladder with all that a report needs, so that `report` can be run again without the take. Format
+/// "excursion-ladder", version 1 (Docs/Formats.md).
 struct LadderFile {
     Ladder ladder;
     TakeSummary take;
-    std::vector<ResponseTarget> responses;   ///< measured at the quietest level; of an electrical driver the impedance is among them
-    std::optional<WhatIf> whatIf;            ///< of the last model, where it has an effect that distorts and the take is one in time
+    /// measured at the quietest level; of an electrical driver the impedance is among them
+    std::vector<ResponseTarget> responses;
+    /// of the last model, where it has an effect that distorts and the take is one in time
+    std::optional<WhatIf> whatIf;
 };
 
-/// What the model's effects make of a take: of its loudest level. Nothing where no effect distorts, the take is a frequency response, or
-/// the model cannot be played.
+/// What the model's effects make of a take: of its loudest level. Nothing where no effect distorts, the take is a
+/// frequency response, or the model cannot be played.
 std::optional<WhatIf> whatIfOf(const Model&, const Take&, const Progress& = {});
 
 /// @throws Error (data) when the take has no channel to compare
@@ -48,4 +50,4 @@ LadderFile ladderFromJson(const nlohmann::json&, const std::string& where);
 LadderFile readLadder(const std::filesystem::path&);
 void writeLadder(const LadderFile&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

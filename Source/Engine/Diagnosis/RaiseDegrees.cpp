@@ -35,17 +35,19 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     for (std::size_t k = 0; k < higher.components.size(); ++k)
         for (const auto& p : higher.components[k].parameters) {
             const auto& before = model.components[k].parameters;
-            const bool isNew = std::none_of(before.begin(), before.end(), [&](const Parameter& b) { return b.name == p.name; });
+            const bool isNew = std::none_of(before.begin(), before.end(),
+                                            [&](const Parameter& b) { return b.name == p.name; });
             visit(p, isNew, k);
         }
     for (const auto& p : higher.path.parameters)
         visit(p, false, 0);
-    // Twice what noise alone gives, about the 95 % point of chi-square: a higher price would leave a bias of several standard errors out
-    // of the confidence bands, a lower one would let the law wander where the record seldom is.
+    // Twice what noise alone gives, about the 95 % point of chi-square: a higher price would leave a bias of several
+    // standard errors out of the confidence bands, a lower one would let the law wander where the record seldom is.
     const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
     const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
     const double price = 2.4 * unit;
-    // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a share that is worth it.
+    // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a
+    // share that is worth it.
     const double least = record.noiseKnown && unit < nearNoise ? 0.0 : 0.02 * now;
     Model result = model;
     for (const auto k : candidates) {
@@ -62,4 +64,4 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     return raised;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -36,8 +36,9 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
         if (analogue && unit.front() == 'm')
             unit.front() = 'V';
         const double end = curve.argument.back() * (metres ? 1e3 : 1.0);
-        return curve.info.name + " comes out " + figure(std::round(low) + 0.0, "%+.0f") + " % at " + figure(-end, "%.3g") + " and "
-               + figure(std::round(high) + 0.0, "%+.0f") + " % at " + figure(end, "%+.3g") + " " + unit;
+        return curve.info.name + " comes out " + figure(std::round(low) + 0.0, "%+.0f") + " % at "
+               + figure(-end, "%.3g") + " and " + figure(std::round(high) + 0.0, "%+.0f") + " % at "
+               + figure(end, "%+.3g") + " " + unit;
     }
     const auto* component = model.find(effect.id());
     if (!component)
@@ -48,11 +49,12 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
             figures.push_back({p.name, p.unit, p.value});
     std::string text;
     for (const auto& f : figures)
-        text += (text.empty() ? "" : ", ") + f.name + " = " + figure(f.value, "%.3g") + (f.unit == "1" ? "" : " " + f.unit);
+        text += (text.empty() ? "" : ", ") + f.name + " = " + figure(f.value, "%.3g")
+                + (f.unit == "1" ? "" : " " + f.unit);
     return "it comes out with " + text;
 }
 
-} // namespace
+}  // namespace
 
 std::string reasonFor(const Effect& effect, const Model& with, const Comparison& before,
                       const std::map<Quantity, double>& errorDbAfter)
@@ -69,9 +71,10 @@ std::string reasonFor(const Effect& effect, const Model& with, const Comparison&
     if (const auto shape = law(with, effect, isAnalogue(before)); !shape.empty())
         text += shape + "; ";
     text += "look for " + effect.symptoms();
-    if (const auto kinds = channel.kindsByLevel.empty() ? std::string() : inWords(channel.kindsByLevel.back()); !kinds.empty())
+    if (const auto kinds = channel.kindsByLevel.empty() ? std::string() : inWords(channel.kindsByLevel.back());
+        !kinds.empty())
         text += "; the error before: " + kinds;
     return text + ".";
 }
 
-} // namespace excursion
+}  // namespace excursion

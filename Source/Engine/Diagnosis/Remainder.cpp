@@ -99,22 +99,25 @@ const ResidualCurve* bestCurve(const Comparison& comparison, const std::string& 
 std::vector<std::string> likenessOf(const Comparison& comparison, const Remainder& remainder)
 {
     for (const auto& part : remainder.channels)
-        if (part.wanderDb)   // the rest may be a symptom of it
-            return {"a parameter that wanders, or drifts: periods of the " + part.title + " that should be equal differ by "
-                    + figure(*part.wanderDb, "%.0f") + " dB of it, the more the larger it is"};
+        if (part.wanderDb)  // the rest may be a symptom of it
+            return {"a parameter that wanders, or drifts: periods of the " + part.title
+                    + " that should be equal differ by " + figure(*part.wanderDb, "%.0f")
+                    + " dB of it, the more the larger it is"};
     std::vector<std::string> words;
-    constexpr double mostly = 0.5, hardly = 0.25, clearly = 10.0;   // dB the last
+    constexpr double mostly = 0.5, hardly = 0.25, clearly = 10.0;  // dB the last
     bool anyCurve = false;
     for (const auto& place : remainder.places) {
         if (place.db < remainder.places.front().db - clearly)
-            break;   // a symptom of the larger one
+            break;  // a symptom of the larger one
         const auto& curve = *bestCurve(comparison, place.residual);
         anyCurve = anyCurve || place.share > hardly;
         if (place.share > hardly && place.against == "x" && place.residual == "force" && oneSided(curve))
-            words.emplace_back("contact on one side, where x is near "
-                               + placeText(std::abs(place.from) > std::abs(place.to) ? place.from : place.to, place.unit));
+            words.emplace_back(
+                "contact on one side, where x is near "
+                + placeText(std::abs(place.from) > std::abs(place.to) ? place.from : place.to, place.unit));
         else if (place.share > mostly)
-            words.emplace_back("a " + place.residual + " that depends on " + place.against + " in a way that no law of the model has");
+            words.emplace_back("a " + place.residual + " that depends on " + place.against
+                               + " in a way that no law of the model has");
     }
     const auto& first = remainder.channels.front();
     const auto level = [](const std::optional<double>& db) { return db.value_or(-1e3); };
@@ -125,12 +128,13 @@ std::vector<std::string> likenessOf(const Comparison& comparison, const Remainde
         else if (!first.growth || std::abs(*first.growth) < 0.3)
             words.emplace_back("a linear part that the model lacks, or a parameter that wanders");
     } else if (!remainder.places.empty() && !anyCurve && first.kinds.odd) {
-        words.emplace_back("a " + remainder.places.front().residual + " with a memory, such as a hysteresis, or one that depends on two of x, v and i at once");
+        words.emplace_back("a " + remainder.places.front().residual
+                           + " with a memory, such as a hysteresis, or one that depends on two of x, v and i at once");
     }
     return words;
 }
 
-} // namespace
+}  // namespace
 
 Remainder remainderOf(const Comparison& comparison)
 {
@@ -143,10 +147,11 @@ Remainder remainderOf(const Comparison& comparison)
     for (const char* residual : {"force", "voltage"})
         if (const auto* curve = bestCurve(comparison, residual)) {
             const auto [low, high] = middleOf(squares(curve->mean));
-            remainder.places.push_back({curve->residual, curve->against, curve->againstUnit, curve->db, shareOf(*curve), curve->argument[low],
-                                        curve->argument[high]});
+            remainder.places.push_back({curve->residual, curve->against, curve->againstUnit, curve->db, shareOf(*curve),
+                                        curve->argument[low], curve->argument[high]});
         }
-    std::stable_sort(remainder.places.begin(), remainder.places.end(), [](const auto& a, const auto& b) { return a.db > b.db; });
+    std::stable_sort(remainder.places.begin(), remainder.places.end(),
+                     [](const auto& a, const auto& b) { return a.db > b.db; });
     if (!remainder.channels.empty())
         remainder.looksLike = likenessOf(comparison, remainder);
     return remainder;
@@ -168,7 +173,7 @@ std::string likeness(const Remainder& remainder)
     return text;
 }
 
-} // namespace
+}  // namespace
 
 std::string inFewWords(const Remainder& remainder)
 {
@@ -193,9 +198,11 @@ std::string inWords(const Remainder& remainder)
 std::string unexplained(const Remainder& remainder)
 {
     const bool noiseKnown = !remainder.channels.empty() && remainder.channels.front().noiseFloorDb;
-    return std::string(noiseKnown ? "Something is left that no effect of the catalogue explains: "
-                                  : "No effect of the catalogue lowers the error further, and the take does not tell its noise: ")
+    return std::string(
+               noiseKnown
+                   ? "Something is left that no effect of the catalogue explains: "
+                   : "No effect of the catalogue lowers the error further, and the take does not tell its noise: ")
            + inWords(remainder) + ".";
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -51,7 +51,7 @@ RemainderPlace placeFrom(const JsonField& field)
             field.at("share").number(),  field.at("from").number(),  field.at("to").number()};
 }
 
-} // namespace
+}  // namespace
 
 Json toJson(const Remainder& remainder)
 {
@@ -63,9 +63,13 @@ Json toJson(const Remainder& remainder)
         document["channels"].push_back(partJson(part));
     document["places"] = Json::array();
     for (const auto& p : remainder.places)
-        document["places"].push_back(
-            {{"residual", p.residual}, {"against", p.against}, {"unit", p.unit}, {"db", numberOrNull(p.db)},
-             {"share", p.share}, {"from", p.from}, {"to", p.to}});
+        document["places"].push_back({{"residual", p.residual},
+                                      {"against", p.against},
+                                      {"unit", p.unit},
+                                      {"db", numberOrNull(p.db)},
+                                      {"share", p.share},
+                                      {"from", p.from},
+                                      {"to", p.to}});
     return document;
 }
 
@@ -83,4 +87,4 @@ Remainder remainderFromJson(const JsonField& field)
     return remainder;
 }
 
-} // namespace excursion
+}  // namespace excursion

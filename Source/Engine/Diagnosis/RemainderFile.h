@@ -8,8 +8,9 @@
 
 namespace excursion {
 
-/// What is left, as the object `remainder` of a diagnosis and of a ladder (Docs/Formats.md); null where nothing was compared.
+/// What is left, as the object `remainder` of a diagnosis and of a ladder (Docs/Formats.md); null where nothing was
+/// compared.
 nlohmann::ordered_json toJson(const Remainder&);
 Remainder remainderFromJson(const JsonField&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -37,8 +37,9 @@ std::vector<Complex> displacementError(const Record& record, const Section& sect
     return {};
 }
 
-/// The rows of the linear equations of motion that must be driven to repair the errors: with z the state that has the wanted
-/// i and x, and memories that follow them, B_f force = (s - A) z in the row of v, and likewise for the voltage in that of i.
+/// The rows of the linear equations of motion that must be driven to repair the errors: with z the state that has the
+/// wanted i and x, and memories that follow them, B_f force = (s - A) z in the row of v, and likewise for the voltage
+/// in that of i.
 class Repair {
 public:
     explicit Repair(const Model& model) : linear_(linearize(model)), n_(linear_.A.rows()) {}
@@ -55,7 +56,8 @@ public:
         z[2] = s * x;
         const Eigen::Index m = n_ - 3;
         if (m > 0) {
-            const Eigen::MatrixXcd system = s * Eigen::MatrixXcd::Identity(m, m) - linear_.A.bottomRightCorner(m, m).cast<Complex>();
+            const Eigen::MatrixXcd system = s * Eigen::MatrixXcd::Identity(m, m)
+                                            - linear_.A.bottomRightCorner(m, m).cast<Complex>();
             z.tail(m) = system.partialPivLu().solve(linear_.A.bottomLeftCorner(m, 3).cast<Complex>() * z.head(3));
         }
         const Eigen::VectorXcd rows = s * z.head(3) - linear_.A.topRows(3).cast<Complex>() * z;
@@ -81,7 +83,8 @@ void bin(const std::vector<double>& argument, const std::vector<double>& value, 
         return;
     std::vector<double> count(bins, 0.0), sum(bins, 0.0), square(bins, 0.0);
     for (std::size_t n = 0; n < argument.size(); ++n) {
-        const auto b = static_cast<std::size_t>(std::clamp(static_cast<int>((argument[n] - *low) / width), 0, bins - 1));
+        const auto b = static_cast<std::size_t>(
+            std::clamp(static_cast<int>((argument[n] - *low) / width), 0, bins - 1));
         count[b] += 1.0;
         sum[b] += value[n];
         square[b] += value[n] * value[n];
@@ -96,10 +99,10 @@ void bin(const std::vector<double>& argument, const std::vector<double>& value, 
     }
 }
 
-} // namespace
+}  // namespace
 
-std::vector<ResidualCurve> residualCurves(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                                          const std::vector<SectionFit>& fits)
+std::vector<ResidualCurve> residualCurves(const Model& model, const Record& record,
+                                          const std::vector<std::size_t>& sections, const std::vector<SectionFit>& fits)
 {
     int loudest = -1;
     for (const auto n : sections)
@@ -129,7 +132,9 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
             if (f < 0.5 * record.bandLow || f > std::min(1.2 * record.bandHigh, record.highFrequency))
                 continue;
             const Complex s(0.0, 2.0 * std::numbers::pi * f);
-            const Complex ei = currentChannel && seesVoltage ? section.measured[*currentChannel][k] - fits[n].predicted[*currentChannel][k] : 0.0;
+            const Complex ei = currentChannel && seesVoltage
+                                   ? section.measured[*currentChannel][k] - fits[n].predicted[*currentChannel][k]
+                                   : 0.0;
             const auto drives = repair.at(s, ei, ex[k]);
             // Displacement drowns in noise long before the band ends: keep the lines where it stands out.
             const auto c = record.channelIndex(Quantity::displacement);
@@ -139,9 +144,12 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
         }
         Trajectory run;
         const auto drive = record.drive(section, leadIn);
-        if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run, from[n].value))
+        if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run,
+                       from[n].value))
             return {};
-        const auto append = [](std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); };
+        const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
         append(motions.drive, {drive.end() - static_cast<std::ptrdiff_t>(section.window), drive.end()});
         append(motions.x, run.displacement);
         append(motions.v, run.velocity);
@@ -164,10 +172,11 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
             against("i", "A", motions.i);
     };
     if (seesForce)
-        add("force", "N", motions.force, model.electrical() ? model.baseParameter("Bl").value * rmsOf(motions.i) : rmsOf(motions.drive));
+        add("force", "N", motions.force,
+            model.electrical() ? model.baseParameter("Bl").value * rmsOf(motions.i) : rmsOf(motions.drive));
     if (seesVoltage)
         add("voltage", "V", motions.voltage, rmsOf(motions.drive));
     return curves;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -23,15 +23,19 @@ Model partOf(const Whole& whole, const Model& model, const std::string& more)
     return part;
 }
 
-/// How sure an effect of the whole is: the share of what would be left without it that it explains, as far as that is the same at all levels.
-double confidenceOf(const Vote& vote) { return std::max(0.0, 1.0 - std::pow(10.0, -vote.uniqueDb / 10.0)) * std::clamp(1.0 - vote.inconsistency, 0.0, 1.0); }
+/// How sure an effect of the whole is: the share of what would be left without it that it explains, as far as that is
+/// the same at all levels.
+double confidenceOf(const Vote& vote)
+{
+    return std::max(0.0, 1.0 - std::pow(10.0, -vote.uniqueDb / 10.0)) * std::clamp(1.0 - vote.inconsistency, 0.0, 1.0);
+}
 
 /// What is said of a rung whose next effect is known.
 Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Score>& scores, const Whole& whole)
 {
     Diagnosis diagnosis;
     diagnosis.verdict = Verdict::missingEffect;
-    int others = -1;   // besides the next one
+    int others = -1;  // besides the next one
     diagnosis.error = errorByChannel(rung.comparison);
     diagnosis.remainder = remainderOf(rung.comparison);
     for (const auto& candidate : scores) {
@@ -53,20 +57,24 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
         entry.reason = reasonFor(*candidate.effect, entry.model, rung.comparison, errorAfter);
         diagnosis.ranking.push_back(std::move(entry));
     }
-    std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const RankedEffect& a, const RankedEffect& b) {
-        const auto place = [&](const RankedEffect& r) { return r.effect == next.added ? 0 : r.significant ? 1 : 2; };
-        return place(a) != place(b) ? place(a) < place(b) : a.predictedChi < b.predictedChi;
-    });
+    std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                     [&](const RankedEffect& a, const RankedEffect& b) {
+                         const auto place = [&](const RankedEffect& r) {
+                             return r.effect == next.added ? 0 : r.significant ? 1 : 2;
+                         };
+                         return place(a) != place(b) ? place(a) < place(b) : a.predictedChi < b.predictedChi;
+                     });
     diagnosis.sentence = effectNamed(next.added).title() + " is missing"
-                         + (others > 1   ? ", and " + std::to_string(others) + " other effects explain what it does not."
+                         + (others > 1 ? ", and " + std::to_string(others) + " other effects explain what it does not."
                             : others > 0 ? ", and another effect explains what it does not."
                                          : ".");
     return diagnosis;
 }
 
-} // namespace
+}  // namespace
 
-std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, const DiagnoseOptions& options, const Progress& progress)
+std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, const DiagnoseOptions& options,
+                          const Progress& progress)
 {
     const auto count = static_cast<double>(whole.model.components.size() - base.model.components.size());
     ScoreOptions test;
@@ -78,7 +86,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
     for (double n = 0.0; n < count; ++n) {
         const auto part = progress.part(n / count, (n + 1.0) / count);
         auto& rung = rungs.back();
-        const auto scores = score(rung.model, record, test, part.part(0.0, 0.4)).scores;   // lowest first
+        const auto scores = score(rung.model, record, test, part.part(0.0, 0.4)).scores;  // lowest first
         Rung next;
         for (const auto& candidate : scores) {
             if (!whole.model.has(candidate.effect->id()))
@@ -97,7 +105,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
             if (next.added.empty() || trial.comparison.chi < next.comparison.chi)
                 next = std::move(trial);
             if (next.comparison.chi < rung.comparison.chi)
-                break;   // else another one may go first
+                break;  // else another one may go first
         }
         rung.diagnosis = diagnosisOf(rung, next, scores, whole);
         rungs.push_back(std::move(next));
@@ -105,4 +113,4 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
     return rungs;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,12 +16,15 @@
 namespace excursion {
 namespace {
 
-double decibels(double error, double measured) { return 10.0 * std::log10(std::max(error / std::max(measured, 1e-300), 1e-30)); }
+double decibels(double error, double measured)
+{
+    return 10.0 * std::log10(std::max(error / std::max(measured, 1e-300), 1e-30));
+}
 
-/// The step of the model's own parameters and of the strengths of component k. A strength that it would push below its lower bound stays there;
-/// when all of them do the effect is absent, and the step is none.
-Eigen::VectorXd feasibleStep(const NormalEquations& normal, const Model& model, std::size_t k, const std::vector<Eigen::Index>& own,
-                             std::vector<Eigen::Index> positions)
+/// The step of the model's own parameters and of the strengths of component k. A strength that it would push below its
+/// lower bound stays there; when all of them do the effect is absent, and the step is none.
+Eigen::VectorXd feasibleStep(const NormalEquations& normal, const Model& model, std::size_t k,
+                             const std::vector<Eigen::Index>& own, std::vector<Eigen::Index> positions)
 {
     std::vector<const Parameter*> strengths;
     for (const auto& p : model.components[k].parameters)
@@ -46,7 +49,8 @@ Eigen::VectorXd feasibleStep(const NormalEquations& normal, const Model& model, 
 
 const Component& componentOf(const Model& model, const Effect& effect)
 {
-    return *std::find_if(model.components.begin(), model.components.end(), [&](const Component& c) { return c.effect == &effect; });
+    return *std::find_if(model.components.begin(), model.components.end(),
+                         [&](const Component& c) { return c.effect == &effect; });
 }
 
 /// The model with its newest effect, which is linear, in the shape that was found, at zero strength.
@@ -62,14 +66,14 @@ Model shapedAs(const Component& found, Model model)
     return model;
 }
 
-} // namespace
+}  // namespace
 
 ScoreResult score(const Model& model, const Record& record, const ScoreOptions& options, const Progress& progress)
 {
     Model augmented = model;
     const Extent extent = visitedExtent(model, record, options.degree);
     struct Entry {
-        Model model;   ///< with the effect at zero strength
+        Model model;  ///< with the effect at zero strength
         Model byResponse;
         std::size_t component;
     };
@@ -79,11 +83,13 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         entries.push_back({std::move(candidate), std::move(byResponse), augmented.components.size() - 1});
     };
     const auto seen = seenIn(record);
-    std::vector<Model> searched;   // with a linear effect, whose shape the responses tell at once: in time every start would carry a memory of its own
+    // with a linear effect, whose shape the responses tell at once: in time every start would carry a memory of its own
+    std::vector<Model> searched;
     for (const auto* effect : catalogue()) {
         if (model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
             continue;
-        const auto* known = options.shapes && options.shapes->has(effect->id()) ? &componentOf(*options.shapes, *effect) : nullptr;
+        const auto* known = options.shapes && options.shapes->has(effect->id()) ? &componentOf(*options.shapes, *effect)
+                                                                                : nullptr;
         if (effect->linear() && known)
             consider(shapedAs(*known, withEffect(model, *effect, extent)), {});
         else if (effect->linear() && !options.shapes)
@@ -129,7 +135,8 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     const auto sums = sumsOf(augmented, record, trialSections(record, 1), active, options, progress);
     ScoreResult result;
     if (!sums.finite)
-        throw Error(Error::Kind::numerical, "The model runs away on this take, so nothing can be said about what it lacks; fit it again.");
+        throw Error(Error::Kind::numerical,
+                    "The model runs away on this take, so nothing can be said about what it lacks; fit it again.");
     const double rows = std::max(1.0, sums.validation.rows);
     result.chi = sums.validation.cost / rows;
 
@@ -148,7 +155,8 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         }
         // A base that has settled on a part of what the effect does leaves no small step to it.
         if (!entry.byResponse.components.empty())
-            if (const auto there = sumsOf(entry.byResponse, record, {}, {}, options, {}); there.finite && there.validation.cost < score.chi * rows) {
+            if (const auto there = sumsOf(entry.byResponse, record, {}, {}, options, {});
+                there.finite && there.validation.cost < score.chi * rows) {
                 score.chi = there.validation.cost / rows;
                 for (std::size_t c = 0; c < record.channels.size(); ++c)
                     score.errorDb[record.channels[c]] = decibels(there.power[c].error, there.power[c].measured);
@@ -172,7 +180,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     }
     std::sort(together.begin(), together.end());
     const auto all = gaussNewtonStep(sums.estimation, together);
-    if (hasPeriods(record)) {   // a simulation's sensitivities say little of several strong effects at once
+    if (hasPeriods(record)) {  // a simulation's sensitivities say little of several strong effects at once
         for (auto& s : result.scores) {
             std::vector<Eigen::Index> strengths;
             for (const auto& entry : entries)
@@ -180,7 +188,8 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
                     const auto places = strengthPlaces(augmented, entry.component, active);
                     strengths.insert(strengths.end(), places.begin(), places.end());
                 }
-            s.vote = voteOn(sums, together, strengths, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size())), record.noiseKnown);
+            s.vote = voteOn(sums, together, strengths, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(active.size())),
+                            record.noiseKnown);
         }
     }
     for (const auto& channel : sums.byChannel) {
@@ -188,8 +197,9 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         result.chiByChannel.push_back(channel.cost / channelRows);
         result.togetherChi.push_back(predictedCost(channel, all) / channelRows);
     }
-    std::stable_sort(result.scores.begin(), result.scores.end(), [](const Score& a, const Score& b) { return a.chi < b.chi; });
+    std::stable_sort(result.scores.begin(), result.scores.end(),
+                     [](const Score& a, const Score& b) { return a.chi < b.chi; });
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,27 +11,30 @@
 
 namespace excursion {
 
-/// What the score test says of one effect: the model with it, moved by one Gauss-Newton step on the estimation sections, and what
-/// that step promises on the validation sections.
+/// What the score test says of one effect: the model with it, moved by one Gauss-Newton step on the estimation
+/// sections, and what that step promises on the validation sections.
 struct Score {
     const Effect* effect = nullptr;
     Model model;
-    Model byResponse;                          ///< of a linear effect: as a search on the frequency responses found it; without components when none was made
-    double chi = 0.0;                          ///< predicted, all channels
-    Vote vote;                                 ///< of all candidates at once; none without periods
-    std::map<Quantity, double> errorDb;        ///< predicted, by channel
+    /// of a linear effect: as a search on the frequency responses found it; without components when none was made
+    Model byResponse;
+    double chi = 0.0;                    ///< predicted, all channels
+    Vote vote;                           ///< of all candidates at once; none without periods
+    std::map<Quantity, double> errorDb;  ///< predicted, by channel
 };
 
 struct ScoreResult {
-    double chi = 0.0;            ///< of the model as it is, on the validation sections
-    std::vector<double> chiByChannel, togetherChi;   ///< by channel of the record: as it is, and predicted with all candidates at once
-    std::vector<Score> scores;   ///< one an effect, best start each, lowest chi first
+    double chi = 0.0;  ///< of the model as it is, on the validation sections
+    /// by channel of the record: as it is, and predicted with all candidates at once
+    std::vector<double> chiByChannel, togetherChi;
+    std::vector<Score> scores;  ///< one an effect, best start each, lowest chi first
 };
 
-/// Score (Lagrange multiplier) test of every applicable effect of the catalogue that the model lacks: all are put in at zero strength,
-/// one run (differentiate) gives the sensitivities to every strength besides those to the model's own parameters, and
+/// Score (Lagrange multiplier) test of every applicable effect of the catalogue that the model lacks: all are put in at
+/// zero strength, one run (differentiate) gives the sensitivities to every strength besides those to the model's own
+/// parameters, and
 ///     d = argmin |r + J d|^2   over the model's parameters and the effect's strengths
 /// predicts the residual r + J d. Levels, channels and sections all count, weighted by their noise.
 ScoreResult score(const Model&, const Record&, const ScoreOptions&, const Progress& = {});
 
-} // namespace excursion
+}  // namespace excursion

@@ -42,7 +42,8 @@ struct Difference {
     double db = never;
 };
 
-/// How far they differ in each channel, when the take is played by a factor louder; nothing where one of them runs away.
+/// How far they differ in each channel, when the take is played by a factor louder; nothing where one of them runs
+/// away.
 std::vector<Difference> differences(const Model& a, const Model& b, const Record& record, double factor)
 {
     const auto& section = loudest(record);
@@ -53,13 +54,15 @@ std::vector<Difference> differences(const Model& a, const Model& b, const Record
     try {
         SimulationOptions options;
         options.tolerance = 1e-4;
-        const auto first = simulate(a, input, record.sampleRate, options), second = simulate(b, input, record.sampleRate, options);
+        const auto first = simulate(a, input, record.sampleRate, options),
+                   second = simulate(b, input, record.sampleRate, options);
         for (const auto& channel : first.channels) {
             const auto* other = second.find(channel.quantity);
             if (!other || channel.quantity == first.input().quantity)
                 continue;
             const std::size_t window = std::min(section.window, channel.samples.size());
-            result.push_back({channel.quantity, differenceDb(std::span(channel.samples).last(window), std::span(other->samples).last(window))});
+            result.push_back({channel.quantity, differenceDb(std::span(channel.samples).last(window),
+                                                             std::span(other->samples).last(window))});
         }
     } catch (const Error&) {
         return {};
@@ -67,7 +70,7 @@ std::vector<Difference> differences(const Model& a, const Model& b, const Record
     return result;
 }
 
-} // namespace
+}  // namespace
 
 std::string whatParts(const Model& a, const Model& b, const Record& record)
 {
@@ -94,8 +97,11 @@ std::string whatParts(const Model& a, const Model& b, const Record& record)
     if (there.db == never)
         return "Measure again with less noise, a louder level or one more channel.";
     const double needed = std::max(there.db + worthIt, faintest);
-    const auto by = [](const Difference& d) { return figure(d.db, "%.0f") + " dB of the " + std::string(name(d.quantity)); };
-    const auto further = "measure the " + std::string(name(elsewhere.quantity)) + ", too (the two differ by " + by(elsewhere) + ")";
+    const auto by = [](const Difference& d) {
+        return figure(d.db, "%.0f") + " dB of the " + std::string(name(d.quantity));
+    };
+    const auto further = "measure the " + std::string(name(elsewhere.quantity)) + ", too (the two differ by "
+                         + by(elsewhere) + ")";
     const auto louder6 = "measure 6 dB louder (then they differ by " + by(loud) + ")";
     std::string what;
     if (elsewhere.db > needed && loud.db > needed)
@@ -107,7 +113,7 @@ std::string whatParts(const Model& a, const Model& b, const Record& record)
         return what + "; in what was measured they differ by " + by(there) + ".";
     }
     return "No further channel and no louder level would tell the two apart by much; less noise would: they differ by "
-         + by(there) + ".";
+           + by(there) + ".";
 }
 
-} // namespace excursion
+}  // namespace excursion

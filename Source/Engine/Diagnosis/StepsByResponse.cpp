@@ -15,12 +15,13 @@
 namespace excursion {
 namespace {
 
-constexpr double neededDb = 1.0;   // what an effect must take off the error to pay for its parameters, as no noise is known
+// what an effect must take off the error to pay for its parameters, as no noise is known
+constexpr double neededDb = 1.0;
 constexpr LeastSquaresOptions thoroughly {80, 1e-8};
 
 struct Found {
     Model model;
-    double errorDb = std::numeric_limits<double>::infinity();   ///< mean over the responses
+    double errorDb = std::numeric_limits<double>::infinity();  ///< mean over the responses
 };
 /// The best that was found with each set of effects.
 using Sets = std::map<std::set<std::string>, Found>;
@@ -46,8 +47,8 @@ Found withOneMore(const Model& model, const Effect& effect, const std::vector<Re
 }
 
 /// The models with one more effect than these, the best of each set of effects; lowest error first.
-std::vector<Found> oneMore(const std::vector<Found>& models, const std::vector<const Effect*>& effects, const std::vector<ResponseTarget>& targets,
-                           unsigned threads, const Progress& progress)
+std::vector<Found> oneMore(const std::vector<Found>& models, const std::vector<const Effect*>& effects,
+                           const std::vector<ResponseTarget>& targets, unsigned threads, const Progress& progress)
 {
     std::vector<std::pair<const Model*, const Effect*>> trials;
     for (const auto& found : models)
@@ -60,7 +61,8 @@ std::vector<Found> oneMore(const std::vector<Found>& models, const std::vector<c
         return true;
     });
     std::erase_if(results, [](const Found& result) { return !std::isfinite(result.errorDb); });
-    std::stable_sort(results.begin(), results.end(), [](const Found& a, const Found& b) { return a.errorDb < b.errorDb; });
+    std::stable_sort(results.begin(), results.end(),
+                     [](const Found& a, const Found& b) { return a.errorDb < b.errorDb; });
     std::set<std::set<std::string>> taken;
     std::erase_if(results, [&](const Found& result) { return !taken.insert(setOf(result.model)).second; });
     return results;
@@ -68,10 +70,10 @@ std::vector<Found> oneMore(const std::vector<Found>& models, const std::vector<c
 
 /// The model with as many effects as the responses show together, however little the last of them bring.
 /// @param sets  gets all that is found on the way
-Found withAll(const Model& base, const std::vector<const Effect*>& effects, const std::vector<ResponseTarget>& targets, unsigned threads,
-              Sets& sets, const Progress& progress)
+Found withAll(const Model& base, const std::vector<const Effect*>& effects, const std::vector<ResponseTarget>& targets,
+              unsigned threads, Sets& sets, const Progress& progress)
 {
-    constexpr std::size_t kept = 2;   // sets of one size
+    constexpr std::size_t kept = 2;  // sets of one size
     std::vector<Found> level {{base, responseErrorDb(base, targets)}};
     Found best = level.front();
     for (std::size_t n = 0; n < effects.size(); ++n) {
@@ -94,12 +96,14 @@ struct Leaner {
     std::string without;
     Found found;
     double lostDb = 0.0;
-    bool itself = true;   ///< in the model that has it
+    bool itself = true;  ///< in the model that has it
 };
 
-/// Without each of the effects that the base does not have; what is missed least first. What is left is fitted from where it is, and from the best that
-/// was found without the effect before: one that carries much of the stiffness or the mass leaves the others far from where they would be.
-std::vector<Leaner> withoutEach(const Model& base, const Found& whole, const Sets& sets, const std::vector<ResponseTarget>& targets)
+/// Without each of the effects that the base does not have; what is missed least first. What is left is fitted from
+/// where it is, and from the best that was found without the effect before: one that carries much of the stiffness or
+/// the mass leaves the others far from where they would be.
+std::vector<Leaner> withoutEach(const Model& base, const Found& whole, const Sets& sets,
+                                const std::vector<ResponseTarget>& targets)
 {
     std::vector<Leaner> each;
     for (std::size_t k = 1; k < whole.model.components.size(); ++k) {
@@ -128,7 +132,8 @@ std::vector<Leaner> withoutEach(const Model& base, const Found& whole, const Set
     return each;
 }
 
-/// Takes out what the others can do without, and then what stands for something else, which may be due to what was not needed.
+/// Takes out what the others can do without, and then what stands for something else, which may be due to what was not
+/// needed.
 void takeOut(const Model& base, Found& whole, const Sets& sets, const std::vector<ResponseTarget>& targets)
 {
     for (;;) {
@@ -142,11 +147,11 @@ void takeOut(const Model& base, Found& whole, const Sets& sets, const std::vecto
     }
 }
 
-} // namespace
+}  // namespace
 
 std::vector<Step> stepsByResponse(const Model& base, const Spectra& spectra, unsigned threads, const Progress& progress)
 {
-    constexpr int coarse = 16;   // points an octave: enough to tell what is there
+    constexpr int coarse = 16;  // points an octave: enough to tell what is there
     const auto targets = responsesOf(spectra);
     std::vector<const Effect*> effects;
     for (const auto* effect : catalogue())
@@ -176,4 +181,4 @@ std::vector<Step> stepsByResponse(const Model& base, const Spectra& spectra, uns
     return steps;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,11 +9,12 @@ namespace excursion {
 
 bool Sums::areNoise() const
 {
-    return std::all_of(power.begin(), power.end(), [](const ErrorPower& p) { return p.overNoise() <= ErrorPower::most; });
+    return std::all_of(power.begin(), power.end(),
+                       [](const ErrorPower& p) { return p.overNoise() <= ErrorPower::most; });
 }
 
-Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active,
-            const ScoreOptions& options, const Progress& progress)
+Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> sections,
+            const std::vector<Eigen::Index>& active, const ScoreOptions& options, const Progress& progress)
 {
     Sums sums;
     sums.byChannel.resize(record.channels.size());
@@ -68,4 +69,4 @@ std::vector<Eigen::Index> strengthPlaces(const Model& model, std::size_t k, cons
     return positions;
 }
 
-} // namespace excursion
+}  // namespace excursion

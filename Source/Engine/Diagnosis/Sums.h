@@ -9,23 +9,26 @@
 
 namespace excursion {
 
-/// Mean squared residuals in units of the noise: where a model is near enough for details to count, and where nothing is needed beyond.
+/// Mean squared residuals in units of the noise: where a model is near enough for details to count, and where nothing
+/// is needed beyond.
 inline constexpr double nearNoise = 4.0, atNoise = 1.3;
 
 struct ScoreOptions {
     int substeps = 1;
     unsigned threads = 2;
-    int degree = 6;      ///< of the laws that are tried
-    const Model* shapes = nullptr;   ///< a model that tells the shapes of linear effects; those that it does not have are not tried. None: they are searched for
+    int degree = 6;  ///< of the laws that are tried
+    /// a model that tells the shapes of linear effects; those that it does not have are not tried. None: they are
+    /// searched for
+    const Model* shapes = nullptr;
 };
 
-/// What a model leaves and how that moves with its parameters: normal equations on sections to estimate on and on those that were held out, by
-/// channel, by level and summed.
+/// What a model leaves and how that moves with its parameters: normal equations on sections to estimate on and on those
+/// that were held out, by channel, by level and summed.
 struct Sums {
     NormalEquations estimation, validation;
-    std::vector<NormalEquations> byChannel;     ///< of the validation sections
-    std::map<int, NormalEquations> byLevel;     ///< of the estimation sections
-    std::vector<ErrorPower> power;              ///< of the validation sections
+    std::vector<NormalEquations> byChannel;  ///< of the validation sections
+    std::map<int, NormalEquations> byLevel;  ///< of the estimation sections
+    std::vector<ErrorPower> power;           ///< of the validation sections
     bool finite = true;
 
     /// Whether no channel's error stands above its noise.
@@ -34,8 +37,8 @@ struct Sums {
 
 /// By the quick error of FeedbackError.h.
 /// @param sections  to estimate on; those held out come by themselves
-Sums sumsOf(const Model&, const Record&, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active, const ScoreOptions&,
-            const Progress& = {});
+Sums sumsOf(const Model&, const Record&, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active,
+            const ScoreOptions&, const Progress& = {});
 
 /// What a step d of the parameters leaves, never below zero.
 double predictedCost(const NormalEquations&, const Eigen::VectorXd& d);
@@ -43,4 +46,4 @@ double predictedCost(const NormalEquations&, const Eigen::VectorXd& d);
 /// Places of the free strengths of component k among the active parameters.
 std::vector<Eigen::Index> strengthPlaces(const Model&, std::size_t k, const std::vector<Eigen::Index>& active);
 
-} // namespace excursion
+}  // namespace excursion

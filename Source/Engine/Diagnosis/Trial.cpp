@@ -33,7 +33,8 @@ OutputErrorOptions withoutGradient(const FitOptions& options)
     return run;
 }
 
-double quickCost(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+double quickCost(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                 const FitOptions& options)
 {
     return costOf(model, quickError(model, record, sections, {}, withoutGradient(options)));
 }
@@ -45,15 +46,18 @@ Model newestScaled(Model model, double factor)
     return model;
 }
 
-} // namespace
+}  // namespace
 
-FitSummary fitFed(Model& model, const Record& record, const std::vector<std::size_t>& sections, FitOptions options, const Progress& progress)
+FitSummary fitFed(Model& model, const Record& record, const std::vector<std::size_t>& sections, FitOptions options,
+                  const Progress& progress)
 {
     auto found = model;
     options.fed = true;
     const auto summary = fit(found, record, sections, options, progress);
     options.fed = false;
-    if (hasPeriods(record) && !(summary.usable && std::isfinite(costOf(found, outputError(found, record, sections, {}, withoutGradient(options))))))
+    if (hasPeriods(record)
+        && !(summary.usable
+             && std::isfinite(costOf(found, outputError(found, record, sections, {}, withoutGradient(options))))))
         return fit(model, record, sections, options, progress);
     model = std::move(found);
     return summary;
@@ -72,8 +76,8 @@ std::vector<std::size_t> trialSections(const Record& record, int realizations)
     return sections;
 }
 
-FitSummary tryFit(Model& model, const Score& proposed, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
-                  const Progress& progress)
+FitSummary tryFit(Model& model, const Score& proposed, const Record& record, const std::vector<std::size_t>& sections,
+                  const FitOptions& options, const Progress& progress)
 {
     model = proposed.model;
     FitOptions chosen = options;
@@ -91,8 +95,9 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
             break;
         }
     }
-    // A linear effect shows in the frequency response alone; in time it would creep along the curved valley in which relaxations trade off
-    // against the stiffness. Beside laws the responses tell no more than where that valley is, so what they say may leave a little more at first.
+    // A linear effect shows in the frequency response alone; in time it would creep along the curved valley in which
+    // relaxations trade off against the stiffness. Beside laws the responses tell no more than where that valley is, so
+    // what they say may leave a little more at first.
     constexpr double near = 2.0, worthIt = 0.8;
     if (!proposed.byResponse.components.empty() && left(proposed.byResponse) < near * lowest) {
         model = proposed.byResponse;
@@ -104,11 +109,14 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     return fitFed(model, record, sections, chosen, progress);
 }
 
-FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, bool toTheEnd, const Progress& progress)
+FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions& options, bool toTheEnd,
+                           const Progress& progress)
 {
     const auto sections = estimationSections(record);
     constexpr double clean = 1.2;
-    const auto near = [&](const FitSummary& s) { return s.usable && !(record.noiseKnown && s.costPerResidual > nearNoise); };
+    const auto near = [&](const FitSummary& s) {
+        return s.usable && !(record.noiseKnown && s.costPerResidual > nearNoise);
+    };
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
         auto chosen = options;
         chosen.search = {iterations, tolerance};
@@ -117,13 +125,13 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         return fit(model, record, sections, chosen, progress.part(from, to));
     };
     auto summary = stage(15, 1e-3, true, 0.0, 0.2);
-    if (summary.usable && !near(summary))   // where laws rule the motion the slopes of fed ones may lead nowhere
+    if (summary.usable && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
     summary = stage(30, 5e-5, true, 0.3, 0.5);
-    // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the noise the cost falls by next to
-    // nothing for long.
+    // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
+    // noise the cost falls by next to nothing for long.
     if (near(summary) && summary.onlyNoise && summary.costPerResidual < clean)
         return stage(1, 5e-5, false, 0.5, 1.0);
     if (!record.noiseKnown)
@@ -131,7 +139,8 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);
 }
 
-bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                   const FitOptions& options)
 {
     if (!hasPeriods(record))
         return false;
@@ -154,7 +163,8 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     return found;
 }
 
-void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options, const Progress& progress)
+void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options,
+               const Progress& progress)
 {
     ScoreOptions test;
     test.substeps = substepsFor(model, record, options.simulationTolerance);
@@ -162,7 +172,8 @@ void tryEffect(Model& model, const Record& record, const Effect& effect, const F
     const auto scores = score(model, record, test, progress.part(0.0, 0.4)).scores;
     const auto start = std::find_if(scores.begin(), scores.end(), [&](const Score& s) { return s.effect == &effect; });
     if (start == scores.end())
-        throw Error(Error::Kind::data, "This take cannot say anything about the effect \"" + effect.id() + "\" besides those that the model has.");
+        throw Error(Error::Kind::data, "This take cannot say anything about the effect \"" + effect.id()
+                                           + "\" besides those that the model has.");
     FitOptions quick = options;
     quick.substeps = test.substeps;
     quick.search = {10, 3e-3};
@@ -196,4 +207,4 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));
 }
 
-} // namespace excursion
+}  // namespace excursion

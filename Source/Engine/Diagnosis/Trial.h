@@ -8,7 +8,8 @@
 
 namespace excursion {
 
-/// A fit by simulation on all that is not held out, as thorough as it pays: rough far above the noise, with slopes of fed laws near it.
+/// A fit by simulation on all that is not held out, as thorough as it pays: rough far above the noise, with slopes of
+/// fed laws near it.
 /// @param toTheEnd  as far as it goes, where something is left: before that is called unknown
 FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, bool toTheEnd, const Progress& = {});
 
@@ -18,22 +19,24 @@ std::vector<std::size_t> trialSections(const Record&, int realizations);
 /// A fit with laws that are fed; where what it finds runs away when it is simulated, a fit that simulates in its place.
 FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& sections, FitOptions, const Progress& = {});
 
-/// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it so
-/// far.
+/// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it
+/// so far.
 /// @param model  the result: as proposed, with zero strength, when nothing helps
-FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
-                  const Progress& = {});
+FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std::vector<std::size_t>& sections,
+                  const FitOptions&, const Progress& = {});
 
-/// Finds linear effects that have several parts anew, as others that are known now may have uncovered more of them. True where that left less; the
-/// model is fitted with laws that are fed, then. Nothing is done of a record without periods.
+/// Finds linear effects that have several parts anew, as others that are known now may have uncovered more of them.
+/// True where that left less; the model is fitted with laws that are fed, then. Nothing is done of a record without
+/// periods.
 bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
-/// Puts an effect into the model where the score test says that it starts, and fits that quickly. Throws Error (data) when the
-/// model has the effect already or can't have it.
+/// Puts an effect into the model where the score test says that it starts, and fits that quickly. Throws Error (data)
+/// when the model has the effect already or can't have it.
 void tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});
 
-/// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays. Of a take with periods
-/// the laws are fed, and what comes near the noise is fitted by simulation in the end; FitSummary::substeps is 0 where it was not.
+/// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays.
+/// Of a take with periods the laws are fed, and what comes near the noise is fitted by simulation in the end;
+/// FitSummary::substeps is 0 where it was not.
 FitSummary refine(Model&, const Record&, const FitOptions&, const Progress& = {});
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,8 @@
 namespace excursion {
 namespace {
 
-/// How much more of each level would be explained if these strengths, which a step d has set for all levels, had values of their own there.
+/// How much more of each level would be explained if these strengths, which a step d has set for all levels, had values
+/// of their own there.
 double gainByLevel(const Sums& sums, const Eigen::VectorXd& d, const std::vector<Eigen::Index>& strengths)
 {
     double gain = 0.0;
@@ -25,26 +26,31 @@ double gainByLevel(const Sums& sums, const Eigen::VectorXd& d, const std::vector
     return gain;
 }
 
-} // namespace
+}  // namespace
 
-Vote voteOn(const Sums& sums, const std::vector<Eigen::Index>& together, std::vector<Eigen::Index> strengths, const Eigen::VectorXd& away,
-            bool noiseKnown)
+Vote voteOn(const Sums& sums, const std::vector<Eigen::Index>& together, std::vector<Eigen::Index> strengths,
+            const Eigen::VectorXd& away, bool noiseKnown)
 {
     std::vector<Eigen::Index> rest;
     std::sort(strengths.begin(), strengths.end());
     std::set_difference(together.begin(), together.end(), strengths.begin(), strengths.end(), std::back_inserter(rest));
     auto gone = sums.estimation;
     gone.g += gone.N * away;
-    const Eigen::VectorXd without = away + gaussNewtonStep(gone, rest), all = gaussNewtonStep(sums.estimation, together);
-    constexpr double fewestRows = 300.0;   // half a decibel of so many is what no chance gives
+    const Eigen::VectorXd without = away + gaussNewtonStep(gone, rest),
+                          all = gaussNewtonStep(sums.estimation, together);
+    constexpr double fewestRows = 300.0;  // half a decibel of so many is what no chance gives
     const double rows = noiseKnown ? sums.validation.rows : 0.0, sure = sums.areNoise() ? 0.0 : sureNoise * rows;
     const double floor = std::max({rows - sure, std::min(rows, fewestRows), 1e-300});
-    const auto left = [&](const Eigen::VectorXd& d) { return std::max(predictedCost(sums.validation, d) - sure, floor); };
+    const auto left = [&](const Eigen::VectorXd& d) {
+        return std::max(predictedCost(sums.validation, d) - sure, floor);
+    };
     const double explained = predictedCost(sums.estimation, without) - predictedCost(sums.estimation, all);
-    return {10.0 * std::log10(left(without) / left(all)), gainByLevel(sums, all, strengths) / std::max(explained, 1e-300)};
+    return {10.0 * std::log10(left(without) / left(all)),
+            gainByLevel(sums, all, strengths) / std::max(explained, 1e-300)};
 }
 
-std::map<std::string, Vote> votesOf(const Model& model, const Record& record, const ScoreOptions& options, const Progress& progress)
+std::map<std::string, Vote> votesOf(const Model& model, const Record& record, const ScoreOptions& options,
+                                    const Progress& progress)
 {
     const auto active = freeParameters(model);
     const auto sums = sumsOf(model, record, trialSections(record, 2), active, options, progress);
@@ -65,4 +71,4 @@ std::map<std::string, Vote> votesOf(const Model& model, const Record& record, co
     return votes;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -15,14 +15,16 @@
 namespace excursion {
 namespace {
 
-constexpr double hardlyNeeded = 0.2;   // dB more that are left: what costs no more than that is not needed
+constexpr double hardlyNeeded = 0.2;  // dB more that are left: what costs no more than that is not needed
 
 /// An effect that a model has.
 struct Tried {
     Vote vote;
-    Model leaner;   ///< without it, fitted again; no components where that was not tried
-    double times = std::numeric_limits<double>::infinity();        ///< by which the mean squared residual grows without it; as if beyond measure where not tried
-    double powerTimes = std::numeric_limits<double>::infinity();   ///< by which the error's power over the noise grows in the worst channel
+    Model leaner;  ///< without it, fitted again; no components where that was not tried
+    /// by which the mean squared residual grows without it; as if beyond measure where not tried
+    double times = std::numeric_limits<double>::infinity();
+    /// by which the error's power over the noise grows in the worst channel
+    double powerTimes = std::numeric_limits<double>::infinity();
 };
 
 /// The search for a whole: what all its steps share.
@@ -41,12 +43,17 @@ public:
     }
 
     const ScoreOptions& test() const { return test_; }
-    FitSummary fit(Model& model, const Progress& progress) const { return excursion::fit(model, record_, sections_, quick_, progress); }
+    FitSummary fit(Model& model, const Progress& progress) const
+    {
+        return excursion::fit(model, record_, sections_, quick_, progress);
+    }
 
     /// What a model leaves.
     struct Left {
-        double chi = std::numeric_limits<double>::infinity();   ///< mean squared residual in units of the noise; infinite where a law's memory runs away
-        double power = std::numeric_limits<double>::infinity(); ///< largest error power of a channel over that of its noise
+        /// mean squared residual in units of the noise; infinite where a law's memory runs away
+        double chi = std::numeric_limits<double>::infinity();
+        double power =
+            std::numeric_limits<double>::infinity();  ///< largest error power of a channel over that of its noise
 
         bool areNoise() const { return power <= ErrorPower::most; }
         bool isNoise() const { return areNoise() && chi < atNoise; }
@@ -58,7 +65,9 @@ public:
         plain.threads = quick_.threads;
         const auto fits = quickError(model, record_, sections_, {}, plain);
         const auto sum = sumOf(fits);
-        return sum ? Left {sum->cost / std::max(1.0, sum->rows), record_.noiseKnown ? worstPower(fits) : std::numeric_limits<double>::infinity()} : Left {};
+        return sum ? Left {sum->cost / std::max(1.0, sum->rows),
+                           record_.noiseKnown ? worstPower(fits) : std::numeric_limits<double>::infinity()}
+                   : Left {};
     }
 
     /// By how many dB more a model leaves than another, beside what is noise for sure.
@@ -69,8 +78,8 @@ public:
         return 10.0 * std::log10(std::max(more.chi - sure, least) / std::max({less.chi - sure, least, 1e-300}));
     }
 
-    /// Every effect of a model but those of the base. By derivatives it says little of an effect that has become a large part of the linear model, so one
-    /// that seems to be needed little is really taken out.
+    /// Every effect of a model but those of the base. By derivatives it says little of an effect that has become a
+    /// large part of the linear model, so one that seems to be needed little is really taken out.
     std::map<std::string, Tried> tryWithout(const Model& model) const
     {
         std::map<std::string, Tried> tried;
@@ -99,8 +108,8 @@ public:
         return tried;
     }
 
-    /// Takes the effects out of which the others do not lose what `keeps` asks for, one at a time. What was found of them all where none was taken out,
-    /// else nothing.
+    /// Takes the effects out of which the others do not lose what `keeps` asks for, one at a time. What was found of
+    /// them all where none was taken out, else nothing.
     template <class Keeps>
     std::optional<std::map<std::string, Tried>> takeOut(Model& model, const Keeps& keeps) const
     {
@@ -109,12 +118,16 @@ public:
         for (auto& [effect, tried] : every) {
             if (keeps(tried))
                 continue;
-            auto leaner = any || tried.leaner.components.empty() ? withoutEffect(model, effect) : std::move(tried.leaner);
-            if (any) {   // another one has gone, whose work it may do now
+            auto leaner = any || tried.leaner.components.empty() ? withoutEffect(model, effect)
+                                                                 : std::move(tried.leaner);
+            if (any) {  // another one has gone, whose work it may do now
                 if (!excursion::fit(leaner, record_, sections_, brief_).usable)
                     continue;
                 const auto then = left(leaner), now = left(model);
-                if (keeps(Tried {{lost(then, now), tried.vote.inconsistency}, {}, then.chi / now.chi, then.power / std::max(now.power, 1.0)}))
+                if (keeps(Tried {{lost(then, now), tried.vote.inconsistency},
+                                 {},
+                                 then.chi / now.chi,
+                                 then.power / std::max(now.power, 1.0)}))
                     continue;
             }
             model = std::move(leaner);
@@ -133,17 +146,17 @@ private:
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
     FitOptions quick_, brief_, glance_;
-    static constexpr double sorelyMissed = 15.0;   // dB more that are left: no fit would make that good
+    static constexpr double sorelyMissed = 15.0;  // dB more that are left: no fit would make that good
 };
 
-/// The model with every effect that the vote backs. Laws are at no strength; linear effects, the best first, are found one after the other on the
-/// responses, and stay at rest where that leaves more.
+/// The model with every effect that the vote backs. Laws are at no strength; linear effects, the best first, are found
+/// one after the other on the responses, and stay at rest where that leaves more.
 Model withBacked(const Model& model, const Record& record, const std::vector<Score>& scores, const Search& search)
 {
     Model fuller = model;
     const auto still = withoutLaws(model, record, search.test().threads);
     double now = search.left(model).chi;
-    for (const auto& s : scores) {   // lowest first
+    for (const auto& s : scores) {  // lowest first
         if (!s.vote.backs())
             continue;
         auto next = fuller;
@@ -159,7 +172,7 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
     return fuller;
 }
 
-} // namespace
+}  // namespace
 
 Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
 {
@@ -167,11 +180,12 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     whole.fit.usable = false;
     const Search search(base, record, options);
     constexpr int rounds = 4;
-    constexpr double worthARound = 1.0;   // dB
+    constexpr double worthARound = 1.0;  // dB
     auto now = search.left(whole.model);
     for (int n = 0; n < rounds && !now.isNoise(); ++n) {
         const auto part = progress.part(0.7 * n / rounds, 0.7 * (n + 1) / rounds);
-        auto fuller = withBacked(whole.model, record, score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, search);
+        auto fuller = withBacked(whole.model, record,
+                                 score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, search);
         if (fuller.components.size() == whole.model.components.size())
             break;
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
@@ -191,7 +205,8 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
     const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
     auto tried = search.takeOut(whole.model, [&](const Tried& one) {
-        return unknownLeft ? one.vote.standsAlone() : whole.fit.costPerResidual * one.times > atNoise || one.powerTimes > ErrorPower::most;
+        return unknownLeft ? one.vote.standsAlone()
+                           : whole.fit.costPerResidual * one.times > atNoise || one.powerTimes > ErrorPower::most;
     });
     if (!tried) {
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
@@ -202,4 +217,4 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     return whole;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -26,4 +26,4 @@ std::string csvText(const std::string& text)
     return result + "\"";
 }
 
-} // namespace excursion
+}  // namespace excursion

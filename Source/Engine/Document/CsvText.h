@@ -13,4 +13,4 @@ std::string csvNumber(double);
 /// The text, in quotes where a comma, a quote or a line break would end the cell.
 std::string csvText(const std::string&);
 
-} // namespace excursion
+}  // namespace excursion

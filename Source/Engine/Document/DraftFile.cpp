@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
                                         + "); choose a folder that you may write to and that has room.");
 }
 
-} // namespace
+}  // namespace
 
 DraftFile::DraftFile(fs::path target) : target_(std::move(target)), draft_(target_)
 {
@@ -63,4 +63,4 @@ void publish(const std::filesystem::path& target, std::string_view bytes)
     draft.publish();
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,9 +16,9 @@ public:
     DraftFile(const DraftFile&) = delete;
     DraftFile& operator=(const DraftFile&) = delete;
 
-    const std::filesystem::path& path() const { return draft_; }   ///< where to write
-    void write(std::string_view bytes);                            ///< all of it; throws Error (input)
-    void publish();                                                ///< throws Error (input)
+    const std::filesystem::path& path() const { return draft_; }  ///< where to write
+    void write(std::string_view bytes);                           ///< all of it; throws Error (input)
+    void publish();                                               ///< throws Error (input)
 
 private:
     std::filesystem::path target_, draft_;
@@ -27,4 +27,4 @@ private:
 /// The whole of a file at once. Throws Error (input).
 void publish(const std::filesystem::path& target, std::string_view bytes);
 
-} // namespace excursion
+}  // namespace excursion

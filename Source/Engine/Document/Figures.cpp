@@ -8,7 +8,7 @@ namespace excursion {
 std::string figure(double value, const char* format)
 {
     char text[48];
-    std::snprintf(text, sizeof text, format, value);   // the C locale is never changed
+    std::snprintf(text, sizeof text, format, value);  // the C locale is never changed
     return text;
 }
 
@@ -22,4 +22,4 @@ std::string placeText(double value, const std::string& unit)
     return unit == "m" ? figure(1e3 * value, "%+.2g") + " mm" : figure(value, "%+.2g") + " " + unit;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -7,7 +7,7 @@ namespace excursion {
 
 /// Numbers within a sentence, in plain ASCII.
 std::string figure(double value, const char* format = "%.1f");
-std::string frequencyText(double hertz);                              ///< "47 Hz", "1.2 kHz"
-std::string placeText(double value, const std::string& unit);         ///< "+3.1 mm", "-0.4 m/s"
+std::string frequencyText(double hertz);                       ///< "47 Hz", "1.2 kHz"
+std::string placeText(double value, const std::string& unit);  ///< "+3.1 mm", "-0.4 m/s"
 
-} // namespace excursion
+}  // namespace excursion

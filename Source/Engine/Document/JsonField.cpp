@@ -30,7 +30,7 @@ std::string expectedWithin(double least, double most)
     return "a number of at most " + written(most);
 }
 
-} // namespace
+}  // namespace
 
 JsonField::JsonField(const Json& value, std::string path, std::string source)
     : value_(value), path_(std::move(path)), source_(std::move(source))
@@ -130,7 +130,7 @@ double JsonField::numberWithin(double least, double most) const
 int JsonField::count(int least, int most) const
 {
     const double found = value_.is_number() ? value_.get<double>() : std::numeric_limits<double>::quiet_NaN();
-    if (!(found >= least && found <= most) || found != std::floor(found))   // 4.0 is as good as 4
+    if (!(found >= least && found <= most) || found != std::floor(found))  // 4.0 is as good as 4
         refuse("a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     return static_cast<int>(found);
 }
@@ -170,9 +170,9 @@ Json readJson(const std::filesystem::path& path)
     const auto text = readText(path);
     try {
         return Json::parse(text);
-    } catch (const Json::exception& e) {   // its text names line and column
+    } catch (const Json::exception& e) {  // its text names line and column
         throw Error(Error::Kind::input, "'" + path.string() + "' is not a JSON document: " + e.what() + ".");
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

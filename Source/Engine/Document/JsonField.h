@@ -22,22 +22,22 @@ public:
     [[noreturn]] void refuse(const std::string& expected) const;
 
     bool isNull() const { return value_.is_null(); }
-    bool has(const char* key) const;                  ///< there and not null
-    JsonField at(const char* key) const;              ///< throws Error (input) when missing
-    std::vector<JsonField> items() const;             ///< of an array, which may be empty
-    std::vector<std::string> keys() const;            ///< of an object
+    bool has(const char* key) const;        ///< there and not null
+    JsonField at(const char* key) const;    ///< throws Error (input) when missing
+    std::vector<JsonField> items() const;   ///< of an array, which may be empty
+    std::vector<std::string> keys() const;  ///< of an object
     const std::string& path() const { return path_; }
     const std::string& source() const { return source_; }
     const nlohmann::json& value() const { return value_; }
 
     std::string text(const std::string& expected = "a text") const;
     bool flag() const;
-    double number() const;                            ///< finite
-    double numberOrNaN() const;                       ///< null is NaN: a number that is not known
-    std::optional<double> optionalNumber() const;     ///< null is none
+    double number() const;                         ///< finite
+    double numberOrNaN() const;                    ///< null is NaN: a number that is not known
+    std::optional<double> optionalNumber() const;  ///< null is none
     double numberWithin(double least, double most) const;
     int count(int least, int most) const;
-    std::vector<double> numbers() const;              ///< array of numbers or nulls
+    std::vector<double> numbers() const;  ///< array of numbers or nulls
     std::string oneOf(const std::vector<std::string>& known) const;
 
     /// The two fields that every document begins with. Throws unless they are this format, this version.
@@ -51,4 +51,4 @@ private:
 /// Parses a file that must hold one JSON object; throws Error (input).
 nlohmann::json readJson(const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

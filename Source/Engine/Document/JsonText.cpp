@@ -22,7 +22,7 @@ bool isFlat(const Json& value)
 
 void append(std::string& text, const Json& value, const std::string& indent)
 {
-    constexpr std::size_t shortObject = 8;   // members
+    constexpr std::size_t shortObject = 8;  // members
     if (!value.is_structured() || value.empty()) {
         text += scalarText(value);
         return;
@@ -46,7 +46,7 @@ void append(std::string& text, const Json& value, const std::string& indent)
     text += value.is_array() ? "]" : "}";
 }
 
-} // namespace
+}  // namespace
 
 std::string jsonText(const Json& document)
 {
@@ -74,11 +74,12 @@ Json curveJson(const std::vector<double>& values)
     auto list = Json::array();
     for (double value : values) {
         std::array<char, 64> text {};
-        const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 7).ptr;
+        const auto end =
+            std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 7).ptr;
         std::from_chars(text.data(), end, value);
         list.push_back(numberOrNull(value));
     }
     return list;
 }
 
-} // namespace excursion
+}  // namespace excursion

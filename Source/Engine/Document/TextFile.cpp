@@ -46,4 +46,4 @@ std::string readText(const fs::path& path, std::uintmax_t mostBytes)
     return text;
 }
 
-} // namespace excursion
+}  // namespace excursion

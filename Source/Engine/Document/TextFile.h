@@ -13,4 +13,4 @@ std::string readText(const std::filesystem::path&, std::uintmax_t mostBytes = 1u
 /// Throws Error (input) unless the path is a regular file of at least one byte; returns its size.
 std::uintmax_t sizeOfFile(const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

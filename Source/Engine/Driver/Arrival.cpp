@@ -13,13 +13,14 @@
 namespace excursion {
 namespace {
 
-constexpr int finer = 4;   // values a sample between which a polynomial goes: with eight points 1e-5 is left at 0.42 of the rate, less below
+// values a sample between which a polynomial goes: with eight points 1e-5 is left at 0.42 of the rate, less below
+constexpr int finer = 4;
 
 /// The periodic record of N samples that has this spectrum, at `finer` times its rate, by zeros above its own lines.
 std::vector<double> refined(std::vector<std::complex<double>> spectrum, std::size_t N)
 {
     if (N % 2 == 0)
-        spectrum.back() *= 0.5;   // the Nyquist line stands for both its sides
+        spectrum.back() *= 0.5;  // the Nyquist line stands for both its sides
     spectrum.resize(finer * N / 2 + 1, 0.0);
     auto fine = inverseFft(spectrum, finer * N);
     for (auto& value : fine)
@@ -31,7 +32,7 @@ std::vector<double> refined(std::vector<std::complex<double>> spectrum, std::siz
 double between(const std::vector<double>& fine, double sample)
 {
     constexpr int points = 8;
-    static constexpr std::array<double, points> inverse = [] {   // 1/prod (k - j)
+    static constexpr std::array<double, points> inverse = [] {  // 1/prod (k - j)
         std::array<double, points> result {};
         for (int k = 0; k < points; ++k) {
             double product = 1.0;
@@ -45,14 +46,15 @@ double between(const std::vector<double>& fine, double sample)
     const auto length = static_cast<std::ptrdiff_t>(fine.size());
     const double place = sample * finer, floor = std::floor(place), fraction = place - floor + (points / 2 - 1);
     const auto first = static_cast<std::ptrdiff_t>(floor) - (points / 2 - 1);
-    std::array<double, points> across;   // only where the period begins and ends
+    std::array<double, points> across;  // only where the period begins and ends
     const double* values = fine.data() + first;
     if (first < 0 || first + points > length) {
         for (int k = 0; k < points; ++k)
-            across[static_cast<std::size_t>(k)] = fine[static_cast<std::size_t>(((first + k) % length + length) % length)];
+            across[static_cast<std::size_t>(k)] =
+                fine[static_cast<std::size_t>(((first + k) % length + length) % length)];
         values = across.data();
     }
-    std::array<double, points> above;   // prod (fraction - j) over j > k
+    std::array<double, points> above;  // prod (fraction - j) over j > k
     above[points - 1] = 1.0;
     for (std::size_t k = points - 1; k > 0; --k)
         above[k - 1] = above[k] * (fraction - static_cast<double>(k));
@@ -64,7 +66,7 @@ double between(const std::vector<double>& fine, double sample)
     return sum;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<double> slopeOf(std::span<const double> samples, double sampleRate)
 {
@@ -73,7 +75,7 @@ std::vector<double> slopeOf(std::span<const double> samples, double sampleRate)
     for (std::size_t k = 0; k < spectrum.size(); ++k)
         spectrum[k] *= std::complex<double>(0.0, step * static_cast<double>(k));
     if (samples.size() % 2 == 0)
-        spectrum.back() = 0.0;   // the slope of the Nyquist line has none
+        spectrum.back() = 0.0;  // the slope of the Nyquist line has none
     return inverseFft(spectrum, samples.size());
 }
 
@@ -100,7 +102,7 @@ Arrival::Arrival(std::span<const double> lateness, double sampleRate)
     for (std::size_t n = 0; n < N; ++n) {
         const double t = static_cast<double>(n);
         double s = t - late[finer * n];
-        constexpr int enough = 8;   // from a start that is right to the square of the Mach number
+        constexpr int enough = 8;  // from a start that is right to the square of the Mach number
         for (int k = 0; k < enough; ++k) {
             // A rough slope will do: it steers the iteration, and what it is off by is small beside one.
             auto nearest = static_cast<std::ptrdiff_t>(finer * s) % length;
@@ -126,4 +128,4 @@ std::vector<double> Arrival::heard(std::span<const double> samples) const
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

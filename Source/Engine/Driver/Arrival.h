@@ -11,12 +11,14 @@ namespace excursion {
 /// @param sampleRate  Hz
 std::vector<double> slopeOf(std::span<const double> samples, double sampleRate);
 
-/// Derivative of what arrives by the instant at which it has left, x'(s)/(1 + lateness'(s)), at each instant s: sound that leaves by ds later
-/// arrives as it is told by this times ds less.
-std::vector<double> slopeByLeaving(std::span<const double> samples, std::span<const double> lateness, double sampleRate);
+/// Derivative of what arrives by the instant at which it has left, x'(s)/(1 + lateness'(s)), at each instant s: sound
+/// that leaves by ds later arrives as it is told by this times ds less.
+std::vector<double> slopeByLeaving(std::span<const double> samples, std::span<const double> lateness,
+                                   double sampleRate);
 
-/// Sound that is late by an amount that changes: what leaves at s arrives at t = s + lateness(s). For a record of one period this tells when
-/// what arrives at each of its instants has left, by Newton's iteration on the band-limited lateness, and reads any record there,
+/// Sound that is late by an amount that changes: what leaves at s arrives at t = s + lateness(s). For a record of one
+/// period this tells when what arrives at each of its instants has left, by Newton's iteration on the band-limited
+/// lateness, and reads any record there,
 ///     y(t) = x(s(t)),   s(t) + lateness(s(t)) = t.
 /// The lateness must change by less than one second a second, which is to say that the source is slower than sound.
 class Arrival {
@@ -32,7 +34,7 @@ public:
     std::vector<double> heard(std::span<const double> samples) const;
 
 private:
-    std::vector<double> left_;    ///< samples; empty when nothing is late
+    std::vector<double> left_;  ///< samples; empty when nothing is late
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,12 +11,12 @@
 
 namespace excursion {
 
-/// (s I - A)^-1 at one s after another, for the linear part of a driver. The first three states, current and motion, move all others; a
-/// memory moves these three and no memory but its effect's own. So A is an arrow: eliminating the memories, one small group at a time,
-/// leaves three equations,
+/// (s I - A)^-1 at one s after another, for the linear part of a driver. The first three states, current and motion,
+/// move all others; a memory moves these three and no memory but its effect's own. So A is an arrow: eliminating the
+/// memories, one small group at a time, leaves three equations,
 ///     S = s I - A_cc - sum_g A_cg R_g A_gc,   R_g = (s I - A_gg)^-1,
-/// and each s costs as many operations as A has entries. Groups are found in A: states that no coupling joins stay apart, and no rounding
-/// joins them.
+/// and each s costs as many operations as A has entries. Groups are found in A: states that no coupling joins stay
+/// apart, and no rounding joins them.
 class ArrowResolvent {
 public:
     explicit ArrowResolvent(const Eigen::MatrixXd& A) : units_(stateUnits(A))
@@ -26,7 +26,8 @@ public:
         for (std::size_t k = 0; k < order_.size(); ++k)
             order_[k] = static_cast<Eigen::Index>(k);
         const auto groups = groupsOf(balanced);
-        std::stable_sort(order_.begin() + core, order_.end(), [&](Eigen::Index a, Eigen::Index b) { return before(groups, a, b); });
+        std::stable_sort(order_.begin() + core, order_.end(),
+                         [&](Eigen::Index a, Eigen::Index b) { return before(groups, a, b); });
         A_ = balanced(order_, order_).cast<std::complex<double>>();
         for (Eigen::Index k = core; k < A_.rows(); k += size(groups, k))
             if (size(groups, k) == 1)
@@ -63,8 +64,14 @@ public:
     }
 
     /// B, and a row c, as column() and row() take them at every s.
-    Eigen::VectorXcd turnedRight(const Eigen::VectorXd& B) const { return B.cwiseQuotient(units_)(order_).cast<std::complex<double>>(); }
-    Eigen::VectorXcd turnedLeft(const Eigen::RowVectorXd& c) const { return c.transpose().cwiseProduct(units_)(order_).cast<std::complex<double>>(); }
+    Eigen::VectorXcd turnedRight(const Eigen::VectorXd& B) const
+    {
+        return B.cwiseQuotient(units_)(order_).cast<std::complex<double>>();
+    }
+    Eigen::VectorXcd turnedLeft(const Eigen::RowVectorXd& c) const
+    {
+        return c.transpose().cwiseProduct(units_)(order_).cast<std::complex<double>>();
+    }
 
     /// (s I - A)^-1 B.
     Eigen::VectorXcd column(const Eigen::VectorXcd& b) const
@@ -83,7 +90,8 @@ public:
     {
         Eigen::VectorXcd y = c;
         auto memories = y.tail(y.size() - core);
-        const Eigen::Vector3cd motion = core_.transpose() * (c.head<core>() + forth_.transpose() * c.tail(c.size() - core));
+        const Eigen::Vector3cd motion = core_.transpose()
+                                        * (c.head<core>() + forth_.transpose() * c.tail(c.size() - core));
         solveOwn(memories, true);
         y.head<core>() = motion;
         memories.noalias() += back_.transpose() * motion;
@@ -109,7 +117,8 @@ private:
         inverse << by * M(1, 1), -by * M(0, 1), -by * M(1, 0), by * M(0, 0);
     }
 
-    /// Of each state the first of those that it is joined with, other than through the core; of the core's states nothing.
+    /// Of each state the first of those that it is joined with, other than through the core; of the core's states
+    /// nothing.
     static std::vector<Eigen::Index> groupsOf(const Eigen::MatrixXd& A)
     {
         std::vector<Eigen::Index> group(static_cast<std::size_t>(A.rows()));
@@ -125,13 +134,15 @@ private:
     }
     Eigen::Index size(const std::vector<Eigen::Index>& groups, Eigen::Index place) const
     {
-        return std::count(groups.begin(), groups.end(), groups[static_cast<std::size_t>(order_[static_cast<std::size_t>(place)])]);
+        return std::count(groups.begin(), groups.end(),
+                          groups[static_cast<std::size_t>(order_[static_cast<std::size_t>(place)])]);
     }
     /// Single states first, then group by group.
     static bool before(const std::vector<Eigen::Index>& groups, Eigen::Index a, Eigen::Index b)
     {
         const auto first = groups[static_cast<std::size_t>(a)], second = groups[static_cast<std::size_t>(b)];
-        const bool alone = std::count(groups.begin(), groups.end(), first) == 1, other = std::count(groups.begin(), groups.end(), second) == 1;
+        const bool alone = std::count(groups.begin(), groups.end(), first) == 1,
+                   other = std::count(groups.begin(), groups.end(), second) == 1;
         return alone != other ? alone : first < second;
     }
 
@@ -157,14 +168,15 @@ private:
     }
 
     Eigen::VectorXd units_;
-    std::vector<Eigen::Index> order_;   ///< places in A of the states as they stand here: the core, single ones, groups
-    std::vector<Group> groups_;         ///< of two states or more
+    /// places in A of the states as they stand here: the core, single ones, groups
+    std::vector<Eigen::Index> order_;
+    std::vector<Group> groups_;  ///< of two states or more
     Eigen::Index singles_ = 0;
-    Eigen::MatrixXcd A_, into_, from_;  ///< into the memories from the core, and back
-    Eigen::VectorXcd poles_, own_;      ///< of single states, and 1/(s - pole)
-    std::vector<Eigen::MatrixXcd> solved_;   ///< R_g
-    Eigen::MatrixXcd forth_, back_, system_; ///< R_g A_gc and A_cg R_g
-    Eigen::Matrix3cd core_;             ///< S^-1
+    Eigen::MatrixXcd A_, into_, from_;        ///< into the memories from the core, and back
+    Eigen::VectorXcd poles_, own_;            ///< of single states, and 1/(s - pole)
+    std::vector<Eigen::MatrixXcd> solved_;    ///< R_g
+    Eigen::MatrixXcd forth_, back_, system_;  ///< R_g A_gc and A_cg R_g
+    Eigen::Matrix3cd core_;                   ///< S^-1
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -37,4 +37,4 @@ private:
     Eigen::PartialPivLU<Eigen::MatrixXcd> factors_;
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -25,8 +25,9 @@ public:
 
     std::vector<Parameter> parameters(const Extent&) const override
     {
-        return {positiveParameter("Re", "ohm", 6.0), positiveParameter("Le", "H", 3e-4),   positiveParameter("Bl", "N/A", 5.0),
-                positiveParameter("m", "kg", 1e-2),  positiveParameter("Rms", "N s/m", 1), positiveParameter("K", "N/m", 2e3)};
+        return {positiveParameter("Re", "ohm", 6.0),  positiveParameter("Le", "H", 3e-4),
+                positiveParameter("Bl", "N/A", 5.0),  positiveParameter("m", "kg", 1e-2),
+                positiveParameter("Rms", "N s/m", 1), positiveParameter("K", "N/m", 2e3)};
     }
     int coefficientCount(const Extent&) const override { return 6; }
 
@@ -67,7 +68,8 @@ public:
 
     std::vector<Parameter> parameters(const Extent&) const override
     {
-        return {positiveParameter("m", "kg", 1e-2), positiveParameter("Rms", "N s/m", 1), positiveParameter("K", "N/m", 2e3)};
+        return {positiveParameter("m", "kg", 1e-2), positiveParameter("Rms", "N s/m", 1),
+                positiveParameter("K", "N/m", 2e3)};
     }
     int coefficientCount(const Extent&) const override { return 3; }
 
@@ -87,7 +89,7 @@ public:
     void draw(const Extent&, const double* c, NetworkDrawing& into) const override { drawCone(c, into); }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& electrodynamicBase()
 {
@@ -101,4 +103,4 @@ const Effect& mechanicalBase()
     return base;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,9 +8,10 @@ namespace excursion {
 
 const std::vector<const Effect*>& catalogue()
 {
-    static const std::vector<const Effect*> effects {&forceFactor(),       &stiffness(), &inductancePosition(), &eddyCurrents(),
-                                                     &creep(),             &dampingVelocity(), &inductanceCurrent(), &friction(),
-                                                     &coilHeating(),       &ventedBox(), &doppler(), &coneBreakup(), &sideResonance()};
+    static const std::vector<const Effect*> effects {
+        &forceFactor(),     &stiffness(),         &inductancePosition(), &eddyCurrents(), &creep(),
+        &dampingVelocity(), &inductanceCurrent(), &friction(),           &coilHeating(),  &ventedBox(),
+        &doppler(),         &coneBreakup(),       &sideResonance()};
     return effects;
 }
 
@@ -22,7 +23,8 @@ const Effect& effectNamed(std::string_view id)
             return *effect;
         known += (known.empty() ? "" : ", ") + effect->id();
     }
-    throw Error(Error::Kind::usage, "There is no effect named \"" + std::string(id) + "\"; the known ones are " + known + ".");
+    throw Error(Error::Kind::usage,
+                "There is no effect named \"" + std::string(id) + "\"; the known ones are " + known + ".");
 }
 
 const Effect& baseNamed(std::string_view id)
@@ -30,7 +32,8 @@ const Effect& baseNamed(std::string_view id)
     for (const auto* base : {&electrodynamicBase(), &mechanicalBase()})
         if (base->id() == id)
             return *base;
-    throw Error(Error::Kind::input, "A model's base is \"electrodynamic\" or \"mechanical\", not \"" + std::string(id) + "\".");
+    throw Error(Error::Kind::input,
+                "A model's base is \"electrodynamic\" or \"mechanical\", not \"" + std::string(id) + "\".");
 }
 
-} // namespace excursion
+}  // namespace excursion

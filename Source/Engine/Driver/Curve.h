@@ -12,9 +12,9 @@ namespace excursion {
 /// A smooth curve that is zero at rest,
 ///     c(q) = sum_{k=1..n} c_k [T_k(q/Q) - T_k(0)],   |q| <= Q,
 /// with Chebyshev polynomials T_k, which keep the fit well conditioned at any degree that is of use. Beyond the visited
-/// range Q the curve stays at its end value, as a polynomial must not be believed where nothing was measured, unless the physics
-/// says how it goes on (see beyond).
-/// Coefficients are those of the monomials in q/Q, from degree 0 upwards (n + 1 of them).
+/// range Q the curve stays at its end value, as a polynomial must not be believed where nothing was measured, unless
+/// the physics says how it goes on (see beyond). Coefficients are those of the monomials in q/Q, from degree 0 upwards
+/// (n + 1 of them).
 namespace curve {
 
 inline constexpr int maximumDegree = 18;
@@ -42,10 +42,11 @@ void prepare(int n, const T* c, T* b)
 
 template <class T>
 struct ValueAndSlope {
-    T value, slope;   ///< slope with respect to q
+    T value, slope;  ///< slope with respect to q
 };
 
-/// Horner's scheme for the value and the slope at q. Part of what calls it, so that it is compiled for the same processor.
+/// Horner's scheme for the value and the slope at q. Part of what calls it, so that it is compiled for the same
+/// processor.
 template <class T>
 [[gnu::always_inline]] inline ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
 {
@@ -62,9 +63,11 @@ template <class T>
     return {value, outside ? T(0.0) : slope * (1.0 / range)};
 }
 
-/// How a curve goes on beyond the visited range, from its end value. Its first two terms, which are the best determined, extend it:
+/// How a curve goes on beyond the visited range, from its end value. Its first two terms, which are the best
+/// determined, extend it:
 ///     max(0, c_1 (T_1(s) - T_1(+-1)) + c_2 (T_2(s) - T_2(1))),   1 < |s| <= 2,   s = q/Q,
-/// and from twice the range on it stays. A law that hardens goes on hardening; it never gives way where nothing was measured.
+/// and from twice the range on it stays. A law that hardens goes on hardening; it never gives way where nothing was
+/// measured.
 template <class T>
 [[gnu::always_inline]] inline T beyond(const T& c1, const T& c2, const T& q, double range)
 {
@@ -84,8 +87,8 @@ inline double valueAt(int n, const double* c, double q, double range)
     return at(n, b.data(), q, range).value;
 }
 
-/// What a coefficient of degree k may plausibly be: the coefficients of a smooth law fall geometrically. So weak a prior yields to
-/// any data, but keeps the ends of the range, where a record seldom is, from running off.
+/// What a coefficient of degree k may plausibly be: the coefficients of a smooth law fall geometrically. So weak a
+/// prior yields to any data, but keeps the ends of the range, where a record seldom is, from running off.
 inline double plausible(int k, double scale) { return 2.0 * std::abs(scale) * std::pow(0.75, k); }
 
 /// The n coefficients c_1..c_n as parameters, all strengths.
@@ -103,14 +106,17 @@ inline std::vector<Parameter> parameters(const Extent& extent, const std::string
     return result;
 }
 
-} // namespace curve
+}  // namespace curve
 
-/// An effect that is a law along one curve, and no more: its parameters are the curve's, its coefficients those of the monomials. A subclass
-/// says the law and what it does with the curve.
+/// An effect that is a law along one curve, and no more: its parameters are the curve's, its coefficients those of the
+/// monomials. A subclass says the law and what it does with the curve.
 template <class Self>
 class CurveLaw : public EffectOf<Self> {
 public:
-    std::vector<Parameter> parameters(const Extent& e) const override { return curve::parameters(e, this->law()->unit); }
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        return curve::parameters(e, this->law()->unit);
+    }
     int coefficientCount(const Extent& e) const override { return e.degree + 1; }
 
     template <class T>
@@ -120,4 +126,4 @@ public:
     }
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -63,7 +63,8 @@ public:
         Emission<T> sum;
         radiation_->effect->emit(radiation_->extent, path_.data(), at, dz[2], nullptr, nullptr, sum);
         for (const auto& part : parts_)
-            part.effect->emit(*part.extent, coefficients_.data() + part.coefficients, at, dz[2], z + part.memory, dz + part.memory, sum);
+            part.effect->emit(*part.extent, coefficients_.data() + part.coefficients, at, dz[2], z + part.memory,
+                              dz + part.memory, sum);
         return sum;
     }
 
@@ -71,8 +72,8 @@ private:
     struct Part {
         const Effect* effect;
         const Extent* extent;
-        int coefficients;   ///< where its coefficients start
-        int memory;         ///< where its memory starts in the state
+        int coefficients;  ///< where its coefficients start
+        int memory;        ///< where its memory starts in the state
     };
 
     bool electrical_;
@@ -82,4 +83,4 @@ private:
     const Component* radiation_;
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,7 +10,8 @@ namespace excursion {
 
 const Parameter& parameterNamed(const std::vector<Parameter>& parameters, std::string_view name)
 {
-    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return p.name == name; });
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const Parameter& p) { return p.name == name; });
     if (found == parameters.end())
         throw std::out_of_range("no parameter " + std::string(name));
     return *found;
@@ -33,7 +34,10 @@ std::vector<Part> Effect::parts(const Extent&) const { return {}; }
 
 std::vector<double> Effect::restarts(const Extent&, const std::vector<double>&) const { return {}; }
 
-bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::vector<Parameter>&) const { return true; }
+bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::vector<Parameter>&) const
+{
+    return true;
+}
 
 std::vector<Figure> Effect::summary(const Extent&, const double*) const { return {}; }
 
@@ -45,4 +49,4 @@ std::string Effect::sizedBy() const
 
 double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
 
-} // namespace excursion
+}  // namespace excursion

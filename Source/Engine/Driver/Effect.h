@@ -18,9 +18,9 @@ namespace excursion {
 /// The instant at which an effect is asked what it adds.
 template <class T>
 struct Motion {
-    T i;   ///< coil current, A
-    T x;   ///< coil displacement, m, positive outward
-    T v;   ///< coil velocity, m/s
+    T i;  ///< coil current, A
+    T x;  ///< coil displacement, m, positive outward
+    T v;  ///< coil velocity, m/s
 };
 
 /// What the base and the effects add up to. With the flux phi(i, x) of the coil these close the two
@@ -29,22 +29,23 @@ struct Motion {
 ///     mass dv/dt   = force
 template <class T>
 struct Balance {
-    T inductance {0.0};   ///< d(phi)/di, H
-    T fluxSlope {0.0};    ///< d(phi)/dx, V s/m, without the force factor's own motion voltage
-    T drop {0.0};         ///< voltage drops and motion voltage, V
-    T force {0.0};        ///< N, positive outward
-    T mass {0.0};         ///< kg
+    T inductance {0.0};  ///< d(phi)/di, H
+    T fluxSlope {0.0};   ///< d(phi)/dx, V s/m, without the force factor's own motion voltage
+    T drop {0.0};        ///< voltage drops and motion voltage, V
+    T force {0.0};       ///< N, positive outward
+    T mass {0.0};        ///< kg
 };
 
-/// What leaves the driver at an instant, as the base's motion and the effects make it. The microphone at distance d hears
+/// What leaves the driver at an instant, as the base's motion and the effects make it. The microphone at distance d
+/// hears
 ///     p(t + lateness) = rho/(2 pi d) area acceleration     (a half space; rho = 1.2 kg/m^3),
 /// the laser sees x + spot.
 template <class T>
 struct Emission {
-    T area {0.0};           ///< m^2 that the acceleration is referred to
-    T acceleration {0.0};   ///< m/s^2, outward: the volume that is moved, over the area
-    T lateness {0.0};       ///< s from this instant to its sound at the microphone
-    T spot {0.0};           ///< m, by which the point that the laser sees is ahead of the coil
+    T area {0.0};          ///< m^2 that the acceleration is referred to
+    T acceleration {0.0};  ///< m/s^2, outward: the volume that is moved, over the area
+    T lateness {0.0};      ///< s from this instant to its sound at the microphone
+    T spot {0.0};          ///< m, by which the point that the laser sees is ahead of the coil
 };
 
 /// Where and how finely an effect is to hold: what the take really visited. It is part of a model, so a
@@ -56,9 +57,11 @@ struct Extent {
     double lowFrequency = 10.0;    ///< Hz, lowest frequency of interest
     double highFrequency = 1.0e4;  ///< Hz, highest frequency of interest
     int degree = 6;                ///< of a law's expansion
-    double scale = 1.0;            ///< the base parameter that the effect is sized by, in its unit: what is large for a law
-    double duration = 10.0;        ///< s, of the take: what a slow memory had time for
-    bool relaxed = true;           ///< parameters that are relaxed may differ from zero: false spares the memory that they stand for
+    /// the base parameter that the effect is sized by, in its unit: what is large for a law
+    double scale = 1.0;
+    double duration = 10.0;  ///< s, of the take: what a slow memory had time for
+    /// parameters that are relaxed may differ from zero: false spares the memory that they stand for
+    bool relaxed = true;
 };
 
 struct Parameter {
@@ -67,12 +70,14 @@ struct Parameter {
     double value = 0.0;
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
-    bool free = true;          ///< may a fit move it
-    bool relaxed = false;      ///< means something beside an effect that relaxes only: zero and not free without one
-    bool heard = false;        ///< only the sound shows it: not free where none was measured
-    bool strength = false;     ///< an effect whose strengths are all zero is absent
-    double prior = std::numeric_limits<double>::infinity();   ///< standard deviation about zero that is plausible beforehand
-    double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown or not identifiable
+    bool free = true;  ///< may a fit move it
+    /// means something beside an effect that relaxes only: zero and not free without one
+    bool relaxed = false;
+    bool heard = false;     ///< only the sound shows it: not free where none was measured
+    bool strength = false;  ///< an effect whose strengths are all zero is absent
+    /// standard deviation about zero that is plausible beforehand
+    double prior = std::numeric_limits<double>::infinity();
+    double standardError = std::numeric_limits<double>::quiet_NaN();  ///< NaN: unknown or not identifiable
 };
 
 /// A parameter of which only what is not negative makes sense.
@@ -92,60 +97,63 @@ struct Figure {
     std::string name;
     std::string unit;
     double value = 0.0;
-    double standardError = std::numeric_limits<double>::quiet_NaN();   ///< NaN: unknown
+    double standardError = std::numeric_limits<double>::quiet_NaN();  ///< NaN: unknown
 };
 
 /// A law is a curve a person knows the effect by: Bl(x), K(x), Le(x), Rms(v). The effect adds a
 /// difference, zero at rest, to a parameter of the base.
 struct LawInfo {
-    std::string name;       ///< "Bl(x)"
-    std::string unit;       ///< "N/A"
-    std::string argument;   ///< "x", "v" or "i"
+    std::string name;      ///< "Bl(x)"
+    std::string unit;      ///< "N/A"
+    std::string argument;  ///< "x", "v" or "i"
     std::string argumentUnit;
-    std::string base;       ///< name of the base parameter it adds to
+    std::string base;  ///< name of the base parameter it adds to
 };
 
 /// One of the like parts that an effect is the sum of, such as a mode of the cone.
 struct Part {
-    std::size_t first = 0, count = 0;           ///< its parameters; with its strengths at zero it does nothing
-    std::vector<std::vector<double>> starts;    ///< values of these from which a search may begin, strengths zero, like beside like
+    std::size_t first = 0, count = 0;  ///< its parameters; with its strengths at zero it does nothing
+    /// values of these from which a search may begin, strengths zero, like beside like
+    std::vector<std::vector<double>> starts;
 };
 
-/// One physical effect. A subclass is the whole of it: its words, its parameters, its memory, what it adds to the driver's two
-/// equations and what to the sound that leaves it, written once through EffectOf for any number type.
+/// One physical effect. A subclass is the whole of it: its words, its parameters, its memory, what it adds to the
+/// driver's two equations and what to the sound that leaves it, written once through EffectOf for any number type.
 class Effect {
 public:
     virtual ~Effect() = default;
 
-    virtual std::string id() const = 0;         ///< "force-factor"
-    virtual std::string title() const = 0;      ///< "Force factor Bl(x)"
-    virtual std::string physics() const = 0;    ///< one sentence
-    virtual std::string symptoms() const = 0;   ///< what betrays it, in words a person can check on a plot
-    virtual std::string remedy() const = 0;     ///< what a designer can do about it
-    virtual bool electrical() const = 0;        ///< needs a coil; a mechanical-only driver has none
-    virtual bool linear() const = 0;            ///< changes the frequency response, adds no distortion
-    virtual bool felt() const { return true; }  ///< acts on coil and cone; else it is heard or seen only
-    virtual bool shownBy(Quantity) const { return true; }   ///< a channel of that quantity can show it
-    virtual bool undone() const { return felt(); }   ///< predistortion reckons with it; else it leaves it as it is
+    virtual std::string id() const = 0;                    ///< "force-factor"
+    virtual std::string title() const = 0;                 ///< "Force factor Bl(x)"
+    virtual std::string physics() const = 0;               ///< one sentence
+    virtual std::string symptoms() const = 0;              ///< what betrays it, in words a person can check on a plot
+    virtual std::string remedy() const = 0;                ///< what a designer can do about it
+    virtual bool electrical() const = 0;                   ///< needs a coil; a mechanical-only driver has none
+    virtual bool linear() const = 0;                       ///< changes the frequency response, adds no distortion
+    virtual bool felt() const { return true; }             ///< acts on coil and cone; else it is heard or seen only
+    virtual bool shownBy(Quantity) const { return true; }  ///< a channel of that quantity can show it
+    virtual bool undone() const { return felt(); }  ///< predistortion reckons with it; else it leaves it as it is
 
     virtual std::vector<Parameter> parameters(const Extent&) const = 0;
 
     /// Shapes to try when nothing is known yet: parameter vectors with every strength at zero.
     virtual std::vector<std::vector<double>> starts(const Extent&) const;
 
-    /// For a linear effect that is a sum of parts, which may be narrow: a search on finely resolved frequency responses takes them up one
-    /// after the other, each where it explains most of what is left, for as long as another one pays. None: the effect is searched as a whole.
+    /// For a linear effect that is a sum of parts, which may be narrow: a search on finely resolved frequency responses
+    /// takes them up one after the other, each where it explains most of what is left, for as long as another one pays.
+    /// None: the effect is searched as a whole.
     virtual std::vector<Part> parts(const Extent&) const;
 
-    /// Resonances of the base in Hz from which a search on a frequency response begins together with a start, besides the one that the base
-    /// has: a base that was fitted without the effect may sit on a part of what the effect does.
+    /// Resonances of the base in Hz from which a search on a frequency response begins together with a start, besides
+    /// the one that the base has: a base that was fitted without the effect may sit on a part of what the effect does.
     virtual std::vector<double> restarts(const Extent&, const std::vector<double>& start) const;
 
-    /// Whether such values can be the effect's own, beside a base with those parameters. If not, its shape has been bent to stand for something
-    /// else, and it is not named.
+    /// Whether such values can be the effect's own, beside a base with those parameters. If not, its shape has been
+    /// bent to stand for something else, and it is not named.
     virtual bool plausible(const Extent&, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const;
 
-    /// What the parameters come to, in a few numbers (without errors, see figuresOf() in Summary.h); none where they speak for themselves.
+    /// What the parameters come to, in a few numbers (without errors, see figuresOf() in Summary.h); none where they
+    /// speak for themselves.
     virtual std::vector<Figure> summary(const Extent&, const double* parameters) const;
 
     virtual std::optional<LawInfo> law() const { return std::nullopt; }
@@ -155,10 +163,11 @@ public:
     /// Name of the base parameter whose value is Extent::scale; of a law the one that it bends. Empty: none.
     virtual std::string sizedBy() const;
 
-    virtual int memorySize(const Extent&) const { return 0; }         ///< extra states
-    /// The memory changes little within a period: what it holds was made by the whole take before. Its rate is to be affine in it.
+    virtual int memorySize(const Extent&) const { return 0; }  ///< extra states
+    /// The memory changes little within a period: what it holds was made by the whole take before. Its rate is to be
+    /// affine in it.
     virtual bool slow() const { return false; }
-    virtual bool relaxes() const { return false; }    ///< yields in the course of time
+    virtual bool relaxes() const { return false; }  ///< yields in the course of time
     /// No parameter moves the memory: what a motion leaves in it is known before any fit.
     virtual bool remembersMotionAlone() const { return false; }
     virtual int coefficientCount(const Extent&) const = 0;
@@ -181,10 +190,10 @@ public:
 
     /// Adds to the emission; asked after contribute(), without whose memoryRate what a memory radiates is not known.
     /// @param acceleration  of the coil, m/s^2
-    virtual void emit(const Extent&, const double* coefficients, const Motion<double>&, const double& acceleration, const double* memory,
-                      const double* memoryRate, Emission<double>&) const = 0;
-    virtual void emit(const Extent&, const Jet* coefficients, const Motion<Jet>&, const Jet& acceleration, const Jet* memory,
-                      const Jet* memoryRate, Emission<Jet>&) const = 0;
+    virtual void emit(const Extent&, const double* coefficients, const Motion<double>&, const double& acceleration,
+                      const double* memory, const double* memoryRate, Emission<double>&) const = 0;
+    virtual void emit(const Extent&, const Jet* coefficients, const Motion<Jet>&, const Jet& acceleration,
+                      const Jet* memory, const Jet* memoryRate, Emission<Jet>&) const = 0;
 };
 
 /// Lets a subclass write its physics once:
@@ -192,7 +201,8 @@ public:
 ///     template <class T> void addTo(const Extent&, const T* coefficients, const Motion<T>&, const T* memory,
 ///                                   T* memoryRate, Balance<T>&) const;
 /// and, if it is heard or seen otherwise than through the cone's motion,
-///     template <class T> void radiate(const Extent&, const T* coefficients, const Motion<T>&, const T& acceleration, const T* memory,
+///     template <class T> void radiate(const Extent&, const T* coefficients, const Motion<T>&, const T& acceleration,
+///     const T* memory,
 ///                                     const T* memoryRate, Emission<T>&) const;
 template <class Self>
 class EffectOf : public Effect {
@@ -209,48 +219,54 @@ public:
     {
         add(self(), e, c, motion, memory, rate, balance);
     }
-    void contribute(const Extent& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory, Tangent* rate,
-                    Balance<Tangent>& balance) const final
+    void contribute(const Extent& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory,
+                    Tangent* rate, Balance<Tangent>& balance) const final
     {
         add(self(), e, c, motion, memory, rate, balance);
     }
     bool emits() const final { return radiates<double>; }
-    void emit(const Extent& e, const double* c, const Motion<double>& motion, const double& acceleration, const double* memory,
-              const double* rate, Emission<double>& emission) const final
+    void emit(const Extent& e, const double* c, const Motion<double>& motion, const double& acceleration,
+              const double* memory, const double* rate, Emission<double>& emission) const final
     {
         emitFor(e, c, motion, acceleration, memory, rate, emission);
     }
-    void emit(const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet& acceleration, const Jet* memory, const Jet* rate,
-              Emission<Jet>& emission) const final
+    void emit(const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet& acceleration, const Jet* memory,
+              const Jet* rate, Emission<Jet>& emission) const final
     {
         emitFor(e, c, motion, acceleration, memory, rate, emission);
     }
 
 private:
-    // What is asked all the time is compiled for the processor at hand, with all that it calls; a virtual function itself cannot be.
-    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const double* c, const Motion<double>& motion, const double* memory,
-                                       double* rate, Balance<double>& balance)
+    // What is asked all the time is compiled for the processor at hand, with all that it calls; a virtual function
+    // itself cannot be.
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const double* c,
+                                                        const Motion<double>& motion, const double* memory,
+                                                        double* rate, Balance<double>& balance)
     {
         self.addTo(e, c, motion, memory, rate, balance);
     }
-    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet* memory, Jet* rate,
-                                       Balance<Jet>& balance)
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Jet* c,
+                                                        const Motion<Jet>& motion, const Jet* memory, Jet* rate,
+                                                        Balance<Jet>& balance)
     {
         self.addTo(e, c, motion, memory, rate, balance);
     }
-    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory,
-                                       Tangent* rate, Balance<Tangent>& balance)
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Tangent* c,
+                                                        const Motion<Tangent>& motion, const Tangent* memory,
+                                                        Tangent* rate, Balance<Tangent>& balance)
     {
         self.addTo(e, c, motion, memory, rate, balance);
     }
 
     template <class T, class Whose = Self>
-    static constexpr bool radiates = requires(const Whose& effect, const Extent& e, const T* of, const Motion<T>& motion, Emission<T>& emission) {
+    static constexpr bool radiates = requires(const Whose& effect, const Extent& e, const T* of,
+                                              const Motion<T>& motion, Emission<T>& emission)
+    {
         effect.radiate(e, of, motion, motion.i, of, of, emission);
     };
     template <class T>
-    void emitFor(const Extent& e, const T* c, const Motion<T>& motion, const T& acceleration, const T* memory, const T* rate,
-                 Emission<T>& emission) const
+    void emitFor(const Extent& e, const T* c, const Motion<T>& motion, const T& acceleration, const T* memory,
+                 const T* rate, Emission<T>& emission) const
     {
         if constexpr (radiates<T>)
             self().radiate(e, c, motion, acceleration, memory, rate, emission);
@@ -258,4 +274,4 @@ private:
     const Self& self() const { return static_cast<const Self&>(*this); }
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,8 +9,9 @@ namespace excursion {
 
 Exponential exponential(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, double h, Eigen::Index count)
 {
-    // In units in which no state is large beside another, and for an input of size one: else the norm of the bordered matrix is that of the
-    // worst unit, and squaring the exponential of a small fraction of it rounds everything else away.
+    // In units in which no state is large beside another, and for an input of size one: else the norm of the bordered
+    // matrix is that of the worst unit, and squaring the exponential of a small fraction of it rounds everything else
+    // away.
     const auto n = A.rows();
     const Eigen::VectorXd units = stateUnits(A);
     const Eigen::VectorXd drive = b.cwiseQuotient(units);
@@ -28,8 +29,9 @@ Eigen::MatrixXd quadrature(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, d
 {
     const auto phi = exponential(A, b, h, 3).phi;
     Eigen::MatrixXd weights(A.rows(), 3);
-    weights << phi.col(0) - 3.0 * phi.col(1) + 4.0 * phi.col(2), 2.0 * phi.col(1) - 4.0 * phi.col(2), 4.0 * phi.col(2) - phi.col(1);
+    weights << phi.col(0) - 3.0 * phi.col(1) + 4.0 * phi.col(2), 2.0 * phi.col(1) - 4.0 * phi.col(2),
+        4.0 * phi.col(2) - phi.col(1);
     return weights;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,7 +8,8 @@
 
 namespace excursion {
 
-ExponentialAdams::ExponentialAdams(const Model& model, double h, bool corrected) : motion_(model, h), corrected_(corrected)
+ExponentialAdams::ExponentialAdams(const Model& model, double h, bool corrected)
+    : motion_(model, h), corrected_(corrected)
 {
     constexpr auto rates = ExponentialStep::rates, terms = Eigen::Index {ExponentialStep::terms};
     const auto& A = motion_.A_;
@@ -19,7 +20,7 @@ ExponentialAdams::ExponentialAdams(const Model& model, double h, bool corrected)
         const auto phi = exponential(A, motion_.E_.col(q), h, 4).phi;
         for (Eigen::Index k = 0; k < 3; ++k)
             end.col(states + inputs + k * rates + q) = std::tgamma(static_cast<double>(k) + 1.0) * phi.col(k);
-        missed.col(q) = (phi.col(1) + 3.0 * (phi.col(2) + phi.col(3))) / 3.0;   // s (s + 1) (s + 2)/6
+        missed.col(q) = (phi.col(1) + 3.0 * (phi.col(2) + phi.col(3))) / 3.0;  // s (s + 1) (s + 2)/6
     }
     static_assert(inputs <= terms);
     const auto withAccelerations = [&](const Eigen::MatrixXd& map) {
@@ -61,8 +62,10 @@ double ExponentialAdams::step(std::span<const double> u)
     const auto memories = motion_.z_.size() - states;
     const double end = ExponentialStep::later(u).second;
 
-    const auto rise = [&](Eigen::Index k) { return 0.5 * (now[k] - 2.0 * before[k] + earlier[k]); };   // the parabola in powers of s: N_n,
-    const auto slope = [&](Eigen::Index k) { return now[k] - before[k] + rise(k); };                   // D + D2/2 and D2/2
+    // the parabola in powers of s: N_n,
+    const auto rise = [&](Eigen::Index k) { return 0.5 * (now[k] - 2.0 * before[k] + earlier[k]); };
+    // D + D2/2 and D2/2
+    const auto slope = [&](Eigen::Index k) { return now[k] - before[k] + rise(k); };
     std::copy_n(z, moving, from_.begin());
     const auto input = from_.begin() + moving, parabola = input + inputs;
     std::fill(std::copy(u.begin(), u.end(), input), parabola, 0.0);
@@ -98,4 +101,4 @@ double ExponentialAdams::step(std::span<const double> u)
     return y[4] + now[1] + motion_.motion(end);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -46,7 +46,7 @@ Eigen::MatrixXd ofCoefficients(Eigen::MatrixXd phi, double length)
     return phi;
 }
 
-} // namespace
+}  // namespace
 
 /// What is neither felt nor remembers anything is left to those who listen.
 bool ExponentialStep::isLaw(const Component& component)
@@ -55,7 +55,8 @@ bool ExponentialStep::isLaw(const Component& component)
     return !effect.linear() && (effect.felt() || effect.memorySize(component.extent) > 0);
 }
 
-ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), electrical_(model.electrical()), step_(h)
+ExponentialStep::ExponentialStep(const Model& model, double h)
+    : model_(model), electrical_(model.electrical()), step_(h)
 {
     linearPlace_ = {0, 1, 2};
     Eigen::Index n = 3;
@@ -67,7 +68,8 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
         if (component.effect->linear()) {
             const std::vector<double> memory(static_cast<std::size_t>(size), 0.0);
             std::vector<double> unused(memory);
-            component.effect->contribute(component.extent, coefficients.data(), {0.0, 0.0, 0.0}, memory.data(), unused.data(), atRest);
+            component.effect->contribute(component.extent, coefficients.data(), {0.0, 0.0, 0.0}, memory.data(),
+                                         unused.data(), atRest);
         } else if (isLaw(component)) {
             laws_.push_back({&component, std::move(coefficients), static_cast<Eigen::Index>(places.size())});
         }
@@ -89,7 +91,8 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
             moving_ = static_cast<Eigen::Index>(order.size());
     }
     const std::vector<Eigen::Index> places = linearPlace_;
-    std::transform(order.begin(), order.end(), linearPlace_.begin(), [&](Eigen::Index k) { return places[static_cast<std::size_t>(k)]; });
+    std::transform(order.begin(), order.end(), linearPlace_.begin(),
+                   [&](Eigen::Index k) { return places[static_cast<std::size_t>(k)]; });
     A_ = part.A(order, order);
     const Eigen::VectorXd B = part.B(order);
     const auto states = A_.rows(), following = states - moving_;
@@ -102,7 +105,7 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
 
     auto whole = exponential(A_, B, h, terms), half = exponential(A_, B, 0.5 * h, terms);
     for (auto* map : {&whole, &half})
-        map->decay.topRightCorner(moving_, following).setZero();   // but for rounding it is
+        map->decay.topRightCorner(moving_, following).setZero();  // but for rounding it is
     whole_.resize(states, states + terms);
     whole_ << whole.decay, ofCoefficients(whole.phi, 1.0);
     halfway_.resize(states, states + terms);
@@ -119,7 +122,8 @@ ExponentialStep::ExponentialStep(const Model& model, double h) : model_(model), 
     last_ = C_ * (half.decay * Q_);
 
     const auto accelerations = C_.bottomRows(2);
-    Eigen::MatrixXd carry = Eigen::MatrixXd::Zero(states + motions + 4, states + terms), drive = Eigen::MatrixXd::Zero(carry.rows(), 3 * rates);
+    Eigen::MatrixXd carry = Eigen::MatrixXd::Zero(states + motions + 4, states + terms),
+                    drive = Eigen::MatrixXd::Zero(carry.rows(), 3 * rates);
     carry.topRows(moving_) = whole_.topRows(moving_);
     carry.block(moving_, 0, 2, states) = accelerations;
     carry.middleRows(moving_ + 2, motions) = C_ * halfway_;
@@ -170,8 +174,10 @@ void ExponentialStep::ask(double u, double* N)
     for (const auto& law : laws_)
         law.component->effect->contribute(law.component->extent, law.coefficients.data(), {y_[0], y_[1], y_[2]},
                                           y_.data() + motions + law.memory, N + rates + law.memory, sum);
-    // The linear part's drop is u - L A_i z - u, its force m A_v z; the whole drop and force act on the whole inductance and mass.
-    N[0] = electrical_ ? (inductance_ * y_[3] + u - sum.drop - sum.fluxSlope * y_[2]) / (inductance_ + sum.inductance) - y_[3] - u * byVoltage_
+    // The linear part's drop is u - L A_i z - u, its force m A_v z; the whole drop and force act on the whole
+    // inductance and mass.
+    N[0] = electrical_ ? (inductance_ * y_[3] + u - sum.drop - sum.fluxSlope * y_[2]) / (inductance_ + sum.inductance)
+                             - y_[3] - u * byVoltage_
                        : 0.0;
     const double force = mass_ * (y_[4] + motion(u));
     N[1] = (force + sum.force) / (mass_ + sum.mass) - y_[4] - motion(u);
@@ -232,7 +238,8 @@ double ExponentialStep::step(std::span<const double> u)
 
 double ExponentialStep::fastestLaw()
 {
-    // N moves di/dt, dv/dt and the laws' memories alone, so its eigenvalues are those of its derivatives by i, v and these memories.
+    // N moves di/dt, dv/dt and the laws' memories alone, so its eigenvalues are those of its derivatives by i, v and
+    // these memories.
     const auto laws = N_[0].size(), memories = laws - rates;
     double fastest = 0.0;
     for (const auto& law : laws_) {
@@ -246,7 +253,7 @@ double ExponentialStep::fastestLaw()
                         y_[3] = C_.row(3).head(3) * y_.head(3);
                         y_[4] = C_.row(4).head(3) * y_.head(3);
                         if (memory >= 0)
-                            y_[motions + memory] = 1.0;   // what is affine in them does not mind the size
+                            y_[motions + memory] = 1.0;  // what is affine in them does not mind the size
                         ask(0.0, N_[0].data());
                         return N_[0];
                     };
@@ -264,4 +271,4 @@ double ExponentialStep::fastestLaw()
     return fastest;
 }
 
-} // namespace excursion
+}  // namespace excursion

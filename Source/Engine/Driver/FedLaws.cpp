@@ -26,11 +26,12 @@ MemoryStart startOf(const Component& law, const Section& section, const ShownMot
 }
 
 /// Where the slow memory of a law stands a quarter of a period before the window of each section.
-std::vector<MemoryStart> startsOf(const Component& law, const Record& record, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>& motions,
-                                  bool withGradient)
+std::vector<MemoryStart> startsOf(const Component& law, const Record& record, const std::vector<std::size_t>& sections,
+                                  const std::vector<ShownMotion>& motions, bool withGradient)
 {
     std::vector<MemoryStart> starts(sections.size());
-    // Sections that are not asked for have heated the coil all the same: as much as those of the same level, or of the nearest.
+    // Sections that are not asked for have heated the coil all the same: as much as those of the same level, or of the
+    // nearest.
     std::vector<PeriodicMotion> all;
     std::vector<double> run;
     for (const auto& section : record.sections) {
@@ -78,20 +79,22 @@ Eigen::MatrixXcd between(const Eigen::MatrixXcd& known, const std::vector<std::s
     return all;
 }
 
-} // namespace
+}  // namespace
 
-Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::size_t first, std::size_t last, double resolution, bool withGradient,
-              unsigned threads)
+Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::size_t first, std::size_t last,
+              double resolution, bool withGradient, unsigned threads)
 {
     constexpr double nearlyRest = 1e-3;
-    const auto frequencyOf = [&](std::size_t line) { return resolution * (line > 0 ? static_cast<double>(line) : nearlyRest); };
+    const auto frequencyOf = [&](std::size_t line) {
+        return resolution * (line > 0 ? static_cast<double>(line) : nearlyRest);
+    };
     const std::vector<Drives> drives {Drives::terminals, Drives::cone};
     std::vector<double> frequency, sparse;
     for (std::size_t k = first; k <= last; ++k)
         frequency.push_back(frequencyOf(k));
     Paths paths {{}, {}, first, linearize(model).lateness};
     auto responses = respondToEach(model, quantities, frequency, drives, false, threads);
-    if (withGradient) {   // slopes are dear, and smooth from line to line at high frequencies
+    if (withGradient) {  // slopes are dear, and smooth from line to line at high frequencies
         const auto lines = sparseLines(first, last);
         for (const auto k : lines)
             sparse.push_back(frequencyOf(k));
@@ -105,13 +108,14 @@ Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::
     return paths;
 }
 
-LawHistories lawHistories(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<ShownMotion>& motions,
-                          bool withGradient)
+LawHistories lawHistories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                          const std::vector<ShownMotion>& motions, bool withGradient)
 {
     LawHistories histories;
     for (const auto& component : model.components)
-        histories.push_back(isLaw(component) && component.effect->slow() ? startsOf(component, record, sections, motions, withGradient)
-                                                                         : std::vector<MemoryStart> {});
+        histories.push_back(isLaw(component) && component.effect->slow()
+                                ? startsOf(component, record, sections, motions, withGradient)
+                                : std::vector<MemoryStart> {});
     return histories;
 }
 
@@ -119,12 +123,12 @@ void rememberMotion(const Model& model, const Section& section, double sampleRat
 {
     for (const auto& component : model.components)
         if (isLaw(component) && component.effect->remembersMotionAlone())
-            motion.memories[component.effect->id()] = memoryAlong(component, motion, startOf(component, section, motion, sampleRate), sampleRate);
+            motion.memories[component.effect->id()] = memoryAlong(
+                component, motion, startOf(component, section, motion, sampleRate), sampleRate);
 }
 
-Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion, const LawHistories& histories,
-         std::size_t place,
-         const std::vector<std::vector<bool>>& wanted)
+Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion,
+         const LawHistories& histories, std::size_t place, const std::vector<std::vector<bool>>& wanted)
 {
     Fed fed;
     fed.voltage = fft(section.input);
@@ -133,9 +137,10 @@ Fed feed(const Model& model, const Record& record, const Section& section, const
         const auto& law = model.components[k];
         if (!isLaw(law))
             continue;
-        const auto start = law.effect->slow()                                ? histories[k][place]
-                           : motion.memories.contains(law.effect->id()) ? atRest(law)
-                                                                             : startOf(law, section, motion, record.sampleRate);
+        const auto start = law.effect->slow() ? histories[k][place]
+                           : motion.memories.contains(law.effect->id())
+                               ? atRest(law)
+                               : startOf(law, section, motion, record.sampleRate);
         auto drive = driveOf(law, motion, start, record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
         for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
             if (model.electrical())
@@ -148,4 +153,4 @@ Fed feed(const Model& model, const Record& record, const Section& section, const
     return fed;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -52,14 +52,21 @@ private:
     {
         Spectrum result(voltage.size(), 0.0);
         for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
-            result[k] = paths_.fromVoltage[c].value[k - paths_.first] * voltage[k] + paths_.fromForce[c].value[k - paths_.first] * force[k];
+            result[k] = paths_.fromVoltage[c].value[k - paths_.first] * voltage[k]
+                        + paths_.fromForce[c].value[k - paths_.first] * force[k];
         return result;
     }
 
     /// What leaves the cone, of what arrives as late as at rest.
-    std::vector<double> leaving(const Spectrum& sound) const { return inverseFft(later(sound, -paths_.lateness), section_.window); }
+    std::vector<double> leaving(const Spectrum& sound) const
+    {
+        return inverseFft(later(sound, -paths_.lateness), section_.window);
+    }
     /// What arrives, as late as the laws make it.
-    Spectrum arriving(const std::vector<double>& flow) const { return later(fft(arrival_.back().heard(flow)), paths_.lateness); }
+    Spectrum arriving(const std::vector<double>& flow) const
+    {
+        return later(fft(arrival_.back().heard(flow)), paths_.lateness);
+    }
 
     Spectrum later(Spectrum sound, double time) const
     {
@@ -97,10 +104,11 @@ private:
         };
         const auto& byVoltage = paths_.fromVoltage[c];
         const auto& byForce = paths_.fromForce[c];
-        std::vector<std::pair<std::size_t, std::size_t>> owner;   // law (or none) and own index of every parameter
+        std::vector<std::pair<std::size_t, std::size_t>> owner;  // law (or none) and own index of every parameter
         const auto none = fed_.laws.size();
         for (std::size_t k = 0; k < model_.components.size(); ++k) {
-            const auto law = static_cast<std::size_t>(std::find(fed_.component.begin(), fed_.component.end(), k) - fed_.component.begin());
+            const auto law = static_cast<std::size_t>(std::find(fed_.component.begin(), fed_.component.end(), k)
+                                                      - fed_.component.begin());
             for (std::size_t j = 0; j < model_.components[k].parameters.size(); ++j)
                 owner.emplace_back(law, j);
         }
@@ -111,7 +119,8 @@ private:
             if (law == none) {
                 fill(column, [&](std::size_t k) {
                     const auto row = static_cast<Eigen::Index>(k - paths_.first);
-                    return byVoltage.gradient(row, active[a]) * fed_.voltage[k] + byForce.gradient(row, active[a]) * fed_.force[k];
+                    return byVoltage.gradient(row, active[a]) * fed_.voltage[k]
+                           + byForce.gradient(row, active[a]) * fed_.force[k];
                 });
                 continue;
             }
@@ -125,10 +134,11 @@ private:
                 auto change = drive.latenessSlopes[own];
                 for (std::size_t n = 0; n < change.size(); ++n)
                     change[n] *= -byLeaving_[n];
-                late = later(fft(change), paths_.lateness);   // as at rest, which arriving() makes later still
+                late = later(fft(change), paths_.lateness);  // as at rest, which arriving() makes later still
             }
             fill(column, [&](std::size_t k) {
-                const auto sum = byForce.value[k - paths_.first] * F[k] - electrical * byVoltage.value[k - paths_.first] * U[k];
+                const auto sum = byForce.value[k - paths_.first] * F[k]
+                                 - electrical * byVoltage.value[k - paths_.first] * U[k];
                 return late.empty() ? sum : sum + late[k];
             });
         }
@@ -145,11 +155,12 @@ private:
     std::vector<double> byLeaving_;
 };
 
-} // namespace
+}  // namespace
 
-std::vector<SectionFit> feedbackError(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const ShownMotions& motions,
-                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const Progress& progress,
-                                      const std::vector<SectionFit>* played)
+std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
+                                      const std::vector<std::size_t>& sections, const ShownMotions& motions,
+                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
+                                      const Progress& progress, const std::vector<SectionFit>* played)
 {
     const bool gradient = options.gradient && !active.empty();
     std::vector<std::vector<bool>> wanted;
@@ -160,18 +171,20 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record, 
             wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), index));
     }
     const auto histories = lawHistories(model, record, sections, motions, gradient);
-    std::map<std::size_t, Paths> paths;   // by window
+    std::map<std::size_t, Paths> paths;  // by window
     for (const auto s : sections)
         if (const auto& section = record.sections[s]; !paths.contains(section.window)) {
             const auto [first, last] = record.lineRange(section);
-            paths[section.window] = pathsOf(model, record.channels, first, last, record.sampleRate / static_cast<double>(section.window), gradient,
-                                             options.threads);
+            paths[section.window] = pathsOf(model, record.channels, first, last,
+                                            record.sampleRate / static_cast<double>(section.window), gradient,
+                                            options.threads);
         }
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];
         const auto fed = feed(model, record, section, motions[s], histories, s, wanted);
-        fits[s] = FedSection(model, record, section, fed, paths.at(section.window)).run(active, options, played ? &(*played)[s] : nullptr);
+        fits[s] = FedSection(model, record, section, fed, paths.at(section.window))
+                      .run(active, options, played ? &(*played)[s] : nullptr);
         return fits[s].finite;
     });
     return fits;
@@ -200,12 +213,14 @@ Record withoutLaws(const Model& model, const Record& record, unsigned threads)
     return result;
 }
 
-std::vector<SectionFit> quickError(const Model& model, const Record& record, const std::vector<std::size_t>& sections, const std::vector<Eigen::Index>& active,
-                                   const OutputErrorOptions& options, const Progress& progress)
+std::vector<SectionFit> quickError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                   const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
+                                   const Progress& progress)
 {
-    return hasPeriods(record) ? feedbackError(model, record, sections, settledMotions(model, record, sections, options.threads), active, options,
-                                               progress)
-                              : outputError(model, record, sections, active, options, progress);
+    return hasPeriods(record)
+               ? feedbackError(model, record, sections, settledMotions(model, record, sections, options.threads),
+                               active, options, progress)
+               : outputError(model, record, sections, active, options, progress);
 }
 
-} // namespace excursion
+}  // namespace excursion

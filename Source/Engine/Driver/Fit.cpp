@@ -28,8 +28,11 @@ double measuredPeak(const Record& record, const Section& section, std::size_t ch
     for (std::size_t k = 1; k < spectrum.size(); ++k) {
         const double f = record.frequency(section, k);
         // Below the band an integrated channel holds little but amplified noise, above it a differentiated one.
-        const bool trusted = (integrations <= 0 || f > 0.5 * record.bandLow) && (integrations >= 0 || f < 1.5 * record.bandHigh);
-        spectrum[k] = trusted ? spectrum[k] / std::pow(std::complex<double>(0.0, 2.0 * std::numbers::pi * f), integrations) : 0.0;
+        const bool trusted = (integrations <= 0 || f > 0.5 * record.bandLow)
+                             && (integrations >= 0 || f < 1.5 * record.bandHigh);
+        spectrum[k] = trusted
+                          ? spectrum[k] / std::pow(std::complex<double>(0.0, 2.0 * std::numbers::pi * f), integrations)
+                          : 0.0;
     }
     return peakOf(inverseFft(spectrum, section.window));
 }
@@ -37,9 +40,9 @@ double measuredPeak(const Record& record, const Section& section, std::size_t ch
 /// What the model leaves of the sections to fit, with normal equations of the active parameters when asked for.
 using ErrorOf = std::function<std::vector<SectionFit>(const std::vector<Eigen::Index>& active, bool gradient)>;
 
-/// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of relaxations that
-/// has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others. Of an effect that is not at work yet nothing
-/// can be said: its shapes are kept.
+/// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of
+/// relaxations that has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others. Of
+/// an effect that is not at work yet nothing can be said: its shapes are kept.
 /// @param fits  of the model, when they had to be known and no parameter is left out; else none
 std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, std::vector<SectionFit>& fits)
 {
@@ -48,7 +51,7 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
     std::vector<bool> atWork;
     for (const auto& component : model.components)
         atWork.insert(atWork.end(), component.parameters.size(), isAtWork(component));
-    atWork.resize(all.size(), true);   // the path
+    atWork.resize(all.size(), true);  // the path
     const auto isShape = [&](Eigen::Index k) {
         const auto& p = *all[static_cast<std::size_t>(k)];
         return !p.strength && std::isfinite(p.prior) && atWork[static_cast<std::size_t>(k)];
@@ -64,7 +67,7 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
     if (sum.N.size() == 0)
         return active;
     std::vector<Eigen::Index> kept;
-    constexpr double fewTimes = 4.0;   // what the record must say, in units of what was known
+    constexpr double fewTimes = 4.0;  // what the record must say, in units of what was known
     const double variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
     for (std::size_t j = 0; j < active.size(); ++j) {
         const auto k = static_cast<Eigen::Index>(j);
@@ -83,7 +86,8 @@ bool areFinite(const std::vector<SectionFit>& fits)
 }
 
 /// The search of the model's parameters for the least error.
-FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const FitOptions& options, const Progress& progress)
+FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const FitOptions& options,
+                  const Progress& progress)
 {
     FitSummary summary;
     std::vector<SectionFit> atStart;
@@ -106,7 +110,8 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
     double variance = 0.0;  // of the residuals at the start
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
         place(at);
-        const auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});   // asked for there first
+        // asked for there first
+        const auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});
         auto total = sumOf(fits);
         if (!total)
             return false;
@@ -128,7 +133,8 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         return summary;
     summary.costPerResidual = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
     const auto covariance = covarianceOf(last.N, std::max(1.0, summary.costPerResidual));
-    model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()), static_cast<Eigen::Index>(all.size()));
+    model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
+                                             static_cast<Eigen::Index>(all.size()));
     for (Eigen::Index r = 0; r < P; ++r) {
         const auto row = active[static_cast<std::size_t>(r)];
         for (Eigen::Index c = 0; c < P; ++c)
@@ -138,7 +144,7 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
     return summary;
 }
 
-} // namespace
+}  // namespace
 
 bool FitOptions::isValid(std::string* reason) const
 {
@@ -198,7 +204,8 @@ void adapt(Record& record, const Model& model)
         for (std::size_t c = 0; c < record.channels.size(); ++c)
             for (std::size_t n = 0; n < played.size(); ++n)
                 section.deviation[c][played[n]] = std::hypot(section.deviation[c][played[n]],
-                                                             std::abs(responses[c].value[n]) * std::sqrt(section.inputVariance[played[n]]));
+                                                             std::abs(responses[c].value[n])
+                                                                 * std::sqrt(section.inputVariance[played[n]]));
         section.inputVariance.clear();
     }
     record.leadIn = settlingTime(model, record);
@@ -286,26 +293,33 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         return summary;
     }
     run.substeps = std::max(stableSubsteps(model, record.sampleRate),
-                            options.substeps > 0 ? options.substeps : substepsFor(model, record, options.simulationTolerance));
+                            options.substeps > 0 ? options.substeps
+                                                 : substepsFor(model, record, options.simulationTolerance));
     if (options.exactGradient)
         run.gradientSubsteps = run.substeps;
     const bool slopesFed = options.fedGradient && hasPeriods(record);
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
-    auto summary = search(model, [&](const std::vector<Eigen::Index>& active, bool gradient) {
-        run.gradient = gradient && !slopesFed;
-        run.spectra = gradient && slopesFed;
-        auto played = outputError(model, record, sections, active, run, progress);
-        if (!run.spectra || !areFinite(played))
-            return played;
-        auto slopes = run;
-        slopes.gradient = true;
-        slopes.spectra = false;
-        return feedbackError(model, record, sections, motions, active, slopes, progress, &played);
-    }, record.noiseKnown, options, progress);
+    auto summary = search(
+        model,
+        [&](const std::vector<Eigen::Index>& active, bool gradient) {
+            run.gradient = gradient && !slopesFed;
+            run.spectra = gradient && slopesFed;
+            auto played = outputError(model, record, sections, active, run, progress);
+            if (!run.spectra || !areFinite(played))
+                return played;
+            auto slopes = run;
+            slopes.gradient = true;
+            slopes.spectra = false;
+            return feedbackError(model, record, sections, motions, active, slopes, progress, &played);
+        },
+        record.noiseKnown, options, progress);
     summary.substeps = run.substeps;
     return summary;
 }
 
-Model startModel(const Record& record) { return startModel(linearResponsesOf(record), record.electrical, record.driver); }
+Model startModel(const Record& record)
+{
+    return startModel(linearResponsesOf(record), record.electrical, record.driver);
+}
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,21 +12,24 @@ namespace excursion {
 
 struct FitOptions {
     LeastSquaresOptions search;
-    double simulationTolerance = 0.0;    ///< relative accuracy of the integration; 0: a seventh of the noise, at most 1e-4
-    int substeps = 0;                    ///< integration steps a sample; 0: chosen from the tolerance
+    /// relative accuracy of the integration; 0: a seventh of the noise, at most 1e-4
+    double simulationTolerance = 0.0;
+    int substeps = 0;  ///< integration steps a sample; 0: chosen from the tolerance
     unsigned threads = 2;
-    bool exactGradient = false;   ///< sensitivities as finely as the simulation: slower steps, fewer of them where some directions hardly count
-    bool fedGradient = false;     ///< sensitivities of fed laws around an exact simulation: steps at a tenth of the price, a few more of them
-    bool fed = false;                    ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast and nearly as
-                                         ///< good, for starts and trials; a take without periods is simulated all the same
+    /// sensitivities as finely as the simulation: slower steps, fewer of them where some directions hardly count
+    bool exactGradient = false;
+    /// sensitivities of fed laws around an exact simulation: steps at a tenth of the price, a few more of them
+    bool fedGradient = false;
+    bool fed = false;  ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast
+                       ///< and nearly as good, for starts and trials; a take without periods is simulated all the same
 
     bool isValid(std::string* reason) const;
 };
 
 struct FitSummary : LeastSquaresSummary {
     int substeps = 0;
-    double costPerResidual = 0.0;   ///< 1 when nothing but noise is left
-    bool onlyNoise = false;         ///< no channel's error stands above its noise
+    double costPerResidual = 0.0;  ///< 1 when nothing but noise is left
+    bool onlyNoise = false;        ///< no channel's error stands above its noise
 };
 
 /// What the take visits: the peaks of displacement, velocity and current, measured where a channel tells them, else
@@ -35,8 +38,8 @@ Extent visitedExtent(const Model&, const Record&, int degree = 6);
 
 /// Output-error fit of all free parameters,
 ///     min sum_{sections, channels, lines} |Y_model - Y_measured|^2 / sigma^2,
-/// by Levenberg-Marquardt with automatic derivatives of the simulation. Leaves standard errors and the covariance in the model;
-/// when the residuals exceed the noise, both are scaled up by what is left.
+/// by Levenberg-Marquardt with automatic derivatives of the simulation. Leaves standard errors and the covariance in
+/// the model; when the residuals exceed the noise, both are scaled up by what is left.
 FitSummary fit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions& = {},
                const Progress& = {});
 
@@ -51,4 +54,4 @@ int substepsFor(const Model&, const Record&, double tolerance = 0.0);
 /// Start values, path, and the first linear fit of a take in the time domain.
 Model startModel(const Record&);
 
-} // namespace excursion
+}  // namespace excursion

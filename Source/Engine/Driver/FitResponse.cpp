@@ -13,8 +13,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double unseenErrors = 1e-2, unseenAlone = 0.3;   // standard errors, with the other parameters free and as they are
-constexpr double reach = 1e3;   // a search does not leave its start by more than this factor
+// standard errors, with the other parameters free and as they are
+constexpr double unseenErrors = 1e-2, unseenAlone = 0.3;
+constexpr double reach = 1e3;  // a search does not leave its start by more than this factor
 
 bool positive(const Parameter& p) { return p.lower >= 0.0 && p.value > 0.0 && !p.strength; }
 
@@ -57,9 +58,10 @@ void add(const ResponseTarget& target, const Response& response, const std::vect
     sum.rows += 2.0 * static_cast<double>(F);
     if (!gradient)
         return;
-    Eigen::MatrixXd J(2 * F, P);   // real parts over imaginary ones
+    Eigen::MatrixXd J(2 * F, P);  // real parts over imaginary ones
     for (Eigen::Index k = 0; k < P; ++k) {
-        const Eigen::VectorXcd slope = chain[k] * outer.cwiseProduct(response.gradient.col(active[static_cast<std::size_t>(k)]));
+        const Eigen::VectorXcd slope = chain[k]
+                                       * outer.cwiseProduct(response.gradient.col(active[static_cast<std::size_t>(k)]));
         J.col(k) << slope.real(), slope.imag();
     }
     Eigen::VectorXd r(2 * F);
@@ -69,8 +71,8 @@ void add(const ResponseTarget& target, const Response& response, const std::vect
 }
 
 /// What is plausible beforehand, against residuals of this variance.
-void addPriors(const Model& model, const std::vector<Eigen::Index>& active, const Eigen::VectorXd& chain, double variance, bool gradient,
-               NormalEquations& sum)
+void addPriors(const Model& model, const std::vector<Eigen::Index>& active, const Eigen::VectorXd& chain,
+               double variance, bool gradient, NormalEquations& sum)
 {
     const auto all = parametersOf(model);
     for (std::size_t j = 0; j < active.size(); ++j) {
@@ -89,13 +91,15 @@ void addPriors(const Model& model, const std::vector<Eigen::Index>& active, cons
 
 /// Standard errors and covariance from what is left, as if neighbouring points erred independently.
 /// @param origin  values of the active parameters that the search began from
-void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const std::vector<Eigen::Index>& active, const Eigen::VectorXd& origin)
+void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const std::vector<Eigen::Index>& active,
+                const Eigen::VectorXd& origin)
 {
     const auto all = parametersOf(model);
     const auto P = static_cast<Eigen::Index>(active.size()), count = static_cast<Eigen::Index>(all.size());
     NormalEquations sum;
     for (const auto& target : targets)
-        add(target, respond(model, {target.quantity}, target.frequency, true).front(), active, Eigen::VectorXd::Ones(P), true, sum);
+        add(target, respond(model, {target.quantity}, target.frequency, true).front(), active, Eigen::VectorXd::Ones(P),
+            true, sum);
     const double variance = sum.cost / std::max(1.0, sum.rows - static_cast<double>(P));
     const Eigen::VectorXd alone = sum.N.diagonal();
     addPriors(model, active, Eigen::VectorXd::Ones(P), variance, true, sum);
@@ -107,15 +111,17 @@ void keepErrors(Model& model, const std::vector<ResponseTarget>& targets, const 
             model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
         auto& p = *all[static_cast<std::size_t>(row)];
         p.standardError = std::sqrt(covariance(r, r));
-        // A positive parameter that the data takes for zero (an inductance that the eddy currents have taken over) stays away from the
-        // singular point, but so near that nobody sees it, and no farther than it was before: a large error may also be that of a shape whose effect does nothing.
-        const double near = std::min({unseenErrors * p.standardError, unseenAlone * std::sqrt(variance / alone[r]), origin[r]});
+        // A positive parameter that the data takes for zero (an inductance that the eddy currents have taken over)
+        // stays away from the singular point, but so near that nobody sees it, and no farther than it was before: a
+        // large error may also be that of a shape whose effect does nothing.
+        const double near = std::min(
+            {unseenErrors * p.standardError, unseenAlone * std::sqrt(variance / alone[r]), origin[r]});
         if (positive(p) && p.lower == 0.0 && p.value < near)
             p.value = std::min(near, p.upper);
     }
 }
 
-} // namespace
+}  // namespace
 
 double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
 {
@@ -139,7 +145,8 @@ double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
     return sum.cost + 2.0 * sum.g.dot(d) + d.dot(sum.N * d);
 }
 
-LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets, const LeastSquaresOptions& options)
+LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets,
+                                const LeastSquaresOptions& options)
 {
     const auto active = movedIn(model);
     const auto all = parametersOf(model);
@@ -160,8 +167,8 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
     }
     const auto place = [&](const Eigen::VectorXd& at) {
         for (Eigen::Index k = 0; k < P; ++k)
-            all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value
-                = logarithmic[static_cast<std::size_t>(k)] ? std::exp(at[k]) : at[k];
+            all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value =
+                logarithmic[static_cast<std::size_t>(k)] ? std::exp(at[k]) : at[k];
     };
     // The search divides by |x| where it is not zero; offset logarithms so that their scale is one.
     const Eigen::VectorXd origin = x.array() - 1.0;
@@ -179,7 +186,7 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
             lower[k] -= origin[k];
             upper[k] -= origin[k];
         }
-    double variance = 0.0;   // of the residuals at the start
+    double variance = 0.0;  // of the residuals at the start
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
         place(shifted(at));
         Eigen::VectorXd chain = Eigen::VectorXd::Ones(P);
@@ -187,7 +194,8 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
             if (logarithmic[static_cast<std::size_t>(k)])
                 chain[k] = all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value;
         for (const auto& target : targets)
-            add(target, respond(model, {target.quantity}, target.frequency, gradient).front(), active, chain, gradient, sum);
+            add(target, respond(model, {target.quantity}, target.frequency, gradient).front(), active, chain, gradient,
+                sum);
         if (variance == 0.0)
             variance = sum.cost / std::max(1.0, sum.rows);
         addPriors(model, active, chain, variance, gradient, sum);
@@ -201,4 +209,4 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
     return summary;
 }
 
-} // namespace excursion
+}  // namespace excursion

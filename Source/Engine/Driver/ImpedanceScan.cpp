@@ -12,15 +12,15 @@ namespace excursion {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr int terms = 4;   // Re, L s, E s^1/2, peak
+constexpr int terms = 4;  // Re, L s, E s^1/2, peak
 using Vector = Eigen::Vector4d;
 using Matrix = Eigen::Matrix4d;
 
 struct Curve {
     std::vector<double> omega;
     std::vector<Complex> impedance;
-    std::vector<double> weight;   // of the squared error
-    double power = 0.0;           // weighted
+    std::vector<double> weight;  // of the squared error
+    double power = 0.0;          // weighted
 };
 
 Curve curveOf(const ResponseTarget& target)
@@ -70,14 +70,14 @@ Solution solve(const Matrix& N, const Vector& g, double power, std::array<bool, 
     return solution;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<ImpedanceShape> scanImpedance(const ResponseTarget& target)
 {
     const auto curve = curveOf(target);
     if (curve.omega.size() < terms)
         return std::nullopt;
-    const double reference = curve.omega.back();   // scales the terms to about one ohm each
+    const double reference = curve.omega.back();  // scales the terms to about one ohm each
     // All that does not depend on the peak is summed once.
     Matrix fixed = Matrix::Zero();
     Vector fixedRight = Vector::Zero();
@@ -94,8 +94,9 @@ std::optional<ImpedanceShape> scanImpedance(const ResponseTarget& target)
     }
     std::optional<ImpedanceShape> best;
     double lowest = curve.power;
-    constexpr double gridStep = 1.03;   // a quality of 15 is still seen
-    for (double f0 = std::max(1.0, curve.omega.front() / (2.0 * std::numbers::pi)); f0 < std::min(5000.0, 0.7 * reference / (2.0 * std::numbers::pi)); f0 *= gridStep)
+    constexpr double gridStep = 1.03;  // a quality of 15 is still seen
+    for (double f0 = std::max(1.0, curve.omega.front() / (2.0 * std::numbers::pi));
+         f0 < std::min(5000.0, 0.7 * reference / (2.0 * std::numbers::pi)); f0 *= gridStep)
         for (const double Q : {0.4, 0.7, 1.2, 2.0, 3.5, 6.0, 10.0}) {
             const double w0 = 2.0 * std::numbers::pi * f0;
             Matrix N = fixed;
@@ -116,10 +117,14 @@ std::optional<ImpedanceShape> scanImpedance(const ResponseTarget& target)
                 continue;
             lowest = full.cost;
             const auto plain = solve(N, g, curve.power, {true, true, false, true});
-            best = ImpedanceShape {std::max(plain.coefficients[0], full.coefficients[0]), plain.coefficients[1] / reference,
-                                   full.coefficients[3], f0, Q, std::sqrt(std::max(0.0, full.cost) / curve.power)};
+            best = ImpedanceShape {std::max(plain.coefficients[0], full.coefficients[0]),
+                                   plain.coefficients[1] / reference,
+                                   full.coefficients[3],
+                                   f0,
+                                   Q,
+                                   std::sqrt(std::max(0.0, full.cost) / curve.power)};
         }
     return best;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,7 +10,8 @@
 namespace excursion {
 namespace {
 
-constexpr std::size_t fine = ShownMotion::fine;   // a law is asked once a sample, and its memory in between; a record's rate leaves room for products
+// a law is asked once a sample, and its memory in between; a record's rate leaves room for products
+constexpr std::size_t fine = ShownMotion::fine;
 
 /// What a law answers along a motion: one value a sample.
 template <class T>
@@ -43,7 +44,8 @@ public:
         if (!law_.effect->emits())
             return;
         Emission<T> emission;
-        law_.effect->emit(law_.extent, coefficients_.data(), at(static_cast<double>(n)), T(motion_.a[n]), memory, rate, emission);
+        law_.effect->emit(law_.extent, coefficients_.data(), at(static_cast<double>(n)), T(motion_.a[n]), memory, rate,
+                          emission);
         answers.lateness.push_back(emission.lateness);
     }
 
@@ -62,7 +64,8 @@ private:
     const ShownMotion& motion_;
 };
 
-/// Steps a sample in which a law's memory can be followed: its fastest rate along the motion times the step stays below one.
+/// Steps a sample in which a law's memory can be followed: its fastest rate along the motion times the step stays below
+/// one.
 int stepsFor(const Component& law, const ShownMotion& motion, double sampleRate)
 {
     const auto size = static_cast<std::size_t>(law.effect->memorySize(law.extent));
@@ -72,7 +75,8 @@ int stepsFor(const Component& law, const ShownMotion& motion, double sampleRate)
     for (std::size_t n = 0; n < motion.i.size(); n += 2 * fine) {
         const auto rates = [&](std::vector<double>& out) {
             Balance<double> unused;
-            law.effect->contribute(law.extent, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]}, memory.data(), out.data(), unused);
+            law.effect->contribute(law.extent, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]},
+                                   memory.data(), out.data(), unused);
         };
         rates(rest);
         for (std::size_t k = 0; k < size; ++k) {
@@ -86,10 +90,11 @@ int stepsFor(const Component& law, const ShownMotion& motion, double sampleRate)
     return static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most));
 }
 
-/// Follows a law's memory from a quarter of a period before the window to its end, and shows what it meets there once a sample:
-/// see(fine value, sum, memory, its rate).
+/// Follows a law's memory from a quarter of a period before the window to its end, and shows what it meets there once a
+/// sample: see(fine value, sum, memory, its rate).
 template <class T, class See>
-void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, int steps, double sampleRate, const See& see)
+void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, int steps, double sampleRate,
+            const See& see)
 {
     RungeKutta<T> method(memory.size());
     std::vector<T> rate(memory.size());
@@ -112,8 +117,8 @@ void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, int 
 }
 
 template <class T>
-Answers<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion, const std::vector<T>& start, int steps,
-               double sampleRate)
+Answers<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion,
+               const std::vector<T>& start, int steps, double sampleRate)
 {
     const Along<T> along(law, parameters, motion);
     const std::size_t length = motion.i.size(), size = start.size();
@@ -122,9 +127,10 @@ Answers<T> ask(const Component& law, const std::vector<T>& parameters, const Sho
     answers.force.reserve(length / fine);
     const auto known = motion.memories.find(law.effect->id());
     if (size > 0 && known == motion.memories.end()) {
-        follow(along, start, length, steps, sampleRate, [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory, const std::vector<T>& rate) {
-            along.answer(n, sum, memory.data(), rate.data(), answers);
-        });
+        follow(along, start, length, steps, sampleRate,
+               [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory, const std::vector<T>& rate) {
+                   along.answer(n, sum, memory.data(), rate.data(), answers);
+               });
         return answers;
     }
     std::vector<T> memory(size), rate(size);
@@ -145,26 +151,30 @@ std::vector<double> series(const std::vector<T>& samples, const Read& read)
     return result;
 }
 
-} // namespace
+}  // namespace
 
-std::vector<double> memoryAlong(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate)
+std::vector<double> memoryAlong(const Component& law, const ShownMotion& motion, const MemoryStart& start,
+                                double sampleRate)
 {
     std::vector<double> track;
     track.reserve(motion.i.size() / fine * static_cast<std::size_t>(start.value.size()));
-    follow(Along<double>(law, valuesOf(law), motion), {start.value.begin(), start.value.end()}, motion.i.size(), stepsFor(law, motion, sampleRate), sampleRate,
+    follow(Along<double>(law, valuesOf(law), motion), {start.value.begin(), start.value.end()}, motion.i.size(),
+           stepsFor(law, motion, sampleRate), sampleRate,
            [&](std::size_t, const Balance<double>&, const std::vector<double>& memory, const std::vector<double>&) {
                track.insert(track.end(), memory.begin(), memory.end());
            });
     return track;
 }
 
-LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate, const std::vector<bool>& wanted)
+LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate,
+                 const std::vector<bool>& wanted)
 {
     const auto count = law.parameters.size();
     const auto size = static_cast<std::size_t>(start.value.size());
     const int steps = size > 0 && !motion.memories.contains(law.effect->id()) ? stepsFor(law, motion, sampleRate) : 1;
     LawDrive drive;
-    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, steps, sampleRate);
+    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, steps,
+                                   sampleRate);
     drive.voltage = fft(plain.voltage);
     drive.force = fft(plain.force);
     drive.lateness = plain.lateness;
@@ -173,7 +183,7 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
     drive.voltageSlopes.resize(count);
     drive.forceSlopes.resize(count);
     drive.latenessSlopes.resize(count);
-    std::vector<std::size_t> own;   // of a chunk
+    std::vector<std::size_t> own;  // of a chunk
     const auto differentiate = [&] {
         auto parameters = valuesOf<Jet>(law);
         std::vector<Jet> memory(size);
@@ -203,4 +213,4 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
     return drive;
 }
 
-} // namespace excursion
+}  // namespace excursion

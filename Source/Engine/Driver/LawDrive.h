@@ -10,23 +10,26 @@
 
 namespace excursion {
 
-/// What a law makes of a given motion of one section, as spectra of its window, and its derivatives by the law's own parameters.
+/// What a law makes of a given motion of one section, as spectra of its window, and its derivatives by the law's own
+/// parameters.
 struct LawDrive {
-    Spectrum voltage;    ///< drop + fluxSlope v + inductance di/dt, V
-    Spectrum force;      ///< force - mass dv/dt, N
-    std::vector<double> lateness;   ///< s, one value a sample; empty when it is heard no later
-    std::vector<Spectrum> voltageSlopes, forceSlopes;   ///< by parameter of the law; empty unless asked for
+    Spectrum voltage;                                  ///< drop + fluxSlope v + inductance di/dt, V
+    Spectrum force;                                    ///< force - mass dv/dt, N
+    std::vector<double> lateness;                      ///< s, one value a sample; empty when it is heard no later
+    std::vector<Spectrum> voltageSlopes, forceSlopes;  ///< by parameter of the law; empty unless asked for
     std::vector<std::vector<double>> latenessSlopes;
 };
 
-/// The memory of a law along the motion, by the fourth-order Runge-Kutta method: all states of a sample, then those of the next.
+/// The memory of a law along the motion, by the fourth-order Runge-Kutta method: all states of a sample, then those of
+/// the next.
 /// @param start   a quarter of a period before the window
 std::vector<double> memoryAlong(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate);
 
-/// Asks the law, which is no linear effect, along the motion. Its memory is the one that the motion holds for the effect; where there is none it
-/// is followed, and differentiated, from its start.
+/// Asks the law, which is no linear effect, along the motion. Its memory is the one that the motion holds for the
+/// effect; where there is none it is followed, and differentiated, from its start.
 /// @param start      of its memory, a quarter of a period before the window
 /// @param wanted     parameters to differentiate by: one flag each
-LawDrive driveOf(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate, const std::vector<bool>& wanted);
+LawDrive driveOf(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate,
+                 const std::vector<bool>& wanted);
 
-} // namespace excursion
+}  // namespace excursion

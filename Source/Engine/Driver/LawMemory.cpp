@@ -17,7 +17,7 @@ double rateOf(const Jet& value) { return std::abs(value.a); }
 template <class T>
 struct Affine {
     std::size_t size = 0;
-    std::vector<T> a, B;   ///< B by columns
+    std::vector<T> a, B;  ///< B by columns
 
     std::vector<T> rate(const std::vector<T>& m) const
     {
@@ -39,7 +39,8 @@ struct Affine {
         const int steps = static_cast<int>(std::clamp(std::ceil(2.0 * fastest * time), 1.0, 2000.0));
         RungeKutta<T> method(size);
         for (int n = 0; n < steps; ++n)
-            method.step(m, rate(m), time / steps, [&](double, const std::vector<T>& memory, std::vector<T>& out) { out = rate(memory); });
+            method.step(m, rate(m), time / steps,
+                        [&](double, const std::vector<T>& memory, std::vector<T>& out) { out = rate(memory); });
     }
 };
 
@@ -52,8 +53,9 @@ Affine<T> meanRate(const Component& component, const std::vector<T>& coefficient
         std::vector<T> sum(result.size, T(0.0)), rate(result.size);
         for (std::size_t n = 0; n < motion.i.size(); ++n) {
             Balance<T> unused;
-            component.effect->contribute(component.extent, coefficients.data(), {T(motion.i[n]), T(motion.x[n]), T(motion.v[n])},
-                                         memory.data(), rate.data(), unused);
+            component.effect->contribute(component.extent, coefficients.data(),
+                                         {T(motion.i[n]), T(motion.x[n]), T(motion.v[n])}, memory.data(), rate.data(),
+                                         unused);
             for (std::size_t k = 0; k < result.size; ++k)
                 sum[k] += rate[k];
         }
@@ -88,7 +90,8 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
     for (const auto n : order) {
         const auto& section = record.sections[n];
         const auto mean = meanRate(component, coefficients, motions[n]);
-        const double since = section.middle - section.begin - run[n];   // from when it was played to where the drive begins
+        // from when it was played to where the drive begins
+        const double since = section.middle - section.begin - run[n];
         starts[n] = m;
         if (since >= 0.0) {
             mean.advance(starts[n], since);
@@ -103,13 +106,14 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
     return starts;
 }
 
-} // namespace
+}  // namespace
 
-MemoryStart settledMemory(const Component& component, const PeriodicMotion& motion, std::size_t begin, double sampleRate)
+MemoryStart settledMemory(const Component& component, const PeriodicMotion& motion, std::size_t begin,
+                          double sampleRate)
 {
     const auto size = static_cast<std::size_t>(component.effect->memorySize(component.extent));
     const auto coefficients = coefficientsOf(component, valuesOf(component));
-    constexpr int parts = 2;   // steps a sample
+    constexpr int parts = 2;  // steps a sample
     const double h = 1.0 / (parts * sampleRate);
     const std::size_t N = motion.i.size();
     std::vector<double> m(size, 0.0), k1(size);
@@ -118,10 +122,10 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
         const std::size_t from = (begin + n) % N, to = (from + 1) % N;
         const auto at = [&](const std::vector<double>& q) { return q[from] + s * (q[to] - q[from]); };
         Balance<double> unused;
-        component.effect->contribute(component.extent, coefficients.data(), {at(motion.i), at(motion.x), at(motion.v)}, memory.data(),
-                                     out.data(), unused);
+        component.effect->contribute(component.extent, coefficients.data(), {at(motion.i), at(motion.x), at(motion.v)},
+                                     memory.data(), out.data(), unused);
     };
-    std::vector<double> once;   // after the first period
+    std::vector<double> once;  // after the first period
     for (std::size_t n = 0; n < 2 * N; ++n) {
         if (n == N)
             once = m;
@@ -141,16 +145,19 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
     result.value = Eigen::Map<const Eigen::VectorXd>(m.data(), static_cast<Eigen::Index>(size));
     if (!result.value.allFinite())
         result.value.setZero();
-    result.gradient = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(component.parameters.size()));
+    result.gradient = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(size),
+                                            static_cast<Eigen::Index>(component.parameters.size()));
     return result;
 }
 
-std::vector<MemoryStart> historyOf(const Component& component, const Record& record, const std::vector<PeriodicMotion>& motions,
-                                   const std::vector<double>& run, bool withGradient)
+std::vector<MemoryStart> historyOf(const Component& component, const Record& record,
+                                   const std::vector<PeriodicMotion>& motions, const std::vector<double>& run,
+                                   bool withGradient)
 {
     const auto size = static_cast<Eigen::Index>(component.effect->memorySize(component.extent));
     const auto count = static_cast<Eigen::Index>(component.parameters.size());
-    std::vector<MemoryStart> starts(record.sections.size(), {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});
+    std::vector<MemoryStart> starts(record.sections.size(),
+                                    {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});
     if (!withGradient) {
         const auto values = walk(component, valuesOf(component), record, motions, run);
         for (std::size_t n = 0; n < starts.size(); ++n)
@@ -173,4 +180,4 @@ std::vector<MemoryStart> historyOf(const Component& component, const Record& rec
     return starts;
 }
 
-} // namespace excursion
+}  // namespace excursion

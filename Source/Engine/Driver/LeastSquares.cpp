@@ -14,11 +14,12 @@
 namespace excursion {
 namespace {
 
-constexpr double voidDirection = 1e-13;   // relative eigenvalue of the scaled normal matrix below which a direction is void
+// relative eigenvalue of the scaled normal matrix below which a direction is void
+constexpr double voidDirection = 1e-13;
 
 /// Eigenvectors and eigenvalues of N scaled to a unit diagonal.
 struct ScaledSpectrum {
-    Eigen::VectorXd scale;   ///< N_jj^-1/2, 0 for a column of zeros
+    Eigen::VectorXd scale;  ///< N_jj^-1/2, 0 for a column of zeros
     Eigen::VectorXd values;
     Eigen::MatrixXd vectors;
 };
@@ -27,7 +28,8 @@ ScaledSpectrum scaledSpectrum(const Eigen::MatrixXd& N)
 {
     ScaledSpectrum result;
     result.scale = N.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(result.scale.asDiagonal() * N * result.scale.asDiagonal());
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(result.scale.asDiagonal() * N
+                                                                * result.scale.asDiagonal());
     result.values = solver.eigenvalues();
     result.vectors = solver.eigenvectors();
     return result;
@@ -114,7 +116,8 @@ private:
     const NormalEvaluation& evaluate_;
     const Eigen::VectorXd& scale_;
     double sure_;
-    mutable std::deque<Known> known_;   // beside bounds the solver asks again for where it is and where it has just been
+    // beside bounds the solver asks again for where it is and where it has just been
+    mutable std::deque<Known> known_;
 };
 
 class Watch final : public ceres::IterationCallback {
@@ -133,7 +136,7 @@ private:
     int maximum_;
 };
 
-} // namespace
+}  // namespace
 
 bool LeastSquaresOptions::isValid(std::string* reason) const
 {
@@ -165,7 +168,9 @@ LeastSquaresSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& 
     Eigen::VectorXd scale(theta.size());
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
         const double sensitivity = atStart.N(k, k);
-        scale[k] = theta[k] != 0.0 ? std::abs(theta[k]) : sensitivity > 0.0 ? std::sqrt(atStart.cost / sensitivity) : 1.0;
+        scale[k] = theta[k] != 0.0     ? std::abs(theta[k])
+                   : sensitivity > 0.0 ? std::sqrt(atStart.cost / sensitivity)
+                                       : 1.0;
     }
     Eigen::VectorXd x = theta.cwiseQuotient(scale);
 
@@ -255,4 +260,4 @@ Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector
     return full;
 }
 
-} // namespace excursion
+}  // namespace excursion

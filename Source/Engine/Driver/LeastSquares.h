@@ -12,17 +12,18 @@ namespace excursion {
 
 struct LeastSquaresOptions {
     int maximumIterations = 30;
-    double costTolerance = 1e-6;   ///< stop when an accepted step lowers the cost, without NormalEquations::sure, by less than this fraction
+    /// stop when an accepted step lowers the cost, without NormalEquations::sure, by less than this fraction
+    double costTolerance = 1e-6;
 
     bool isValid(std::string* reason) const;
 };
 
 /// Why a fit stopped; the default is failure.
 struct LeastSquaresSummary {
-    bool usable = false;           ///< the parameters are at least as good as the start
+    bool usable = false;  ///< the parameters are at least as good as the start
     bool converged = false;
     int iterations = 0;
-    double initialCost = 0.0, finalCost = 0.0;   ///< r^T r
+    double initialCost = 0.0, finalCost = 0.0;  ///< r^T r
     std::string reason = "the fit was not run";
 };
 
@@ -30,8 +31,8 @@ struct LeastSquaresSummary {
 /// (a simulation that runs away); the search then shortens its step.
 using NormalEvaluation = std::function<bool(const Eigen::VectorXd& theta, bool gradient, NormalEquations&)>;
 
-/// Bounded Levenberg-Marquardt (seed 4.3.1, by Ceres) on a problem that is only known through its normal equations, so that
-/// long records never stand in memory as one Jacobian. With N = V L V^T the residuals handed to the solver are
+/// Bounded Levenberg-Marquardt (seed 4.3.1, by Ceres) on a problem that is only known through its normal equations, so
+/// that long records never stand in memory as one Jacobian. With N = V L V^T the residuals handed to the solver are
 /// L^-1/2 V^T g, and the remaining cost as one more; their Gauss-Newton step and cost are those of the long problem.
 /// @param theta  start, then result
 LeastSquaresSummary minimize(const NormalEvaluation&, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
@@ -44,4 +45,4 @@ Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance);
 /// min |r + J d| over the columns `use` only: the step, with columns scaled and unseen directions left out.
 Eigen::VectorXd gaussNewtonStep(const NormalEquations&, const std::vector<Eigen::Index>& use);
 
-} // namespace excursion
+}  // namespace excursion

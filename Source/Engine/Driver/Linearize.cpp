@@ -19,7 +19,7 @@ namespace {
 /// Of a linear model, column by column: dz/dt and what leaves the driver, for a unit of each state and of what drives.
 template <class T>
 struct Columns {
-    std::vector<std::vector<T>> rates;   ///< by state, and of what drives
+    std::vector<std::vector<T>> rates;  ///< by state, and of what drives
     std::vector<std::array<T, 2>> outputs;
     T lateness;
 };
@@ -36,7 +36,8 @@ Columns<T> columns(const Model& model, const std::vector<T>& parameters, Drives 
         if (j < n)
             z[j] = T(1.0);
         auto& rates = result.rates[j];
-        const double voltage = j == n && drives == Drives::terminals ? 1.0 : 0.0, push = j == n && drives == Drives::cone ? 1.0 : 0.0;
+        const double voltage = j == n && drives == Drives::terminals ? 1.0 : 0.0,
+                     push = j == n && drives == Drives::cone ? 1.0 : 0.0;
         dynamics.rates(z.data(), T(voltage), rates.data(), T(push));
         const auto emission = dynamics.emission(z.data(), rates.data());
         result.outputs.push_back({emission.area * emission.acceleration, emission.spot});
@@ -48,10 +49,11 @@ Columns<T> columns(const Model& model, const std::vector<T>& parameters, Drives 
     return result;
 }
 
-/// A place of [A B] or [C D] in which parameters act, and how: a parameter does so in a few places only, and many share one.
+/// A place of [A B] or [C D] in which parameters act, and how: a parameter does so in a few places only, and many share
+/// one.
 struct Place {
     Eigen::Index row, column;
-    std::vector<std::pair<Eigen::Index, double>> slopes;   ///< parameter, derivative
+    std::vector<std::pair<Eigen::Index, double>> slopes;  ///< parameter, derivative
 };
 
 std::vector<Place> placesOf(const std::vector<Eigen::MatrixXd>& dM, const std::vector<Eigen::VectorXd>& dv)
@@ -76,7 +78,7 @@ std::vector<Place> placesOf(const std::vector<Eigen::MatrixXd>& dM, const std::v
 struct Observed {
     Eigen::RowVectorXd row;
     double direct = 0.0, gain = 1.0;
-    int order = 0, source = -1;   ///< source: the row of C that it is made of, or -1
+    int order = 0, source = -1;  ///< source: the row of C that it is made of, or -1
     bool delayed = false;
 };
 
@@ -84,7 +86,7 @@ Observed observe(const Model& model, const Linearization& linear, Quantity quant
 {
     Observed observed;
     observed.row = Eigen::RowVectorXd::Zero(linear.A.rows());
-    const auto motion = [&](int order) {   // of the spot that the laser sees
+    const auto motion = [&](int order) {  // of the spot that the laser sees
         observed.row = linear.C.row(Linearization::spot);
         observed.row[1] += 1.0;
         observed.direct = linear.D[Linearization::spot];
@@ -170,9 +172,11 @@ Linearization linearForm(const Model& model, bool withGradient, Drives drives)
                 const bool isState = column + 1 < jets.rates.size();
                 const auto at = static_cast<Eigen::Index>(column);
                 for (Eigen::Index row = 0; row < n; ++row)
-                    (isState ? result.dA[own](row, at) : result.dB[own][row]) = jets.rates[column][static_cast<std::size_t>(row)].v[k - first];
+                    (isState ? result.dA[own](row, at)
+                             : result.dB[own][row]) = jets.rates[column][static_cast<std::size_t>(row)].v[k - first];
                 for (Eigen::Index row = 0; row < 2; ++row)
-                    (isState ? result.dC[own](row, at) : result.dD[own][row]) = jets.outputs[column][static_cast<std::size_t>(row)].v[k - first];
+                    (isState ? result.dC[own](row, at)
+                             : result.dD[own][row]) = jets.outputs[column][static_cast<std::size_t>(row)].v[k - first];
             }
             result.dLateness[own] = jets.lateness.v[k - first];
         }
@@ -186,7 +190,8 @@ struct DrivenResponse {
     std::vector<Observed> observed;
     std::vector<Place> inside, outside;
 
-    DrivenResponse(const Model& model, Linearization part, const std::vector<Quantity>& quantities) : linear(std::move(part))
+    DrivenResponse(const Model& model, Linearization part, const std::vector<Quantity>& quantities)
+        : linear(std::move(part))
     {
         for (const auto quantity : quantities)
             observed.push_back(observe(model, linear, quantity));
@@ -208,8 +213,9 @@ struct DrivenResponse {
     }
 
     /// d(C R B + D) = C R (dA R B + dB) + dC R B + dD with R = (sI - A)^-1 and left = C R.
-    void differentiate(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z, const Eigen::VectorXcd& left, std::complex<double> value,
-                       const std::vector<Eigen::Index>& parameters, Eigen::VectorXcd& row) const
+    void differentiate(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z, const Eigen::VectorXcd& left,
+                       std::complex<double> value, const std::vector<Eigen::Index>& parameters,
+                       Eigen::VectorXcd& row) const
     {
         const auto by = factor(q, s);
         const auto act = [&](const Place& place, std::complex<double> through) {
@@ -228,7 +234,7 @@ struct DrivenResponse {
     }
 };
 
-} // namespace
+}  // namespace
 
 Linearization linearize(const Model& model, bool withGradient, Drives drives)
 {
@@ -277,10 +283,7 @@ Linearization linearize(const Model& model, bool withGradient, Drives drives)
     return result;
 }
 
-Eigen::VectorXcd poles(const Linearization& linear)
-{
-    return inUnits(linear.A, stateUnits(linear.A)).eigenvalues();
-}
+Eigen::VectorXcd poles(const Linearization& linear) { return inUnits(linear.A, stateUnits(linear.A)).eigenvalues(); }
 
 bool isStable(const Model& model)
 {
@@ -297,11 +300,12 @@ std::vector<Response> respond(const Model& model, const std::vector<Quantity>& q
     return respondToEach(model, quantities, frequency, {drives}, withGradient).front();
 }
 
-std::vector<std::vector<Response>> respondToEach(const Model& model, const std::vector<Quantity>& quantities, const std::vector<double>& frequency,
+std::vector<std::vector<Response>> respondToEach(const Model& model, const std::vector<Quantity>& quantities,
+                                                 const std::vector<double>& frequency,
                                                  const std::vector<Drives>& drives, bool withGradient, unsigned threads)
 {
     using Complex = std::complex<double>;
-    const auto among = linearAmongAll(model);   // laws and their memories have no part in it
+    const auto among = linearAmongAll(model);  // laws and their memories have no part in it
     const auto small = linearPart(model);
     std::vector<DrivenResponse> driven;
     for (const auto drive : drives)
@@ -323,7 +327,8 @@ std::vector<std::vector<Response>> respondToEach(const Model& model, const std::
     inParallel(parts, threads, {}, [&](std::size_t part) {
         auto at = resolvent;
         std::vector<Eigen::VectorXcd> left(quantities.size());
-        Eigen::VectorXcd slopes(among.count);   // of one response by all parameters: together, as those of other frequencies lie between them
+        // of one response by all parameters: together, as those of other frequencies lie between them
+        Eigen::VectorXcd slopes(among.count);
         for (std::size_t f = part * frequency.size() / parts; f < (part + 1) * frequency.size() / parts; ++f) {
             const Complex s(0.0, 2.0 * std::numbers::pi * frequency[f]);
             at.moveTo(s);
@@ -347,4 +352,4 @@ std::vector<std::vector<Response>> respondToEach(const Model& model, const std::
     return responses;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -29,7 +29,7 @@ double lawValue(const Component& component, const std::vector<double>& values, d
     return component.effect->lawAt(component.extent, values.data(), q);
 }
 
-} // namespace
+}  // namespace
 
 Component scaled(Component component, double factor)
 {
@@ -42,13 +42,14 @@ Component scaled(Component component, double factor)
 bool isAtWork(const Component& component)
 {
     const auto& parameters = component.parameters;
-    return std::any_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength && p.value != 0.0; })
+    return std::any_of(parameters.begin(), parameters.end(),
+                       [](const Parameter& p) { return p.strength && p.value != 0.0; })
            || std::none_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength; });
 }
 
 double radiationPerArea()
 {
-    constexpr double densityOfAir = 1.2;   // kg/m^3
+    constexpr double densityOfAir = 1.2;  // kg/m^3
     return densityOfAir / (2.0 * std::numbers::pi);
 }
 
@@ -70,7 +71,10 @@ std::vector<std::string> Model::effectIds() const
 }
 
 const Parameter& Model::baseParameter(std::string_view name) const { return parameterNamed(base().parameters, name); }
-Parameter& Model::baseParameter(std::string_view name) { return const_cast<Parameter&>(std::as_const(*this).baseParameter(name)); }
+Parameter& Model::baseParameter(std::string_view name)
+{
+    return const_cast<Parameter&>(std::as_const(*this).baseParameter(name));
+}
 
 Model makeModel(std::string_view baseId)
 {
@@ -88,14 +92,15 @@ namespace {
 
 bool relaxes(const Model& model)
 {
-    return std::any_of(model.components.begin(), model.components.end(), [](const Component& c) { return c.effect->relaxes(); });
+    return std::any_of(model.components.begin(), model.components.end(),
+                       [](const Component& c) { return c.effect->relaxes(); });
 }
 
-} // namespace
+}  // namespace
 
 bool movable(const Model& model, const Parameter& p)
 {
-    const bool listens = model.path.parameters[1].free;   // the delay is, where a pressure was measured
+    const bool listens = model.path.parameters[1].free;  // the delay is, where a pressure was measured
     return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model));
 }
 
@@ -200,7 +205,9 @@ std::vector<LawCurve> laws(const Model& model, int points)
             const auto& baseParameters = model.base().parameters;
             const auto* base = &parameterNamed(baseParameters, info->base);
             const auto& e = component.extent;
-            const double range = info->argument == "x" ? e.displacement : info->argument == "v" ? e.velocity : e.current;
+            const double range = info->argument == "x"   ? e.displacement
+                                 : info->argument == "v" ? e.velocity
+                                                         : e.current;
             for (int n = 0; n < points; ++n) {
                 const double q = range * (2.0 * n / (points - 1) - 1.0);
                 const double difference = lawValue(component, values, q);
@@ -208,7 +215,8 @@ std::vector<LawCurve> laws(const Model& model, int points)
                 curve.value.push_back(base->value + difference);
                 double halfWidth = std::numeric_limits<double>::quiet_NaN();
                 if (model.covariance.size() > 0) {
-                    // Differences over a small share of each standard error: exact where a law is linear in its coefficients, as most are.
+                    // Differences over a small share of each standard error: exact where a law is linear in its
+                    // coefficients, as most are.
                     constexpr double share = 1e-3;
                     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.covariance.rows());
                     gradient[base - baseParameters.data()] = 1.0;
@@ -218,7 +226,8 @@ std::vector<LawCurve> laws(const Model& model, int points)
                         auto above = values, below = values;
                         above[static_cast<std::size_t>(j)] += step;
                         below[static_cast<std::size_t>(j)] -= step;
-                        gradient[offset + j] = (lawValue(component, above, q) - lawValue(component, below, q)) / (2.0 * step);
+                        gradient[offset + j] = (lawValue(component, above, q) - lawValue(component, below, q))
+                                               / (2.0 * step);
                     }
                     halfWidth = 1.96 * std::sqrt(std::max(0.0, gradient.dot(model.covariance * gradient)));
                 }
@@ -231,4 +240,4 @@ std::vector<LawCurve> laws(const Model& model, int points)
     return curves;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -43,14 +43,15 @@ std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& 
     return coefficients;
 }
 
-/// The physical model of a driver: the base, then the effects in the order in which they were added, and the path to the microphone, as
-/// whose sum the sound comes (Emission); without an effect that is heard, p(t) = rho Sd / (2 pi d) a(t - tau).
+/// The physical model of a driver: the base, then the effects in the order in which they were added, and the path to
+/// the microphone, as whose sum the sound comes (Emission); without an effect that is heard, p(t) = rho Sd / (2 pi d)
+/// a(t - tau).
 struct Model {
     std::string name;
-    std::vector<Component> components;   ///< components.front() is the base
-    Component path;                      ///< radiation(): Sd in m^2 and tau in s
-    double microphoneDistance = 1.0;     ///< d, m
-    Eigen::MatrixXd covariance;          ///< of parameterVector(); empty when unknown
+    std::vector<Component> components;  ///< components.front() is the base
+    Component path;                     ///< radiation(): Sd in m^2 and tau in s
+    double microphoneDistance = 1.0;    ///< d, m
+    Eigen::MatrixXd covariance;         ///< of parameterVector(); empty when unknown
 
     const Component& base() const { return components.front(); }
     bool electrical() const { return base().effect->electrical(); }
@@ -69,12 +70,13 @@ double radiationPerArea();
 /// A model of the base alone (baseId "electrodynamic" or "mechanical") with default parameters.
 Model makeModel(std::string_view baseId);
 
-/// Whether a fit of the model may move that parameter of an effect as it comes: one that is only heard not where nothing listens.
+/// Whether a fit of the model may move that parameter of an effect as it comes: one that is only heard not where
+/// nothing listens.
 bool movable(const Model&, const Parameter&);
 /// The model with that effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
-/// Every component as the others are now: Extent::scale of an effect as its base parameter is, and parameters that mean something beside
-/// other effects only are free, or zero, as these are there or not.
+/// Every component as the others are now: Extent::scale of an effect as its base parameter is, and parameters that mean
+/// something beside other effects only are free, or zero, as these are there or not.
 void followOthers(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
@@ -93,9 +95,9 @@ void setParameterVector(Model&, const Eigen::VectorXd&);
 /// A law of the model with its 95 % band over [-range, range] of what was visited, for plots and reports.
 struct LawCurve {
     LawInfo info;
-    std::string effectId;                          ///< of the effect that bends it
-    std::vector<double> argument, value, halfWidth;   ///< halfWidth of the 95 % band; NaN when unknown
+    std::string effectId;                            ///< of the effect that bends it
+    std::vector<double> argument, value, halfWidth;  ///< halfWidth of the 95 % band; NaN when unknown
 };
 std::vector<LawCurve> laws(const Model&, int points = 81);
 
-} // namespace excursion
+}  // namespace excursion

@@ -31,9 +31,14 @@ Json parametersJson(const std::vector<Parameter>& parameters)
 
 Json extentJson(const Extent& e)
 {
-    return {{"displacement", e.displacement},   {"velocity", e.velocity},           {"current", e.current},
-            {"lowFrequency", e.lowFrequency}, {"highFrequency", e.highFrequency}, {"degree", e.degree},
-            {"scale", e.scale},               {"duration", e.duration}};
+    return {{"displacement", e.displacement},
+            {"velocity", e.velocity},
+            {"current", e.current},
+            {"lowFrequency", e.lowFrequency},
+            {"highFrequency", e.highFrequency},
+            {"degree", e.degree},
+            {"scale", e.scale},
+            {"duration", e.duration}};
 }
 
 Json covarianceJson(const Eigen::MatrixXd& covariance)
@@ -67,8 +72,8 @@ Json lawsJson(const Model& model)
 
 Extent extentFrom(const JsonField& field)
 {
-    // Sizes may be in any unit, as a circuit may stand for a driver; their squares and products are still numbers. The bounds of the
-    // frequencies keep a file from asking for a ladder of a million cells.
+    // Sizes may be in any unit, as a circuit may stand for a driver; their squares and products are still numbers. The
+    // bounds of the frequencies keep a file from asking for a ladder of a million cells.
     constexpr double least = 1e-60, most = 1e60;
     Extent e;
     e.displacement = field.at("displacement").numberWithin(least, most);
@@ -80,7 +85,7 @@ Extent extentFrom(const JsonField& field)
         field.at("highFrequency").refuse("more than lowFrequency");
     e.degree = field.at("degree").count(1, curve::maximumDegree);
     e.scale = field.at("scale").numberWithin(least, most);
-    if (field.has("duration"))   // files of older versions have none
+    if (field.has("duration"))  // files of older versions have none
         e.duration = field.at("duration").numberWithin(1e-6, 1e12);
     return e;
 }
@@ -102,8 +107,9 @@ std::vector<Parameter> parametersFrom(const JsonField& field, std::vector<Parame
             break;
         }
         if (k >= items.size())
-            throw Error(Error::Kind::input, "'" + field.source() + "': field '" + field.path() + "' lacks the parameter '"
-                                                + known[k].name + "'; expected are, in this order, " + names + ".");
+            throw Error(Error::Kind::input, "'" + field.source() + "': field '" + field.path()
+                                                + "' lacks the parameter '" + known[k].name
+                                                + "'; expected are, in this order, " + names + ".");
         if (k >= known.size() || items[k].at("name").text() != known[k].name)
             items[k].at("name").refuse("in this order " + names);
         auto& p = known[k];
@@ -145,7 +151,7 @@ Eigen::MatrixXd covarianceFrom(const JsonField& field, std::size_t count)
         return {};
     const auto size = static_cast<Eigen::Index>(count);
     const auto expected = "null or " + std::to_string(count) + " rows of " + std::to_string(count)
-                        + " numbers, one a parameter of the model";
+                          + " numbers, one a parameter of the model";
     const auto rows = field.items();
     if (rows.size() != count)
         field.refuse(expected);
@@ -163,7 +169,7 @@ Eigen::MatrixXd covarianceFrom(const JsonField& field, std::size_t count)
     return covariance;
 }
 
-} // namespace
+}  // namespace
 
 Json toJson(const Model& model)
 {
@@ -172,11 +178,11 @@ Json toJson(const Model& model)
     document["effects"] = Json::array();
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& c = model.components[k];
-        document["effects"].push_back({{"id", c.effect->id()},
-                                       {"extent", extentJson(c.extent)},
-                                       {"parameters", parametersJson(c.parameters)}});
+        document["effects"].push_back(
+            {{"id", c.effect->id()}, {"extent", extentJson(c.extent)}, {"parameters", parametersJson(c.parameters)}});
     }
-    document["path"] = {{"parameters", parametersJson(model.path.parameters)}, {"microphoneDistance", model.microphoneDistance}};
+    document["path"] = {{"parameters", parametersJson(model.path.parameters)},
+                        {"microphoneDistance", model.microphoneDistance}};
     document["covariance"] = covarianceJson(model.covariance);
     document["laws"] = lawsJson(model);
     return document;
@@ -216,4 +222,4 @@ Model readModel(const std::filesystem::path& path)
 
 void writeModel(const Model& model, const std::filesystem::path& path) { writeJson(toJson(model), path); }
 
-} // namespace excursion
+}  // namespace excursion

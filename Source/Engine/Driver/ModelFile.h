@@ -25,4 +25,4 @@ Model modelFromJson(const JsonField&);
 Model readModel(const std::filesystem::path&);
 void writeModel(const Model&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

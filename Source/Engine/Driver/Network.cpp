@@ -51,4 +51,4 @@ Network networkOf(const Model& model)
     return network;
 }
 
-} // namespace excursion
+}  // namespace excursion

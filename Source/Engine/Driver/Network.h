@@ -23,28 +23,28 @@ struct Network {
 
     struct Part {
         Kind kind;
-        std::string of;            ///< id of the component that it stands for
-        double value = 0.0;        ///< SI: ohm, H, kg, N/m, N s/m; of a cell its ohms
-        double inductance = 0.0;   ///< of a cell, H
-        std::string from, to;      ///< of mechanical parts; a mass lies between its node and ground
+        std::string of;           ///< id of the component that it stands for
+        double value = 0.0;       ///< SI: ohm, H, kg, N/m, N s/m; of a cell its ohms
+        double inductance = 0.0;  ///< of a cell, H
+        std::string from, to;     ///< of mechanical parts; a mass lies between its node and ground
     };
 
-    double forceFactor = 0.0;   ///< Bl, N/A; 0: there is no coil
-    std::vector<Part> parts;    ///< in the order of the model's components
+    double forceFactor = 0.0;  ///< Bl, N/A; 0: there is no coil
+    std::vector<Part> parts;   ///< in the order of the model's components
     std::vector<std::string>
-        leftOut;   ///< ids of components that have no part in it: laws, and what is only heard or seen
+        leftOut;  ///< ids of components that have no part in it: laws, and what is only heard or seen
 };
 
 /// Draws one component into a network. Parts of no effect are left out; all springs between the cone and ground become
 /// one, which so is positive even where an effect only moves a share of it elsewhere.
 class NetworkDrawing {
 public:
-    NetworkDrawing(Network& network, std::string component) : network_(network), of_(std::move(component)) { }
+    NetworkDrawing(Network& network, std::string component) : network_(network), of_(std::move(component)) {}
 
     void forceFactor(double Bl) { network_.forceFactor = Bl; }
     void resistor(double R);
     void inductor(double L);
-    void cell(double R, double L);   ///< R in parallel with L
+    void cell(double R, double L);  ///< R in parallel with L
     void mass(const std::string& node, double m);
     void spring(const std::string& from, const std::string& to, double K);
     void damper(const std::string& from, const std::string& to, double R);
@@ -73,4 +73,4 @@ const NetworkParts* networkPartsOf(const Effect&);
 
 Network networkOf(const Model&);
 
-} // namespace excursion
+}  // namespace excursion

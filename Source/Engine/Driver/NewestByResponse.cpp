@@ -45,7 +45,8 @@ Model withResonance(Model model, double frequency)
 bool isPossible(const Model& model, const Part& part)
 {
     const auto own = model.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
-    return std::all_of(own, own + static_cast<std::ptrdiff_t>(part.count), [](const Parameter& p) { return !p.strength || p.value >= p.lower; });
+    return std::all_of(own, own + static_cast<std::ptrdiff_t>(part.count),
+                       [](const Parameter& p) { return !p.strength || p.value >= p.lower; });
 }
 
 double rowsOf(const std::vector<ResponseTarget>& targets)
@@ -56,9 +57,10 @@ double rowsOf(const std::vector<ResponseTarget>& targets)
     return rows;
 }
 
-/// The model with one part of its newest effect at work, from where that promises most: each of the starts that promise more than those
-/// beside them, and several of these, as parts that lie close together first show as one.
-Way withPart(const Model& model, const Part& part, const std::vector<bool>& free, const std::vector<ResponseTarget>& targets)
+/// The model with one part of its newest effect at work, from where that promises most: each of the starts that promise
+/// more than those beside them, and several of these, as parts that lie close together first show as one.
+Way withPart(const Model& model, const Part& part, const std::vector<bool>& free,
+             const std::vector<ResponseTarget>& targets)
 {
     const auto own = model.components.back().parameters.begin() + static_cast<std::ptrdiff_t>(part.first);
     const bool oneWay = std::any_of(own, own + static_cast<std::ptrdiff_t>(part.count),
@@ -85,9 +87,10 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
     }
     std::vector<Way> ways;
     for (std::size_t k = 0; k < starts.size(); ++k)
-        if ((k == 0 || starts[k].cost < starts[k - 1].cost) && (k + 1 == starts.size() || starts[k].cost <= starts[k + 1].cost))
+        if ((k == 0 || starts[k].cost < starts[k - 1].cost)
+            && (k + 1 == starts.size() || starts[k].cost <= starts[k + 1].cost))
             ways.push_back(starts[k]);
-    if (oneWay) {   // beside a bound a short search bends round it
+    if (oneWay) {  // beside a bound a short search bends round it
         constexpr std::size_t promising = 8;
         std::stable_sort(ways.begin(), ways.end(), cheaper);
         ways.resize(std::min(ways.size(), promising));
@@ -106,15 +109,16 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
 /// How much of its cost a part must take away: more than chance does at the best of a hundred places.
 double worthwhile(double left, const std::vector<ResponseTarget>& targets)
 {
-    constexpr double pays = 40.0;   // times the mean square of what is left
-    constexpr double enough = 0.07;   // of what is left, where there are few points
+    constexpr double pays = 40.0;    // times the mean square of what is left
+    constexpr double enough = 0.07;  // of what is left, where there are few points
     return std::min(pays / rowsOf(targets), enough) * left;
 }
 
-/// The newest effect taken up part by part, see Effect::parts(). Those that do not pay are at rest, and not free where others do.
+/// The newest effect taken up part by part, see Effect::parts(). Those that do not pay are at rest, and not free where
+/// others do.
 LeastSquaresSummary fitParts(Model& model, const std::vector<Part>& parts, const std::vector<ResponseTarget>& targets)
 {
-    constexpr int enoughPoints = 24;   // an octave, to tell where a part may begin
+    constexpr int enoughPoints = 24;  // an octave, to tell where a part may begin
     const auto enough = thinned(targets, enoughPoints);
     auto best = model;
     auto& component = best.components.back();
@@ -149,7 +153,7 @@ LeastSquaresSummary fitParts(Model& model, const std::vector<Part>& parts, const
     return summary;
 }
 
-} // namespace
+}  // namespace
 
 LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
 {
@@ -175,7 +179,7 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
             ways.push_back({std::move(trial), run.finalCost});
     };
     // A few steps on few points tell which starts lead somewhere.
-    constexpr int fewPoints = 10, enoughPoints = 16;   // an octave
+    constexpr int fewPoints = 10, enoughPoints = 16;  // an octave
     constexpr std::size_t most = 3;
     const auto few = thinned(targets, fewPoints), enough = thinned(targets, enoughPoints);
     for (const auto& start : newest.effect->starts(newest.extent)) {
@@ -206,9 +210,10 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
 
 LeastSquaresSummary fitNewestByResponse(Model& model, const Record& record)
 {
-    constexpr int usual = 12, fine = 48;   // points an octave
+    constexpr int usual = 12, fine = 48;  // points an octave
     const auto& newest = model.components.back();
-    return fitNewestByResponse(model, linearResponsesOf(record, newest.effect->parts(newest.extent).empty() ? usual : fine));
+    return fitNewestByResponse(model,
+                               linearResponsesOf(record, newest.effect->parts(newest.extent).empty() ? usual : fine));
 }
 
 namespace {
@@ -225,14 +230,20 @@ LeastSquaresSummary fitAsNewest(Model& model, std::size_t k, const Targets& targ
     model = std::move(trial);
     const auto back = model.components.begin() + static_cast<std::ptrdiff_t>(k);
     std::rotate(back, model.components.end() - 1, model.components.end());
-    model.covariance.resize(0, 0);   // of another order
+    model.covariance.resize(0, 0);  // of another order
     return summary;
 }
 
-} // namespace
+}  // namespace
 
-LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets) { return fitAsNewest(model, k, targets); }
-LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const Record& record) { return fitAsNewest(model, k, record); }
+LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets)
+{
+    return fitAsNewest(model, k, targets);
+}
+LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const Record& record)
+{
+    return fitAsNewest(model, k, record);
+}
 
 LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
@@ -256,18 +267,19 @@ LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTar
 
 bool isItself(const Model& model, std::size_t component)
 {
-    constexpr double atBound = 0.002;   // of the range
+    constexpr double atBound = 0.002;  // of the range
     const auto& own = model.components[component];
     return own.effect->plausible(own.extent, own.parameters, model.base().parameters)
            && std::none_of(own.parameters.begin(), own.parameters.end(), [](const Parameter& p) {
                   const double range = p.upper - p.lower;
-                  return !p.strength && std::isfinite(range) && std::min(p.value - p.lower, p.upper - p.value) < atBound * range;
+                  return !p.strength && std::isfinite(range)
+                         && std::min(p.value - p.lower, p.upper - p.value) < atBound * range;
               });
 }
 
 bool isSeen(const Model& model, std::size_t component)
 {
-    constexpr double sure = 4.0;   // standard errors, which take neighbouring points for independent
+    constexpr double sure = 4.0;  // standard errors, which take neighbouring points for independent
     if (model.covariance.size() == 0 || !isItself(model, component))
         return false;
     Eigen::Index first = 0;
@@ -284,15 +296,17 @@ bool isSeen(const Model& model, std::size_t component)
     }
     const Eigen::LDLT<Eigen::MatrixXd> known(Eigen::MatrixXd(model.covariance(shapes, shapes)));
     for (const auto index : strengths) {
-        double variance = model.covariance(index, index);   // NaN where it is not known
+        double variance = model.covariance(index, index);  // NaN where it is not known
         if (!shapes.empty()) {
             const Eigen::VectorXd shared = model.covariance(shapes, index);
             variance -= shared.dot(known.solve(shared));
         }
-        if (std::abs(parameters[static_cast<std::size_t>(index - first)].value) > sure * std::sqrt(std::max(variance, 0.0)) && std::isfinite(variance))
+        if (std::abs(parameters[static_cast<std::size_t>(index - first)].value)
+                > sure * std::sqrt(std::max(variance, 0.0))
+            && std::isfinite(variance))
             return true;
     }
     return false;
 }
 
-} // namespace excursion
+}  // namespace excursion

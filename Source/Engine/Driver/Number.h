@@ -11,8 +11,8 @@ namespace excursion {
 inline constexpr int jetWidth = 8;
 using Jet = ceres::Jet<double, jetWidth>;
 
-/// A number that carries its derivatives with respect to time (slot 0) and to the coil's current (slot 1). Run on it, the physics
-/// tells how force and flux go on along a given motion, which is what an inversion needs.
+/// A number that carries its derivatives with respect to time (slot 0) and to the coil's current (slot 1). Run on it,
+/// the physics tells how force and flux go on along a given motion, which is what an inversion needs.
 using Tangent = ceres::Jet<double, 2>;
 
 /// A value, or the limit above which it has no meaning.
@@ -22,4 +22,4 @@ T atMost(double limit, const T& value)
     return value < limit ? value : T(limit);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -20,14 +20,22 @@ bool remembersWay(const Component& component)
 {
     const auto& effect = *component.effect;
     return !effect.linear() && !effect.slow() && effect.memorySize(component.extent) > 0
-        && std::any_of(component.parameters.begin(), component.parameters.end(), [](const Parameter& p) { return p.strength && p.value != 0.0; });
+           && std::any_of(component.parameters.begin(), component.parameters.end(),
+                          [](const Parameter& p) { return p.strength && p.value != 0.0; });
 }
 
 class SectionRun {
 public:
-    SectionRun(const Model& model, const Record& record, const Section& section, const std::vector<Eigen::Index>& active,
-               const OutputErrorOptions& options, std::size_t leadIn, const StartState& from)
-        : model_(model), record_(record), section_(section), residual_(record, section), active_(active), options_(options), from_(from)
+    SectionRun(const Model& model, const Record& record, const Section& section,
+               const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, std::size_t leadIn,
+               const StartState& from)
+        : model_(model),
+          record_(record),
+          section_(section),
+          residual_(record, section),
+          active_(active),
+          options_(options),
+          from_(from)
     {
         const auto drive = record.drive(section, leadIn);
         drive_.emplace(drive, record.sampleRate, options.substeps);
@@ -71,29 +79,33 @@ public:
 private:
     bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
     {
-        std::vector<Trace> traces;   // of all channels, each once
+        std::vector<Trace> traces;  // of all channels, each once
         for (const auto quantity : record_.channels)
             for (const auto trace : sensors.tracesOf(quantity))
                 if (std::find(traces.begin(), traces.end(), trace) == traces.end())
                     traces.push_back(trace);
         // As many parameters at once as their records leave room for.
-        constexpr std::size_t room = 1 << 23;   // numbers
+        constexpr std::size_t room = 1 << 23;  // numbers
         const auto together = std::clamp<std::size_t>(room / (section_.window * traces.size()), 1, active_.size());
         for (std::size_t block = 0; block < active_.size(); block += together) {
             const std::span parameters(active_.data() + block, std::min(together, active_.size() - block));
             std::vector<Eigen::MatrixXd> slopes;
-            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, traces, from_, slopes))
+            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, traces, from_,
+                               slopes))
                 return false;
             for (std::size_t c = 0; c < record_.channels.size(); ++c) {
                 const auto made = sensors.tracesOf(record_.channels[c]);
-                Eigen::MatrixXd rows(static_cast<Eigen::Index>(made.size()), static_cast<Eigen::Index>(section_.window));
+                Eigen::MatrixXd rows(static_cast<Eigen::Index>(made.size()),
+                                     static_cast<Eigen::Index>(section_.window));
                 for (std::size_t b = 0; b < parameters.size(); ++b) {
                     for (std::size_t r = 0; r < made.size(); ++r) {
                         const auto place = std::find(traces.begin(), traces.end(), made[r]) - traces.begin();
-                        rows.row(static_cast<Eigen::Index>(r)) = slopes[static_cast<std::size_t>(place)].row(static_cast<Eigen::Index>(b));
+                        rows.row(static_cast<Eigen::Index>(r)) = slopes[static_cast<std::size_t>(place)].row(
+                            static_cast<Eigen::Index>(b));
                     }
                     if (!rows.isZero(0.0))
-                        residual_.fill(c, sensors.slope(record_.channels[c], rows), J[c].col(static_cast<Eigen::Index>(block + b)));
+                        residual_.fill(c, sensors.slope(record_.channels[c], rows),
+                                       J[c].col(static_cast<Eigen::Index>(block + b)));
                 }
             }
         }
@@ -111,16 +123,16 @@ private:
     std::size_t start_ = 0;
 };
 
-} // namespace
+}  // namespace
 
 std::size_t settlingTime(const Model& model, const Record& record)
 {
     if (record.sections.empty() || !record.sections.front().periodic)
         return 0;
-    constexpr double by110dB = 12.7, by60dB = 6.9;   // nepers
+    constexpr double by110dB = 12.7, by60dB = 6.9;  // nepers
     Model base = model;
     base.components.resize(1);
-    double needed = 0.0;   // s
+    double needed = 0.0;  // s
     for (const auto& pole : poles(linearize(base)))
         if (pole.real() < 0.0)
             needed = std::max(needed, by110dB / -pole.real());
@@ -130,7 +142,8 @@ std::size_t settlingTime(const Model& model, const Record& record)
             if (-pole.real() > slowest)
                 needed = std::max(needed, by60dB / -pole.real());
     const auto period = static_cast<double>(record.sections.front().window);
-    const double least = std::any_of(model.components.begin(), model.components.end(), remembersWay) ? 2.0 : 0.25;   // periods
+    // periods
+    const double least = std::any_of(model.components.begin(), model.components.end(), remembersWay) ? 2.0 : 0.25;
     return static_cast<std::size_t>(std::clamp(needed * record.sampleRate, least * period, 4.0 * period));
 }
 
@@ -225,4 +238,4 @@ std::vector<std::size_t> validationSections(const Record& record)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

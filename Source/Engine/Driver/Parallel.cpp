@@ -10,7 +10,8 @@
 
 namespace excursion {
 
-void inParallel(std::size_t count, unsigned threads, const Progress& progress, const std::function<bool(std::size_t)>& work)
+void inParallel(std::size_t count, unsigned threads, const Progress& progress,
+                const std::function<bool(std::size_t)>& work)
 {
     std::atomic<std::size_t> next {0};
     std::atomic<bool> failed {false};
@@ -40,4 +41,4 @@ void inParallel(std::size_t count, unsigned threads, const Progress& progress, c
         progress.at(0.0, "");
 }
 
-} // namespace excursion
+}  // namespace excursion

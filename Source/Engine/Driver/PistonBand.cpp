@@ -16,24 +16,24 @@ double medianOf(std::vector<double> values)
     return *middle;
 }
 
-} // namespace
+}  // namespace
 
 double pistonLimit(const ResponseTarget& current, const ResponseTarget& motion)
 {
     constexpr double unknown = std::numeric_limits<double>::infinity();
-    constexpr double tolerated = 1.5, from = 2.5, to = 5.0;   // factor; multiples of the resonance
+    constexpr double tolerated = 1.5, from = 2.5, to = 5.0;  // factor; multiples of the resonance
     const double order = motion.quantity == Quantity::displacement ? 2 : motion.quantity == Quantity::velocity ? 1 : 0;
-    std::vector<double> acceleration;   // per ampere
+    std::vector<double> acceleration;  // per ampere
     double resonance = 0.0, largest = 0.0;
     for (std::size_t k = 0; k < motion.frequency.size(); ++k) {
         const double omega = 2.0 * std::numbers::pi * motion.frequency[k];
         acceleration.push_back(std::abs(motion.value[k] * current.value[k]) * std::pow(omega, order));
-        if (acceleration.back() / omega > largest) {   // velocity per ampere is largest at resonance
+        if (acceleration.back() / omega > largest) {  // velocity per ampere is largest at resonance
             largest = acceleration.back() / omega;
             resonance = motion.frequency[k];
         }
     }
-    std::vector<double> frequency, mass, early;   // mass over Bl
+    std::vector<double> frequency, mass, early;  // mass over Bl
     for (std::size_t k = 0; k < motion.frequency.size(); ++k) {
         const double f = motion.frequency[k];
         if (f < from * resonance || !(acceleration[k] > 0.0))
@@ -57,4 +57,4 @@ double pistonLimit(const ResponseTarget& current, const ResponseTarget& motion)
     return unknown;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,7 +13,7 @@ Plausible::Plausible(const Model& model)
     Eigen::Array3d visited = Eigen::Array3d::Zero(), byLaws = visited;
     for (const auto& component : model.components) {
         if (&component == &model.base())
-            continue;   // it was measured nowhere in particular
+            continue;  // it was measured nowhere in particular
         const Eigen::Array3d reach(component.extent.current, component.extent.displacement, component.extent.velocity);
         visited = visited.max(reach);
         if (!component.effect->linear())
@@ -27,4 +27,4 @@ Plausible::Plausible(const Model& model)
     input_ = input > 0.0 ? far * input : std::sqrt(std::numeric_limits<double>::max());
 }
 
-} // namespace excursion
+}  // namespace excursion

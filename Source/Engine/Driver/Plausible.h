@@ -7,8 +7,8 @@
 
 namespace excursion {
 
-/// What no driver does: a million times what the model was measured at. A runaway is recognized there instead of filling a record with
-/// infinities. The bounds are derived from the model, so they hold in any unit.
+/// What no driver does: a million times what the model was measured at. A runaway is recognized there instead of
+/// filling a record with infinities. The bounds are derived from the model, so they hold in any unit.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class Plausible {
@@ -19,8 +19,8 @@ public:
     /// @param i, x, v  A, m, m/s; false for what is not finite
     bool holds(double i, double x, double v) const { return (Eigen::Array3d(i, x, v).abs() < most_).all(); }
 
-    /// An input beyond any amplifier, V (or N of a driver without a coil): a million times what its effects were measured with. Without an
-    /// effect it is bounded by arithmetic alone.
+    /// An input beyond any amplifier, V (or N of a driver without a coil): a million times what its effects were
+    /// measured with. Without an effect it is bounded by arithmetic alone.
     double input() const { return input_; }
 
 private:
@@ -28,4 +28,4 @@ private:
     double input_;
 };
 
-} // namespace excursion
+}  // namespace excursion

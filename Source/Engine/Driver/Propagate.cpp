@@ -21,7 +21,7 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
         const auto& p = *all[static_cast<std::size_t>(k)];
         const double deviation = std::sqrt(covariance(k, k)),
                      size = std::min(std::max(std::abs(p.value), 1e-12), p.prior);
-        if (deviation == 0.0)   // held, or of no importance
+        if (deviation == 0.0)  // held, or of no importance
             continue;
         const bool known = std::isfinite(deviation);
         const double step = 1e-3 * (known ? std::min(deviation, size) : size);
@@ -50,4 +50,4 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
     return errors;
 }
 
-} // namespace excursion
+}  // namespace excursion

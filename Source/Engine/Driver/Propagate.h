@@ -14,4 +14,4 @@ namespace excursion {
 /// follows from a parameter whose error is.
 Eigen::VectorXd standardErrorsOf(const Model&, const std::function<Eigen::VectorXd(const Model&)>& numbers);
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,8 +12,14 @@ class Radiation final : public EffectOf<Radiation> {
 public:
     std::string id() const override { return "path"; }
     std::string title() const override { return "Path to the microphone"; }
-    std::string physics() const override { return "The cone's acceleration makes the pressure in front of it, a time of flight later."; }
-    std::string symptoms() const override { return "A pressure like the acceleration, with a phase that falls with frequency."; }
+    std::string physics() const override
+    {
+        return "The cone's acceleration makes the pressure in front of it, a time of flight later.";
+    }
+    std::string symptoms() const override
+    {
+        return "A pressure like the acceleration, with a phase that falls with frequency.";
+    }
     std::string remedy() const override { return "None is needed."; }
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
@@ -22,7 +28,8 @@ public:
     /// Both are held until a channel of pressure is there to see them.
     std::vector<Parameter> parameters(const Extent&) const override
     {
-        return {{.name = "Sd", .unit = "m^2", .value = 0.01, .free = false}, {.name = "tau", .unit = "s", .free = false}};
+        return {{.name = "Sd", .unit = "m^2", .value = 0.01, .free = false},
+                {.name = "tau", .unit = "s", .free = false}};
     }
     int coefficientCount(const Extent&) const override { return 2; }
 
@@ -38,7 +45,8 @@ public:
     }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>&, const T& acceleration, const T*, const T*, Emission<T>& sum) const
+    void radiate(const Extent&, const T* c, const Motion<T>&, const T& acceleration, const T*, const T*,
+                 Emission<T>& sum) const
     {
         sum.area += c[0];
         sum.acceleration += acceleration;
@@ -46,7 +54,7 @@ public:
     }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& radiation()
 {
@@ -54,4 +62,4 @@ const Effect& radiation()
     return path;
 }
 
-} // namespace excursion
+}  // namespace excursion

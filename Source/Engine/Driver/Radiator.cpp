@@ -24,7 +24,8 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
     for (const auto& [component, firstParameter, memory] : emitting) {
         const auto& effect = *component->effect;
         const auto memories = static_cast<std::size_t>(effect.memorySize(component->extent));
-        parts_.push_back({component, static_cast<std::size_t>(memory), coefficientsOf(*component, valuesOf(*component)), std::vector<double>(memories)});
+        parts_.push_back({component, static_cast<std::size_t>(memory), coefficientsOf(*component, valuesOf(*component)),
+                          std::vector<double>(memories)});
         if (active.empty())
             continue;
 
@@ -40,7 +41,8 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
         for (int k = 0; k < static_cast<int>(memories); ++k)
             directions.push_back({memory + k, 0, none});
         for (std::size_t c = 0; c < active.size(); ++c)
-            if (const auto own = active[c] - firstParameter; own >= 0 && own < static_cast<Eigen::Index>(component->parameters.size()))
+            if (const auto own = active[c] - firstParameter;
+                own >= 0 && own < static_cast<Eigen::Index>(component->parameters.size()))
                 directions.push_back({none, static_cast<std::size_t>(own), static_cast<int>(c)});
         for (std::size_t first = 0; first < directions.size(); first += jetWidth) {
             Chunk chunk;
@@ -89,11 +91,12 @@ Emission<double> Radiator::sum(const double* z, double acceleration)
 }
 
 void Radiator::differentiate(const double* z, double acceleration, const Eigen::Ref<const Eigen::MatrixXd>& S,
-                             const Eigen::Ref<const Eigen::VectorXd>& accelerationSlopes, Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> out)
+                             const Eigen::Ref<const Eigen::VectorXd>& accelerationSlopes,
+                             Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> out)
 {
     slopes_.setZero();
     double area = 0.0, driven = 0.0;
-    std::size_t counted = parts_.size();   // the part whose values have been added last
+    std::size_t counted = parts_.size();  // the part whose values have been added last
     for (auto& chunk : chunks_) {
         const auto& part = parts_[chunk.part];
         const auto& [effect, extent, parameters] = *part.component;
@@ -102,7 +105,9 @@ void Radiator::differentiate(const double* z, double acceleration, const Eigen::
             chunk.memory[k] = Jet(z[part.memory + k]);
         for (std::size_t lane = 0; lane < chunk.place.size(); ++lane)
             if (const int place = chunk.place[lane]; place != none)
-                (place == order_ ? a : place < 3 ? motion[place] : chunk.memory[static_cast<std::size_t>(place) - part.memory])
+                (place == order_ ? a
+                 : place < 3     ? motion[place]
+                                 : chunk.memory[static_cast<std::size_t>(place) - part.memory])
                     .v[static_cast<Eigen::Index>(lane)] = 1.0;
         const Motion<Jet> at {motion[0], motion[1], motion[2]};
         Balance<Jet> unused;
@@ -133,4 +138,4 @@ void Radiator::differentiate(const double* z, double acceleration, const Eigen::
     out.col(2) = slopes_.col(3);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -18,9 +18,11 @@ namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
 
-constexpr double trustedBand = 0.42;      // of the sample rate: near its half converters and interpolation are not to be trusted
-constexpr double distortionBand = 2.0;    // times the band: distortion products lie above it, too
-constexpr double foldingOrder = 6.0;      // products up to this order do not fold into the compared lines when samples are left out
+// of the sample rate: near its half converters and interpolation are not to be trusted
+constexpr double trustedBand = 0.42;
+constexpr double distortionBand = 2.0;  // times the band: distortion products lie above it, too
+// products up to this order do not fold into the compared lines when samples are left out
+constexpr double foldingOrder = 6.0;
 
 double power(const Spectrum& spectrum)
 {
@@ -50,7 +52,7 @@ std::vector<double> smoothVariance(const std::vector<double>& raw)
 std::vector<double> deviations(const Spectrum& measured, std::vector<double> variance, double relativeFloor)
 {
     const double perLine = power(measured) / static_cast<double>(measured.size());
-    constexpr double nominal = 1e-3;   // of unknown noise: only its evenness matters
+    constexpr double nominal = 1e-3;  // of unknown noise: only its evenness matters
     std::vector<double> result(measured.size(), std::sqrt(perLine) * nominal);
     if (!variance.empty())
         for (std::size_t k = 0; k < result.size(); ++k)
@@ -60,11 +62,11 @@ std::vector<double> deviations(const Spectrum& measured, std::vector<double> var
     return result;
 }
 
-/// The simulation is driven by the measured input, noise and all. Where nothing was played and nothing stands out of the
-/// scatter there is no signal, and the noise need not be played to the model; what the amplifier added is kept.
+/// The simulation is driven by the measured input, noise and all. Where nothing was played and nothing stands out of
+/// the scatter there is no signal, and the noise need not be played to the model; what the amplifier added is kept.
 void silenceNoise(std::vector<double>& period, const std::vector<double>& variance, const std::vector<int>& excited)
 {
-    constexpr double standsOut = 16.0;   // times the noise power
+    constexpr double standsOut = 16.0;  // times the noise power
     auto spectrum = fft(period);
     const auto before = spectrum;
     for (std::size_t k = 0; k < spectrum.size(); ++k)
@@ -76,22 +78,24 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
 }
 
 /// Peaks upwards and downwards of an averaged period integrated n times within the excited band, in any unit.
-std::pair<double, double> integratedPeaks(const Measurement& take, const Channel& channel, int level, int realization, int integrations)
+std::pair<double, double> integratedPeaks(const Measurement& take, const Channel& channel, int level, int realization,
+                                          int integrations)
 {
     const auto& e = *take.excitation;
     auto spectrum = fft(averagePeriod(take, channel, level, realization));
     const auto first = static_cast<std::size_t>(e.lines.front()), last = static_cast<std::size_t>(e.lines.back());
     for (std::size_t k = 0; k < spectrum.size(); ++k)
-        spectrum[k] = k >= first && k <= last ? spectrum[k] * std::pow(std::complex<double>(0.0, static_cast<double>(k)), -integrations)
-                                              : 0.0;
+        spectrum[k] = k >= first && k <= last
+                          ? spectrum[k] * std::pow(std::complex<double>(0.0, static_cast<double>(k)), -integrations)
+                          : 0.0;
     const auto samples = inverseFft(spectrum, static_cast<std::size_t>(e.period));
     const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
     return {*high, -*low};
 }
 
-/// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current to either side (what
-/// the channels tell of them; the input's low frequencies when they tell nothing of the cone), each relative to where the others
-/// go, its largest is the lowest.
+/// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current to
+/// either side (what the channels tell of them; the input's low frequencies when they tell nothing of the cone), each
+/// relative to where the others go, its largest is the lowest.
 int quietestRealization(const Measurement& take)
 {
     const auto& e = *take.excitation;
@@ -99,9 +103,10 @@ int quietestRealization(const Measurement& take)
     std::vector<std::pair<const Channel*, int>> motions;
     for (const auto& channel : take.channels)
         // The pressure of a piston follows the acceleration.
-        if (const auto n = integrationsToDisplacement(channel.quantity == Quantity::pressure ? Quantity::acceleration : channel.quantity)) {
-            motions.emplace_back(&channel, *n);       // displacement
-            motions.emplace_back(&channel, *n - 1);   // velocity
+        if (const auto n = integrationsToDisplacement(channel.quantity == Quantity::pressure ? Quantity::acceleration
+                                                                                             : channel.quantity)) {
+            motions.emplace_back(&channel, *n);      // displacement
+            motions.emplace_back(&channel, *n - 1);  // velocity
         } else if (channel.quantity == Quantity::current) {
             motions.emplace_back(&channel, 0);
         }
@@ -125,7 +130,8 @@ int quietestRealization(const Measurement& take)
     return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
 }
 
-/// The section sampled at the rate divided by `factor`: the same lines, without those above the new half of the sample rate.
+/// The section sampled at the rate divided by `factor`: the same lines, without those above the new half of the sample
+/// rate.
 void thinOut(Section& section, std::size_t factor)
 {
     const double share = 1.0 / static_cast<double>(factor);
@@ -185,7 +191,8 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
             if (!inputVariance.empty())
                 silenceNoise(section.input, inputVariance, e.lines);
             for (std::size_t c = 0; c < record.channels.size(); ++c) {
-                section.measured.push_back(fft(averagePeriod(take, *take.find(record.channels[c]), level, realization)));
+                section.measured.push_back(
+                    fft(averagePeriod(take, *take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
             }
             if (factor > 1)
@@ -195,7 +202,8 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
     }
     for (const auto quantity : record.channels)
         record.wanderDb.push_back(wanderDb(take, *take.find(quantity)));
-    record.leadIn = static_cast<std::size_t>(e.period) / factor * static_cast<std::size_t>(std::max(1, e.settlePeriods));
+    record.leadIn = static_cast<std::size_t>(e.period) / factor
+                    * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
 
 void addAperiodicSections(const Measurement& take, const RecordOptions& options, Record& record)
@@ -230,7 +238,7 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
     record.leadIn = lead;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<int> integrationsToDisplacement(Quantity quantity)
 {
@@ -254,7 +262,8 @@ std::pair<std::size_t, std::size_t> Record::lineRange(const Section& section) co
 {
     const double resolution = sampleRate / static_cast<double>(section.window);
     const auto first = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(lowFrequency / resolution)));
-    const auto last = std::min<std::size_t>(section.window / 2 - 1, static_cast<std::size_t>(highFrequency / resolution));
+    const auto last = std::min<std::size_t>(section.window / 2 - 1,
+                                            static_cast<std::size_t>(highFrequency / resolution));
     return {first, std::max(first, last)};
 }
 
@@ -303,8 +312,9 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
             record.units.push_back(channel.unit);
         }
     if (record.channels.empty())
-        throw Error(Error::Kind::data, "The take holds no output of the loudspeaker; a fit needs at least one of current, "
-                                       "displacement, velocity, acceleration or pressure.");
+        throw Error(Error::Kind::data,
+                    "The take holds no output of the loudspeaker; a fit needs at least one of current, "
+                    "displacement, velocity, acceleration or pressure.");
 
     const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
     if (periodic && take.excitation->lines.empty()) {
@@ -315,7 +325,7 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
     record.bandLow = 0.0;
     record.bandHigh = trustedBand * take.sampleRate;
     if (periodic) {
-        periodicExcitation(take);   // checks the structure against the length
+        periodicExcitation(take);  // checks the structure against the length
         const double resolution = take.sampleRate / take.excitation->period;
         if (!take.excitation->lines.empty()) {
             record.bandLow = resolution * take.excitation->lines.front();
@@ -324,7 +334,8 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
         // Above the distortion's band there is nothing to compare, and fewer samples are simulated sooner.
         std::size_t factor = 1;
         while (static_cast<std::size_t>(take.excitation->period) % (2 * factor) == 0
-               && (distortionBand + foldingOrder) * record.bandHigh <= take.sampleRate / static_cast<double>(2 * factor))
+               && (distortionBand + foldingOrder) * record.bandHigh
+                      <= take.sampleRate / static_cast<double>(2 * factor))
             factor *= 2;
         record.sampleRate = take.sampleRate / static_cast<double>(factor);
         addPeriodicSections(take, options, factor, record);
@@ -338,4 +349,4 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
     return record;
 }
 
-} // namespace excursion
+}  // namespace excursion

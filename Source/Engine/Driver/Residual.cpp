@@ -7,7 +7,9 @@
 
 namespace excursion {
 
-NormalEquations::NormalEquations(const Eigen::VectorXd& r) : cost(r.squaredNorm()), rows(static_cast<double>(r.size())) {}
+NormalEquations::NormalEquations(const Eigen::VectorXd& r) : cost(r.squaredNorm()), rows(static_cast<double>(r.size()))
+{
+}
 
 void NormalEquations::differentiateBy(const Eigen::MatrixXd& J, const Eigen::VectorXd& r)
 {
@@ -66,7 +68,8 @@ ErrorPower Residual::power(std::size_t channel, const std::vector<std::complex<d
     return power;
 }
 
-void Residual::fill(std::size_t channel, const std::vector<std::complex<double>>& derivative, Eigen::Ref<Eigen::VectorXd> column) const
+void Residual::fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,
+                    Eigen::Ref<Eigen::VectorXd> column) const
 {
     const auto& deviation = section_.deviation[channel];
     for (Eigen::Index n = 0; n < lines_; ++n) {
@@ -77,4 +80,4 @@ void Residual::fill(std::size_t channel, const std::vector<std::complex<double>>
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -25,15 +25,17 @@ struct Cell {
 double octavesAt(const std::vector<double>& frequency, std::size_t k)
 {
     const std::size_t before = k > 0 ? k - 1 : k, after = std::min(k + 1, frequency.size() - 1);
-    return std::log2(frequency[after] / frequency[before]) / static_cast<double>(std::max<std::size_t>(1, after - before));
+    return std::log2(frequency[after] / frequency[before])
+           / static_cast<double>(std::max<std::size_t>(1, after - before));
 }
 
-/// An impedance counts by its relative error, at the bottom between resonance and inductance as much as on the peak; a motion fades
-/// into noise away from resonance and counts by its error against the whole curve's rms. Every octave counts alike, however
-/// many points it has.
+/// An impedance counts by its relative error, at the bottom between resonance and inductance as much as on the peak; a
+/// motion fades into noise away from resonance and counts by its error against the whole curve's rms. Every octave
+/// counts alike, however many points it has.
 void weigh(ResponseTarget& target)
 {
-    constexpr double trust = 0.25;   // of a motion, against an impedance: the cone is touched by light at one point only
+    // of a motion, against an impedance: the cone is touched by light at one point only
+    constexpr double trust = 0.25;
     const std::size_t points = target.value.size();
     double power = 0.0, octaves = 0.0;
     for (std::size_t k = 0; k < points; ++k) {
@@ -43,8 +45,9 @@ void weigh(ResponseTarget& target)
     const double rms = std::sqrt(power / octaves), perPoint = octaves / static_cast<double>(points);
     target.deviation.resize(points);
     for (std::size_t k = 0; k < points; ++k) {
-        const double scale = target.impedance ? std::max(std::abs(target.value[k]), 1e-6 * rms)
-                             : isMotion(target.quantity) ? rms / trust : rms;
+        const double scale = target.impedance            ? std::max(std::abs(target.value[k]), 1e-6 * rms)
+                             : isMotion(target.quantity) ? rms / trust
+                                                         : rms;
         target.deviation[k] = scale * std::sqrt(perPoint / octavesAt(target.frequency, k));
     }
 }
@@ -67,29 +70,32 @@ std::pair<std::size_t, std::size_t> measuredRange(const std::vector<Complex>& va
     return last - first < fewest ? std::pair {std::size_t {0}, value.size()} : std::pair {first, last};
 }
 
-/// The points between the ends at which the excitation has died away: there apparent power (or the input's own, without a
-/// current) lies 20 dB below the median of the octave further in, and little but noise was measured.
+/// The points between the ends at which the excitation has died away: there apparent power (or the input's own, without
+/// a current) lies 20 dB below the median of the octave further in, and little but noise was measured.
 std::pair<std::size_t, std::size_t> drivenRange(const Spectra& spectra, const Spectra::Channel& input)
 {
     const auto* current = spectra.find(Quantity::current);
     const std::size_t points = spectra.frequency.size();
-    std::vector<double> amplitude(points);   // root of the power
+    std::vector<double> amplitude(points);  // root of the power
     for (std::size_t k = 0; k < points; ++k)
         amplitude[k] = std::sqrt(std::abs(input.values[k]) * std::abs((current ? *current : input).values[k]));
     const auto fallen = [&](std::size_t from, std::size_t to, double value) {
-        std::vector<double> near(amplitude.begin() + static_cast<std::ptrdiff_t>(from), amplitude.begin() + static_cast<std::ptrdiff_t>(to));
+        std::vector<double> near(amplitude.begin() + static_cast<std::ptrdiff_t>(from),
+                                 amplitude.begin() + static_cast<std::ptrdiff_t>(to));
         const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
         std::nth_element(near.begin(), middle, near.end());
         return value < 0.1 * *middle;
     };
     std::size_t first = 0, last = points;
     const auto octaveAbove = [&](std::size_t k) {
-        return static_cast<std::size_t>(std::upper_bound(spectra.frequency.begin(), spectra.frequency.end(), 2.0 * spectra.frequency[k])
-                                        - spectra.frequency.begin());
+        return static_cast<std::size_t>(
+            std::upper_bound(spectra.frequency.begin(), spectra.frequency.end(), 2.0 * spectra.frequency[k])
+            - spectra.frequency.begin());
     };
     const auto octaveBelow = [&](std::size_t k) {
-        return static_cast<std::size_t>(std::lower_bound(spectra.frequency.begin(), spectra.frequency.end(), 0.5 * spectra.frequency[k])
-                                        - spectra.frequency.begin());
+        return static_cast<std::size_t>(
+            std::lower_bound(spectra.frequency.begin(), spectra.frequency.end(), 0.5 * spectra.frequency[k])
+            - spectra.frequency.begin());
     };
     const std::size_t above = points > 0 ? octaveAbove(0) : 0, below = points > 0 ? octaveBelow(points - 1) : 0;
     while (first + 1 < above && fallen(first, above, amplitude[first]))
@@ -99,7 +105,8 @@ std::pair<std::size_t, std::size_t> drivenRange(const Spectra& spectra, const Sp
     return {first, last};
 }
 
-/// Cuts measured motion where the cone no longer moves as one piece, as no driver model claims to know the motion of one point of it.
+/// Cuts measured motion where the cone no longer moves as one piece, as no driver model claims to know the motion of
+/// one point of it.
 void keepRigid(std::vector<ResponseTarget>& targets)
 {
     const auto current = std::find_if(targets.begin(), targets.end(), [](const auto& t) { return t.impedance; });
@@ -110,21 +117,22 @@ void keepRigid(std::vector<ResponseTarget>& targets)
         if (!isMotion(target.quantity) || target.frequency.size() != current->frequency.size())
             continue;
         const double limit = pistonLimit(*current, target);
-        const auto count = static_cast<std::size_t>(std::upper_bound(target.frequency.begin(), target.frequency.end(), limit)
-                                                    - target.frequency.begin());
+        const auto count = static_cast<std::size_t>(
+            std::upper_bound(target.frequency.begin(), target.frequency.end(), limit) - target.frequency.begin());
         target.frequency.resize(count);
         target.value.resize(count);
         target.deviation.resize(count);
     }
 }
 
-} // namespace
+}  // namespace
 
 std::vector<ResponseTarget> responsesOf(const Record& record, int level, int pointsPerOctave)
 {
     std::vector<ResponseTarget> targets;
     const double low = std::max(record.bandLow * 0.99, 1e-3);
-    const int cells = std::max(4, static_cast<int>(std::ceil(std::log2(record.bandHigh * 1.01 / low) * pointsPerOctave)));
+    const int cells = std::max(4,
+                               static_cast<int>(std::ceil(std::log2(record.bandHigh * 1.01 / low) * pointsPerOctave)));
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         std::vector<Cell> grid(static_cast<std::size_t>(cells) + 1);
         double totalInput = 0.0;
@@ -157,7 +165,8 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
         target.quantity = record.channels[c];
         for (const auto& cell : grid) {
             // A cell with next to no input power says nothing.
-            if (cell.count == 0 || cell.input < 1e-7 * totalInput * cell.count / static_cast<double>(std::max<std::size_t>(lines, 1)))
+            if (cell.count == 0
+                || cell.input < 1e-7 * totalInput * cell.count / static_cast<double>(std::max<std::size_t>(lines, 1)))
                 continue;
             const Complex G = cell.cross / cell.input;
             const double left = std::max(0.0, cell.output - std::norm(cell.cross) / cell.input);
@@ -222,7 +231,9 @@ std::vector<ResponseTarget> responsesOf(const Spectra& spectra, int pointsPerOct
     const auto* voltage = spectra.find(Quantity::voltage);
     const auto* input = voltage ? voltage : spectra.find(Quantity::force);
     if (!input)
-        throw Error(Error::Kind::data, "The frequency response names no voltage and no force, so it is not known what it is a response to.");
+        throw Error(
+            Error::Kind::data,
+            "The frequency response names no voltage and no force, so it is not known what it is a response to.");
     std::vector<ResponseTarget> targets;
     const auto [firstDriven, lastDriven] = drivenRange(spectra, *input);
     for (const auto& channel : spectra.channels) {
@@ -234,7 +245,8 @@ std::vector<ResponseTarget> responsesOf(const Spectra& spectra, int pointsPerOct
         for (std::size_t k = firstDriven; k < lastDriven; ++k) {
             if (spectra.frequency[k] <= 0.0)
                 continue;
-            const Complex value = all.impedance ? input->values[k] / channel.values[k] : channel.values[k] / input->values[k];
+            const Complex value = all.impedance ? input->values[k] / channel.values[k]
+                                                : channel.values[k] / input->values[k];
             if (!std::isfinite(std::norm(value)))
                 throw Error(Error::Kind::data, "The frequency response is zero where it is divided by, at "
                                                    + std::to_string(spectra.frequency[k]) + " Hz.");
@@ -252,12 +264,14 @@ std::vector<ResponseTarget> responsesOf(const Spectra& spectra, int pointsPerOct
         }
         if (target.frequency.size() < 3)
             throw Error(Error::Kind::data, "The frequency response has " + std::to_string(target.frequency.size())
-                                               + " points of " + std::string(name(channel.quantity)) + ", expected at least 3.");
+                                               + " points of " + std::string(name(channel.quantity))
+                                               + ", expected at least 3.");
         targets.push_back(thinned(target, pointsPerOctave));
     }
     if (targets.empty())
-        throw Error(Error::Kind::data, "The frequency response holds only what drives the loudspeaker; a fit needs at least one of "
-                                       "current, displacement, velocity, acceleration or pressure.");
+        throw Error(Error::Kind::data,
+                    "The frequency response holds only what drives the loudspeaker; a fit needs at least one of "
+                    "current, displacement, velocity, acceleration or pressure.");
     keepRigid(targets);
     for (auto& target : targets)
         weigh(target);
@@ -285,4 +299,4 @@ double responseErrorDb(const Model& model, const std::vector<ResponseTarget>& ta
     return sum / static_cast<double>(targets.size());
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -6,7 +6,8 @@
 
 namespace excursion {
 
-/// The classical fourth-order Runge-Kutta method for dm/dt = rate(time, m), for any number type. Allocates when it is made only.
+/// The classical fourth-order Runge-Kutta method for dm/dt = rate(time, m), for any number type. Allocates when it is
+/// made only.
 template <class T>
 class RungeKutta {
 public:
@@ -36,4 +37,4 @@ private:
     std::vector<T> stage_, k2_, k3_, k4_;
 };
 
-} // namespace excursion
+}  // namespace excursion

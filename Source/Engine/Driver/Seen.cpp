@@ -29,10 +29,12 @@ std::string whyUnseen(const Effect& effect, const Seen& seen)
         return "The take drives the cone by a force and shows no coil, so the electrical effect \"" + effect.id()
                + "\" cannot be part of its model.";
     if (!effect.linear() && !seen.records)
-        return "A frequency response cannot show the nonlinear effect \"" + effect.id() + "\"; measure a take at several levels.";
-    if (std::none_of(seen.channels.begin(), seen.channels.end(), [&](Quantity quantity) { return effect.shownBy(quantity); }))
+        return "A frequency response cannot show the nonlinear effect \"" + effect.id()
+               + "\"; measure a take at several levels.";
+    if (std::none_of(seen.channels.begin(), seen.channels.end(),
+                     [&](Quantity quantity) { return effect.shownBy(quantity); }))
         return "No channel of the take can show the effect \"" + effect.id() + "\"; measure the pressure as well.";
     return "";
 }
 
-} // namespace excursion
+}  // namespace excursion

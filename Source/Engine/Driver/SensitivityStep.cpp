@@ -26,13 +26,14 @@ std::vector<std::vector<Eigen::Index>> columnsByComponent(const Model& model, st
     return columns;
 }
 
-} // namespace
+}  // namespace
 
 SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const Eigen::Index> active)
     : motion_(model, h), count_(static_cast<Eigen::Index>(active.size()))
 {
     constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
-    const auto states = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();   // with the laws' memories
+    // with the laws' memories
+    const auto states = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();
     dInductance_.setZero(count_);
     dMass_.setZero(count_);
     memoryFrom_ = padded(count_);
@@ -50,8 +51,10 @@ SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const E
     carryFollowing_ = whole.bottomRows(following).transpose();
     const Eigen::MatrixXd accelerations = C.bottomRows(2), halfway = C * decay, atEnd = accelerations * whole;
     carryMotions_.resize(moving, 4 + motions);
-    carryMotions_ << accelerations.leftCols(moving).transpose(), halfway.leftCols(moving).transpose(), atEnd.leftCols(moving).transpose();
-    const auto memories = static_cast<Eigen::Index>(std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
+    carryMotions_ << accelerations.leftCols(moving).transpose(), halfway.leftCols(moving).transpose(),
+        atEnd.leftCols(moving).transpose();
+    const auto memories = static_cast<Eigen::Index>(
+        std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
     for (auto& weights : memoryQuadrature_)
         weights.resize(memories, states);
     memoryStage_.resize(memories, motions);
@@ -101,9 +104,10 @@ void SensitivityStep::addLinear(const Model& model, const std::vector<std::vecto
     std::vector<Eigen::Index> sorted(motion_.linearPlace_), state(sorted.size());
     std::sort(sorted.begin(), sorted.end());
     for (std::size_t k = 0; k < sorted.size(); ++k)
-        state[k] = std::find(motion_.linearPlace_.begin(), motion_.linearPlace_.end(), sorted[k]) - motion_.linearPlace_.begin();
+        state[k] = std::find(motion_.linearPlace_.begin(), motion_.linearPlace_.end(), sorted[k])
+                   - motion_.linearPlace_.begin();
     Eigen::Index memories = 0;
-    std::size_t k = 0;   // parameter of the linear part
+    std::size_t k = 0;  // parameter of the linear part
     for (std::size_t place = 0; place < model.components.size(); ++place) {
         const auto& component = model.components[place];
         if (!component.effect->linear())
@@ -128,10 +132,11 @@ void SensitivityStep::addLinear(const Model& model, const std::vector<std::vecto
             auto parameters = valuesOf<Jet>(component);
             parameters[own].v[0] = 1.0;
             const auto coefficients = coefficientsOf(component, parameters);
-            std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)), unused(memory);
+            std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)),
+                unused(memory);
             Balance<Jet> atRest;
-            component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)}, memory.data(),
-                                         unused.data(), atRest);
+            component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)},
+                                         memory.data(), unused.data(), atRest);
             dInductance_[c] = atRest.inductance.v[0];
             dMass_[c] = atRest.mass.v[0];
         }
@@ -144,7 +149,7 @@ void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& c
     const int memories = component.effect->memorySize(component.extent);
     struct Direction {
         int output = none;
-        std::size_t own = 0;   // parameter of the law
+        std::size_t own = 0;  // parameter of the law
         Eigen::Index column = none;
     };
     std::vector<Direction> directions;
@@ -183,7 +188,7 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
     std::copy_n(memory, motion_.lawPlace_.size(), y_.data() + ExponentialStep::motions);
 
     Balance<double> sum;
-    std::size_t counted = motion_.laws_.size();   // the law whose values have been added last
+    std::size_t counted = motion_.laws_.size();  // the law whose values have been added last
     for (auto& chunk : chunks_) {
         const auto& law = motion_.laws_[chunk.law];
         Jet motion[3] {Jet(y_[0]), Jet(y_[1]), Jet(y_[2])};
@@ -191,10 +196,12 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
             chunk.memory[k] = Jet(y_[ExponentialStep::motions + law.memory + static_cast<Eigen::Index>(k)]);
         for (std::size_t lane = 0; lane < jetWidth; ++lane)
             if (const int q = chunk.output[lane]; q != none)
-                (q < 3 ? motion[q] : chunk.memory[static_cast<std::size_t>(q - ExponentialStep::motions - law.memory)]).v[static_cast<Eigen::Index>(lane)] = 1.0;
+                (q < 3 ? motion[q] : chunk.memory[static_cast<std::size_t>(q - ExponentialStep::motions - law.memory)])
+                    .v[static_cast<Eigen::Index>(lane)] = 1.0;
         chunk.sum = {};
-        law.component->effect->contribute(law.component->extent, chunk.coefficients.data(), {motion[0], motion[1], motion[2]},
-                                          chunk.memory.data(), chunk.rate.data(), chunk.sum);
+        law.component->effect->contribute(law.component->extent, chunk.coefficients.data(),
+                                          {motion[0], motion[1], motion[2]}, chunk.memory.data(), chunk.rate.data(),
+                                          chunk.sum);
         if (counted != chunk.law) {
             sum.inductance += chunk.sum.inductance.a;
             sum.fluxSlope += chunk.sum.fluxSlope.a;
@@ -208,7 +215,8 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
     const double L0 = motion_.inductance_, m0 = motion_.mass_, m = m0 + sum.mass, v = y_[2];
     const double L = motion_.electrical_ ? L0 + sum.inductance : 1.0;
     const double gi = motion_.electrical_ ? y_[3] + u / L0 : 0.0, gv = y_[4] + motion_.motion(u);
-    const double fi = motion_.electrical_ ? (L0 * gi - sum.drop - sum.fluxSlope * v) / L : 0.0, fv = (m0 * gv + sum.force) / m;
+    const double fi = motion_.electrical_ ? (L0 * gi - sum.drop - sum.fluxSlope * v) / L : 0.0,
+                 fv = (m0 * gv + sum.force) / m;
 
     at.Ny.setZero();
     at.Ntheta.setZero();
@@ -218,12 +226,14 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
             if (chunk.output[lane] == none && chunk.parameter[lane] == none)
                 break;
             const auto k = static_cast<Eigen::Index>(lane);
-            auto row = chunk.output[lane] != none ? at.Ny.row(chunk.output[lane]) : at.Ntheta.row(chunk.parameter[lane]);
+            auto row = chunk.output[lane] != none ? at.Ny.row(chunk.output[lane])
+                                                  : at.Ntheta.row(chunk.parameter[lane]);
             if (motion_.electrical_)
                 row[0] -= (chunk.sum.drop.v[k] + chunk.sum.fluxSlope.v[k] * v + fi * chunk.sum.inductance.v[k]) / L;
             row[1] += (chunk.sum.force.v[k] - fv * chunk.sum.mass.v[k]) / m;
             for (std::size_t j = 0; j < chunk.rate.size(); ++j)
-                row[ExponentialStep::rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] += chunk.rate[j].v[k];
+                row[ExponentialStep::rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] +=
+                    chunk.rate[j].v[k];
         }
     if (motion_.electrical_) {
         at.Ny(2, 0) -= sum.fluxSlope / L;
@@ -270,7 +280,8 @@ void SensitivityStep::slopesByState(Eigen::MatrixXd& out) const
 void SensitivityStep::step(std::span<const double> u)
 {
     constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
-    const auto outputs = y_.size(), laws = motion_.N_[0].size(), lawMemories = laws - rates, n = motion_.A_.rows(), memories = memoryStage_.rows();
+    const auto outputs = y_.size(), laws = motion_.N_[0].size(), lawMemories = laws - rates, n = motion_.A_.rows(),
+               memories = memoryStage_.rows();
     const auto [middle, end] = ExponentialStep::later(u);
     const double* const z = motion_.z_.data();
     if (fresh_)
@@ -294,7 +305,7 @@ void SensitivityStep::step(std::span<const double> u)
     add(S_.data(), moving, carryMoving_, run_.data());
     add(S_.data(), n, carryFollowing_, column(moving));
     add(S_.data(), moving, carryMotions_, column(n));
-    const auto remembered = S_.rightCols(lawMemories);   // stands still but for the laws: no exponential is needed
+    const auto remembered = S_.rightCols(lawMemories);  // stands still but for the laws: no exponential is needed
     auto atEnd = run_.leftCols(n), half = run_.middleCols(n + 2, motions);
     // i, x and v are among the states.
     now_ << S_.leftCols(3), run_.middleCols(n, 2);
@@ -314,7 +325,8 @@ void SensitivityStep::step(std::span<const double> u)
     }
     // The stages of ExponentialStep, for the derivatives.
     auto& [K1, K2, K3, K4] = stage_;
-    const auto drive = [&](const auto& motion, Eigen::MatrixXd& K, const Instant& at) {   // from motions (their memories are in Y_) to K
+    // from motions (their memories are in Y_) to K
+    const auto drive = [&](const auto& motion, Eigen::MatrixXd& K, const Instant& at) {
         Y_.leftCols(motions) += motion;
         K = at.Ntheta;
         add(Y_.data(), outputs, at.Ny, K.data());
@@ -347,4 +359,4 @@ void SensitivityStep::step(std::span<const double> u)
     std::swap(start_, end_);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -15,7 +15,7 @@ namespace {
 /// A motion as a derivative of the displacement.
 struct Order {
     Trace trace;
-    int order;   ///< derivatives of the displacement
+    int order;  ///< derivatives of the displacement
 };
 
 std::optional<Order> motionOf(Quantity quantity)
@@ -36,11 +36,15 @@ std::vector<double> beyond(const std::vector<double>& lateness, double rest)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 Sensors::Sensors(const Model& model, const Linearization& linear, const Trajectory& run, double sampleRate)
-    : run_(run), sampleRate_(sampleRate), gain_(radiationPerArea() / model.microphoneDistance), restLateness_(linear.lateness),
-      spot_(linear.shiftsSpot()), arrival_(beyond(run[Trace::lateness], restLateness_), sampleRate)
+    : run_(run),
+      sampleRate_(sampleRate),
+      gain_(radiationPerArea() / model.microphoneDistance),
+      restLateness_(linear.lateness),
+      spot_(linear.shiftsSpot()),
+      arrival_(beyond(run[Trace::lateness], restLateness_), sampleRate)
 {
 }
 
@@ -91,7 +95,8 @@ Sensors::Spectrum Sensors::slope(Quantity quantity, const Eigen::MatrixXd& slope
         return std::vector<double>(values.begin(), values.end());
     };
     if (quantity == Quantity::pressure) {
-        // What arrives at t has left at s, so d(flow) there is that of the flow and that of s: ds = -d(lateness)/(1 + lateness').
+        // What arrives at t has left at s, so d(flow) there is that of the flow and that of s: ds = -d(lateness)/(1 +
+        // lateness').
         if (flowByLeaving_.empty())
             flowByLeaving_ = slopeByLeaving(run_[Trace::flow], run_[Trace::lateness], sampleRate_);
         auto change = row(0);
@@ -112,13 +117,14 @@ std::vector<double> Sensors::record(Quantity quantity) const
     const auto inTime = [this](Spectrum& spectrum) {
         const auto length = run_[Trace::current].size();
         if (length % 2 == 0)
-            spectrum.back() = spectrum.back().real();   // the Nyquist line of a real record is real
+            spectrum.back() = spectrum.back().real();  // the Nyquist line of a real record is real
         return inverseFft(spectrum, length);
     };
     if (quantity == Quantity::pressure) {
         if (restLateness_ == 0.0) {
             auto samples = arrival_.heard(run_[Trace::flow]);
-            std::transform(samples.begin(), samples.end(), samples.begin(), [this](double flow) { return gain_ * flow; });
+            std::transform(samples.begin(), samples.end(), samples.begin(),
+                           [this](double flow) { return gain_ * flow; });
             return samples;
         }
         auto spectrum = seen(quantity);
@@ -136,4 +142,4 @@ std::vector<double> Sensors::record(Quantity quantity) const
     return samples;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -21,7 +21,10 @@ class Sensors {
 public:
     using Spectrum = std::vector<std::complex<double>>;
 
-    Sensors(const Model& model, const Trajectory& run, double sampleRate) : Sensors(model, linearize(model), run, sampleRate) {}
+    Sensors(const Model& model, const Trajectory& run, double sampleRate)
+        : Sensors(model, linearize(model), run, sampleRate)
+    {
+    }
 
     /// The traces of a trajectory that a channel is made of.
     std::vector<Trace> tracesOf(Quantity) const;
@@ -43,8 +46,8 @@ private:
     const Trajectory& run_;
     double sampleRate_, gain_, restLateness_;
     bool spot_;
-    Arrival arrival_;   ///< of what the lateness is more than at rest
-    std::vector<double> flowByLeaving_;   ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope asks for it
+    Arrival arrival_;                    ///< of what the lateness is more than at rest
+    std::vector<double> flowByLeaving_;  ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope asks for it
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double sure = 3.0;   // times its noise: a line that is told
+constexpr double sure = 3.0;  // times its noise: a line that is told
 
 /// s^n, n times over: a power of complex numbers costs a logarithm.
 Complex repeated(Complex s, int n)
@@ -40,7 +40,8 @@ Told displacementAt(const Record& record, const Section& section, std::size_t li
     for (std::size_t c = 0; c < record.channels.size(); ++c)
         if (const auto order = integrationsToDisplacement(record.channels[c])) {
             const auto scale = repeated(s, -*order);
-            const Told told {scale * section.measured[c][line], std::norm(scale) * section.deviation[c][line] * section.deviation[c][line]};
+            const Told told {scale * section.measured[c][line],
+                             std::norm(scale) * section.deviation[c][line] * section.deviation[c][line]};
             if (told.isSure()) {
                 sum += told.value / told.variance;
                 weights += 1.0 / told.variance;
@@ -56,15 +57,17 @@ std::vector<double> played(const Spectrum& spectrum, std::size_t N, int derivati
     Spectrum wide(fine * N / 2 + 1, 0.0);
     const double step = 2.0 * std::numbers::pi * sampleRate / static_cast<double>(N);
     for (std::size_t k = 0; k < std::min(spectrum.size(), (N + 1) / 2); ++k)
-        wide[k] = spectrum[k] * static_cast<double>(fine) * repeated(Complex(0.0, step * static_cast<double>(k)), derivative);
+        wide[k] = spectrum[k] * static_cast<double>(fine)
+                  * repeated(Complex(0.0, step * static_cast<double>(k)), derivative);
     if (derivative > 0)
         wide[0] = 0.0;
     return inverseFft(wide, fine * N);
 }
 
-} // namespace
+}  // namespace
 
-ShownMotion shownMotion(const Record& record, const Section& section, const Spectrum& current, const Spectrum& displacement)
+ShownMotion shownMotion(const Record& record, const Section& section, const Spectrum& current,
+                        const Spectrum& displacement)
 {
     const std::size_t N = section.window;
     Spectrum I = current, X = displacement;
@@ -77,7 +80,9 @@ ShownMotion shownMotion(const Record& record, const Section& section, const Spec
         if (const auto told = displacementAt(record, section, k); told.isSure())
             X[k] = told.value;
     }
-    const auto motion = [&](const Spectrum& of, int derivative) { return played(of, N, derivative, record.sampleRate); };
+    const auto motion = [&](const Spectrum& of, int derivative) {
+        return played(of, N, derivative, record.sampleRate);
+    };
     return {motion(I, 0), motion(I, 1), motion(X, 0), motion(X, 1), motion(X, 2), {}};
 }
 
@@ -92,4 +97,4 @@ PeriodicMotion everySample(const ShownMotion& motion)
     return {thinned(motion.i), thinned(motion.x), thinned(motion.v)};
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,11 +16,12 @@ using ShownMotions = std::vector<ShownMotion>;
 /// Whether the sections of a record are periods, which is what motions are told of.
 bool hasPeriods(const Record&);
 
-/// Motions of the sections as the take shows them, and where it shows nothing as the model expects them from the motions `before`; without these
-/// from its linear part.
-ShownMotions shownMotions(const Model&, const Record&, const std::vector<std::size_t>& sections, const ShownMotions& before = {},
-                          unsigned threads = 1);
+/// Motions of the sections as the take shows them, and where it shows nothing as the model expects them from the
+/// motions `before`; without these from its linear part.
+ShownMotions shownMotions(const Model&, const Record&, const std::vector<std::size_t>& sections,
+                          const ShownMotions& before = {}, unsigned threads = 1);
 /// The same, from the linear part and once more from there.
-ShownMotions settledMotions(const Model&, const Record&, const std::vector<std::size_t>& sections, unsigned threads = 1);
+ShownMotions settledMotions(const Model&, const Record&, const std::vector<std::size_t>& sections,
+                            unsigned threads = 1);
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,7 +19,9 @@
 namespace excursion {
 
 Drive::Drive(std::span<const double> samples, double sampleRate, int substeps)
-    : length_(samples.size()), substeps_(substeps), step_(1.0 / (sampleRate * substeps)),
+    : length_(samples.size()),
+      substeps_(substeps),
+      step_(1.0 / (sampleRate * substeps)),
       fine_(upsample(samples, 2 * substeps))
 {
 }
@@ -39,8 +41,12 @@ std::array<double, 7> Drive::polynomial(std::size_t halfStep) const
     Eigen::Matrix<double, count, 1> value;
     for (int k = 0; k < count; ++k) {
         const auto n = static_cast<std::ptrdiff_t>(halfStep) + k - 2;
-        const auto inside = [&](std::ptrdiff_t at) { return fine_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))]; };
-        value[k] = n < 0 ? 2.0 * inside(0) - inside(-n) : n > last ? 2.0 * inside(last) - inside(2 * last - n) : inside(n);
+        const auto inside = [&](std::ptrdiff_t at) {
+            return fine_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))];
+        };
+        value[k] = n < 0      ? 2.0 * inside(0) - inside(-n)
+                   : n > last ? 2.0 * inside(last) - inside(2 * last - n)
+                              : inside(n);
     }
     std::array<double, count> result;
     Eigen::Map<Eigen::Matrix<double, count, 1>>(result.data()).noalias() = inverse * value;
@@ -49,7 +55,8 @@ std::array<double, 7> Drive::polynomial(std::size_t halfStep) const
 
 const std::vector<double>& Trajectory::operator[](Trace trace) const
 {
-    const std::array<const std::vector<double>*, traceCount> all {&current, &displacement, &velocity, &acceleration, &flow, &lateness, &spot};
+    const std::array<const std::vector<double>*, traceCount> all {&current, &displacement, &velocity, &acceleration,
+                                                                  &flow,    &lateness,     &spot};
     return *all[static_cast<std::size_t>(trace)];
 }
 
@@ -61,7 +68,8 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
     if (start.size() > 0)
         motion.begin(start);
     Eigen::VectorXd before;
-    for (auto* trace : {&out.current, &out.displacement, &out.velocity, &out.acceleration, &out.flow, &out.lateness, &out.spot}) {
+    for (auto* trace :
+         {&out.current, &out.displacement, &out.velocity, &out.acceleration, &out.flow, &out.lateness, &out.spot}) {
         trace->clear();
         trace->reserve(drive.length() - first);
     }
@@ -95,7 +103,8 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
 {
     const auto count = static_cast<Eigen::Index>(active.size());
     SensitivityStep motion(model, drive.step(), active);
-    const bool radiates = std::any_of(observed.begin(), observed.end(), [](Trace trace) { return trace >= Trace::flow; });
+    const bool radiates = std::any_of(observed.begin(), observed.end(),
+                                      [](Trace trace) { return trace >= Trace::flow; });
     Radiator radiator(model, radiates ? active : std::span<const Eigen::Index> {});
     const Plausible plausible(model);
     if (start.value.size() > 0) {
@@ -125,12 +134,14 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
             if (s > 0 || !kept)
                 continue;
             if (radiates)
-                radiator.differentiate(from.data(), motion.acceleration(), before, motion.accelerationSlopes(), emitted);
+                radiator.differentiate(from.data(), motion.acceleration(), before, motion.accelerationSlopes(),
+                                       emitted);
             for (std::size_t q = 0; q < observed.size(); ++q)
                 if (observed[q] == Trace::acceleration)
                     out[q].col(column) = motion.accelerationSlopes();
                 else if (observed[q] > Trace::acceleration)
-                    out[q].col(column) = emitted.col(static_cast<Eigen::Index>(observed[q]) - static_cast<Eigen::Index>(Trace::flow));
+                    out[q].col(column) = emitted.col(static_cast<Eigen::Index>(observed[q])
+                                                     - static_cast<Eigen::Index>(Trace::flow));
         }
         if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
             return false;
@@ -140,7 +151,9 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
 
 int stableSubsteps(const Model& model, double sampleRate, double limit)
 {
-    return std::clamp(static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (limit * sampleRate))), 1, 64);
+    return std::clamp(
+        static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (limit * sampleRate))), 1,
+        64);
 }
 
 bool SimulationOptions::isValid(std::string* reason) const
@@ -165,7 +178,7 @@ double relativeChange(const std::vector<double>& coarse, const std::vector<doubl
     return power > 0.0 ? std::sqrt(difference / power) : 0.0;
 }
 
-} // namespace
+}  // namespace
 
 SimulationSummary chooseSubsteps(const Model& model, std::span<const double> input, double sampleRate,
                                  const SimulationOptions& options)
@@ -214,8 +227,9 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
     progress.at(0.2, "simulating");
     Trajectory run;
     if (!integrate(model, Drive(input, sampleRate, chosen.substeps), 0, run))
-        throw Error(Error::Kind::numerical, "The simulated driver ran away: at this level the model is driven far beyond the "
-                                            "range in which it was measured; lower --full-scale.");
+        throw Error(Error::Kind::numerical,
+                    "The simulated driver ran away: at this level the model is driven far beyond the "
+                    "range in which it was measured; lower --full-scale.");
     progress.at(0.95, "radiating");
     const Sensors sensors(model, run, sampleRate);
 
@@ -226,15 +240,17 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
     result.driver.microphoneDistance = model.microphoneDistance;
     const auto add = [&result](Quantity quantity, std::vector<double> samples) {
         const double peak = peakOf(samples);
-        result.channels.push_back({quantity, std::string(siUnit(quantity)), peak > 0.0 ? 1.25 * peak : 1.0, std::move(samples)});
+        result.channels.push_back(
+            {quantity, std::string(siUnit(quantity)), peak > 0.0 ? 1.25 * peak : 1.0, std::move(samples)});
     };
     std::vector<double> copy(input.begin(), input.end());
     add(model.electrical() ? Quantity::voltage : Quantity::force, std::move(copy));
-    for (const auto quantity : {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration, Quantity::pressure})
+    for (const auto quantity :
+         {Quantity::current, Quantity::displacement, Quantity::velocity, Quantity::acceleration, Quantity::pressure})
         if (quantity != Quantity::current || model.electrical())
             add(quantity, sensors.record(quantity));
     progress.at(1.0, "simulated");
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

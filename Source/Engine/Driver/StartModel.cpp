@@ -16,8 +16,9 @@
 namespace excursion {
 namespace {
 
-/// Moving mass of a typical driver, kg: it grows like the cone's area to the power 3/2; without the area the resonance tells a woofer
-/// (15 g at 45 Hz) from a tweeter (0.3 g at 800 Hz). Rounded to one digit, as it is no more than a convention.
+/// Moving mass of a typical driver, kg: it grows like the cone's area to the power 3/2; without the area the resonance
+/// tells a woofer (15 g at 45 Hz) from a tweeter (0.3 g at 800 Hz). Rounded to one digit, as it is no more than a
+/// convention.
 double typicalMass(double f0, const std::optional<double>& area)
 {
     const double mass = std::clamp(area ? 8.6 * std::pow(*area, 1.5) : 0.015 * std::pow(45.0 / f0, 1.4), 5e-5, 0.5);
@@ -25,8 +26,8 @@ double typicalMass(double f0, const std::optional<double>& area)
     return std::round(mass / digit) * digit;
 }
 
-/// Another mass for the same electrical behaviour: only Bl^2/m, Rms/m and K/m are seen. The motion changes with the root of it, or, without
-/// a coil, with it.
+/// Another mass for the same electrical behaviour: only Bl^2/m, Rms/m and K/m are seen. The motion changes with the
+/// root of it, or, without a coil, with it.
 void rescale(Model& model, double mass)
 {
     const double ratio = mass / model.baseParameter("m").value;
@@ -52,12 +53,11 @@ double sizeOver(const Model& model, const ResponseTarget& target)
 /// The responses on a grid that is just fine enough to tell a good start from a bad one.
 constexpr int startPointsPerOctave = 24;
 
-
 /// What the targets show and what they do not.
 struct Sight {
     bool mass = false;
     const ResponseTarget *current = nullptr, *motion = nullptr, *pressure = nullptr;
-    double low = std::numeric_limits<double>::infinity(), high = 0.0;   ///< Hz
+    double low = std::numeric_limits<double>::infinity(), high = 0.0;  ///< Hz
 };
 
 Sight sightOf(const std::vector<ResponseTarget>& targets, bool electrical, const DriverInfo& driver)
@@ -102,7 +102,8 @@ private:
     double lowest_ = std::numeric_limits<double>::infinity();
 };
 
-/// Gives the model the mass, and the area, with which its motion and pressure are of the size that was measured, whatever their units.
+/// Gives the model the mass, and the area, with which its motion and pressure are of the size that was measured,
+/// whatever their units.
 void matchSizes(Model& model, const Sight& sight)
 {
     if (const auto* target = sight.motion ? sight.motion : sight.pressure; target && sight.mass) {
@@ -163,7 +164,7 @@ void considerGrid(Contest& contest, Model model, const Sight& sight)
                 contest.consider(std::move(candidate));
                 continue;
             }
-            for (const double coupling : {0.5, 4.0}) {   // Bl^2/(Re Rms): the height of the impedance peak
+            for (const double coupling : {0.5, 4.0}) {  // Bl^2/(Re Rms): the height of the impedance peak
                 auto candidate = model;
                 candidate.baseParameter("Re").value = Re;
                 candidate.baseParameter("Le").value = Re / (2.0 * std::numbers::pi * 3000.0);
@@ -174,12 +175,13 @@ void considerGrid(Contest& contest, Model model, const Sight& sight)
         }
 }
 
-} // namespace
+}  // namespace
 
 Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, const DriverInfo& driver)
 {
     if (dense.empty())
-        throw Error(Error::Kind::data, "The take gives no frequency response to start from; excite it in the band of the loudspeaker's resonance.");
+        throw Error(Error::Kind::data, "The take gives no frequency response to start from; excite it in the band of "
+                                       "the loudspeaker's resonance.");
     const auto targets = thinned(dense, startPointsPerOctave);
     const auto sight = sightOf(targets, electrical, driver);
     Model model = makeModel(electrical ? "electrodynamic" : "mechanical");
@@ -199,7 +201,9 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
     if (!contest.found())
         considerGrid(contest, model, sight);
     if (!contest.found())
-        throw Error(Error::Kind::numerical, "No linear driver could be fitted to the frequency response of the take; run the check of the take first.");
+        throw Error(
+            Error::Kind::numerical,
+            "No linear driver could be fitted to the frequency response of the take; run the check of the take first.");
     Model best = contest.best();
     if (!sight.mass) {
         const double f0 = resonanceOf(best.base().parameters);
@@ -216,12 +220,13 @@ std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& tar
     std::string text;
     char number[32];
     const auto print = [&number](const char* format, double value) {
-        std::snprintf(number, sizeof number, format, value);   // the C locale is never changed
+        std::snprintf(number, sizeof number, format, value);  // the C locale is never changed
         return std::string(number);
     };
     if (model.electrical() && !model.baseParameter("m").free)
         text += " The moving mass is held at " + print("%.3g", 1e3 * model.baseParameter("m").value)
-                + " g, a guess: without a measured motion only Bl^2/m, Rms/m and K/m are known, so Bl, Rms and K scale with it.";
+                + " g, a guess: without a measured motion only Bl^2/m, Rms/m and K/m are known, so Bl, Rms and K scale "
+                  "with it.";
     if (model.electrical() && !model.baseParameter("m").free && model.path.parameters[0].free)
         text += " The area of the cone follows from that guess and the size of the pressure.";
     double highest = 0.0;
@@ -229,9 +234,9 @@ std::string caveatsOf(const Model& model, const std::vector<ResponseTarget>& tar
         highest = std::max(highest, target.frequency.back());
     for (const auto& target : targets)
         if (isMotion(target.quantity) && target.frequency.back() < 0.9 * highest)
-            text += " The " + std::string(name(target.quantity)) + " counts up to " + print("%.0f", target.frequency.back())
-                    + " Hz; above, the cone does not move as one piece.";
+            text += " The " + std::string(name(target.quantity)) + " counts up to "
+                    + print("%.0f", target.frequency.back()) + " Hz; above, the cone does not move as one piece.";
     return text;
 }
 
-} // namespace excursion
+}  // namespace excursion

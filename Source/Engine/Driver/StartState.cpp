@@ -20,14 +20,15 @@ using Complex = std::complex<double>;
 
 /// What a line of a section's input has to do with it.
 struct Share {
-    std::size_t section;   ///< of the record
-    Complex weight;        ///< with which the line's response enters the start state
+    std::size_t section;  ///< of the record
+    Complex weight;       ///< with which the line's response enters the start state
     Complex input;
     std::size_t line;
 };
 
 /// The lines of sections in Hz, and what each section has of them. Lines a ten-thousandth of the largest are left out.
-std::map<double, std::vector<Share>> linesOf(const Record& record, const std::vector<std::size_t>& sections, std::size_t leadIn)
+std::map<double, std::vector<Share>> linesOf(const Record& record, const std::vector<std::size_t>& sections,
+                                             std::size_t leadIn)
 {
     std::map<double, std::vector<Share>> lines;
     for (const auto s : sections) {
@@ -53,7 +54,8 @@ std::map<double, std::vector<Share>> linesOf(const Record& record, const std::ve
 
 /// Puts the memories of the laws where the sections have brought them.
 /// @param spectra  [section of the record][i, x or v], of the linear part; empty where that is not known
-void startMemories(const Model& model, const Record& record, const std::vector<std::size_t>& sections, std::size_t leadIn, bool withGradient,
+void startMemories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                   std::size_t leadIn, bool withGradient,
                    const std::vector<std::array<std::vector<Complex>, 3>>& spectra, std::vector<StartState>& states)
 {
     // What was measured is nearer to the truth than what the linear part would do.
@@ -64,13 +66,16 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
         const auto played = [&](const std::vector<Complex>& lines) {
             return lines.empty() ? std::vector<double>(section.window, 0.0) : inverseFft(lines, section.window);
         };
-        motions[s] = {played(current && *current < section.measured.size() ? section.measured[*current] : spectra[s][0]),
-                      played(spectra[s][1]), played(spectra[s][2])};
+        motions[s] = {
+            played(current && *current < section.measured.size() ? section.measured[*current] : spectra[s][0]),
+            played(spectra[s][1]), played(spectra[s][2])};
     }
-    std::vector<double> run;   // s, from the start of a drive to the middle of the window
+    std::vector<double> run;  // s, from the start of a drive to the middle of the window
     for (const auto& section : record.sections)
-        run.push_back((static_cast<double>(section.periodic ? std::max(record.leadIn, leadIn) : section.input.size() - section.window)
-                       + 0.5 * static_cast<double>(section.window)) / record.sampleRate);
+        run.push_back((static_cast<double>(section.periodic ? std::max(record.leadIn, leadIn)
+                                                            : section.input.size() - section.window)
+                       + 0.5 * static_cast<double>(section.window))
+                      / record.sampleRate);
     Eigen::Index place = 3, parameter = 0;
     for (const auto& component : model.components) {
         const Eigen::Index size = component.effect->memorySize(component.extent);
@@ -85,8 +90,10 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
                 if (state.value.size() == 0)
                     continue;
                 const auto start = component.effect->slow() ? histories[sections[s]]
-                                   : section.periodic ? settledMemory(component, motions[sections[s]], record.driveBegin(section, leadIn), record.sampleRate)
-                                                      : MemoryStart {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)};
+                                   : section.periodic
+                                       ? settledMemory(component, motions[sections[s]],
+                                                       record.driveBegin(section, leadIn), record.sampleRate)
+                                       : MemoryStart {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)};
                 state.value.segment(place, size) = start.value;
                 if (withGradient)
                     state.gradient.block(place, parameter, size, count) = start.gradient;
@@ -97,13 +104,13 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
     }
 }
 
-} // namespace
+}  // namespace
 
 std::vector<StartState> startStates(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                                     std::size_t leadIn, bool withGradient)
 {
     std::vector<StartState> states(sections.size());
-    bool remembers = false, slow = false;   // a law
+    bool remembers = false, slow = false;  // a law
     for (const auto& component : model.components)
         if (!component.effect->linear() && component.effect->memorySize(component.extent) > 0) {
             remembers = true;
@@ -120,7 +127,8 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
         places[sections[s]] = s;
     auto linear = linearize(model, withGradient);
     const auto n = linear.A.rows();
-    // Nothing drives the current of a driver without a coil, nor here the memory of a law: at 0 Hz nothing should divide by them.
+    // Nothing drives the current of a driver without a coil, nor here the memory of a law: at 0 Hz nothing should
+    // divide by them.
     for (Eigen::Index k = 0; k < n; ++k)
         if (linear.A.row(k).isZero(0.0))
             linear.A(k, k) = -1.0;
@@ -143,7 +151,8 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
         resolvent.moveTo(Complex(0.0, 2.0 * std::numbers::pi * frequency));
         const Eigen::VectorXcd z = resolvent.times(B);
         for (Eigen::Index p = 0; p < P; ++p)
-            drives.col(p).noalias() = linear.dA[static_cast<std::size_t>(p)] * z + linear.dB[static_cast<std::size_t>(p)];
+            drives.col(p).noalias() = linear.dA[static_cast<std::size_t>(p)] * z
+                                      + linear.dB[static_cast<std::size_t>(p)];
         if (withGradient)
             gradient = resolvent.times(drives);
         for (const auto& share : shares) {
@@ -163,4 +172,4 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
     return states;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,12 +10,16 @@ namespace excursion {
 namespace {
 
 /// The power of two next to a ratio; one where there is none.
-double power(double ratio) { return ratio > 0.0 && std::isfinite(ratio) ? std::exp2(std::round(std::log2(ratio))) : 1.0; }
+double power(double ratio)
+{
+    return ratio > 0.0 && std::isfinite(ratio) ? std::exp2(std::round(std::log2(ratio))) : 1.0;
+}
 
 /// Sizes of what couples states, in units that grow.
 class Couplings {
 public:
-    explicit Couplings(const Eigen::MatrixXd& A) : rate_(A.diagonal().cwiseAbs()), B_(A.cwiseAbs()), units_(Eigen::VectorXd::Ones(A.rows()))
+    explicit Couplings(const Eigen::MatrixXd& A)
+        : rate_(A.diagonal().cwiseAbs()), B_(A.cwiseAbs()), units_(Eigen::VectorXd::Ones(A.rows()))
     {
         B_.diagonal().setZero();
     }
@@ -30,7 +34,8 @@ public:
         for (int sweep = 0; sweep < mostSweeps && moved; ++sweep) {
             moved = false;
             for (const auto k : states) {
-                const double row = B_(k, states).sum(), column = B_(states, k).sum(), f = power(std::sqrt(row) / std::sqrt(column));
+                const double row = B_(k, states).sum(), column = B_(states, k).sum(),
+                             f = power(std::sqrt(row) / std::sqrt(column));
                 if (column * f + row / f < worthIt * (column + row)) {
                     grow(k, f);
                     moved = true;
@@ -51,7 +56,8 @@ public:
     {
         std::vector<Eigen::Index> loose;
         const auto isLoose = [&](Eigen::Index k) { return B_(k, states).isZero(0.0) || B_(states, k).isZero(0.0); };
-        for (auto next = states.begin(); (next = std::find_if(states.begin(), states.end(), isLoose)) != states.end();) {
+        for (auto next = states.begin();
+             (next = std::find_if(states.begin(), states.end(), isLoose)) != states.end();) {
             loose.push_back(*next);
             states.erase(next);
         }
@@ -69,11 +75,11 @@ private:
     }
 
     Eigen::VectorXd rate_;
-    Eigen::MatrixXd B_;   // |A| without its diagonal
+    Eigen::MatrixXd B_;  // |A| without its diagonal
     Eigen::VectorXd units_;
 };
 
-} // namespace
+}  // namespace
 
 Eigen::VectorXd stateUnits(const Eigen::MatrixXd& A)
 {
@@ -97,4 +103,4 @@ Eigen::MatrixXd inUnits(const Eigen::MatrixXd& A, const Eigen::VectorXd& units)
     return units.cwiseInverse().asDiagonal() * A * units.asDiagonal();
 }
 
-} // namespace excursion
+}  // namespace excursion

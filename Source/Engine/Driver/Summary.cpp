@@ -21,7 +21,7 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
     for (Eigen::Index j = 0; j < count; ++j) {
         const auto k = static_cast<std::size_t>(j);
         const double deviation = std::sqrt(model.covariance(first + j, first + j));
-        if (deviation == 0.0)   // held, or of no importance
+        if (deviation == 0.0)  // held, or of no importance
             continue;
         const double step = 1e-3 * std::min(deviation, std::max(std::abs(values[k]), c.parameters[k].prior));
         const auto moved = [&](double by) {
@@ -31,14 +31,15 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
         };
         const auto above = moved(step), below = moved(-step);
         if (above.size() != figures.size() || below.size() != figures.size())
-            continue;   // at the brink of being there at all
+            continue;  // at the brink of being there at all
         for (std::size_t n = 0; n < figures.size(); ++n)
             gradient(static_cast<Eigen::Index>(n), j) = (above[n].value - below[n].value) / (2.0 * step);
     }
-    const Eigen::MatrixXd covariance = gradient * model.covariance.block(first, first, count, count) * gradient.transpose();
+    const Eigen::MatrixXd covariance = gradient * model.covariance.block(first, first, count, count)
+                                       * gradient.transpose();
     for (std::size_t n = 0; n < figures.size(); ++n)
         figures[n].standardError = std::sqrt(covariance(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)));
     return figures;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,7 +8,8 @@ namespace {
 
 /// `width` columns of 4 `fours` rows: their sums stay in registers, and are enough to hide the latency of a sum.
 template <int width, int fours>
-[[gnu::always_inline]] inline void addBlock(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W, double* Y)
+[[gnu::always_inline]] inline void addBlock(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W,
+                                            double* Y)
 {
     Four sum[width][fours];
     for (int j = 0; j < width; ++j)
@@ -25,8 +26,8 @@ template <int width, int fours>
             reinterpret_cast<Four*>(Y + j * rows)[p] = sum[j][p];
 }
 
-EXCURSION_DISPATCH void add(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W, Eigen::Index columns, double* Y,
-                            Eigen::Index from, Eigen::Index to)
+EXCURSION_DISPATCH void add(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W,
+                            Eigen::Index columns, double* Y, Eigen::Index from, Eigen::Index to)
 {
     constexpr int width = 4;
     Eigen::Index j = 0;
@@ -42,12 +43,12 @@ EXCURSION_DISPATCH void add(const double* X, Eigen::Index rows, Eigen::Index inn
     }
 }
 
-} // namespace
+}  // namespace
 
-void addTallProduct(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W, Eigen::Index columns, double* Y,
-                    Eigen::Index from, Eigen::Index to)
+void addTallProduct(const double* X, Eigen::Index rows, Eigen::Index inner, const double* W, Eigen::Index columns,
+                    double* Y, Eigen::Index from, Eigen::Index to)
 {
     add(X, rows, inner, W, columns, Y, from, to);
 }
 
-} // namespace excursion
+}  // namespace excursion

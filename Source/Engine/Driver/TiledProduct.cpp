@@ -8,7 +8,8 @@
 namespace excursion {
 namespace {
 
-constexpr int mostEights = 4;   // whose sums, eight registers, hide the latency of a sum and leave registers for the rest
+// whose sums, eight registers, hide the latency of a sum and leave registers for the rest
+constexpr int mostEights = 4;
 
 /// A tile of `eights`; as few rows have sums enough when the columns are dealt to `ways` sums a row.
 template <int eights, int ways>
@@ -36,7 +37,8 @@ template <int eights, int ways>
     }
 }
 
-EXCURSION_DISPATCH void add(const TiledProduct::Tile* tile, const TiledProduct::Tile* end, const double* W, const double* x, double* y)
+EXCURSION_DISPATCH void add(const TiledProduct::Tile* tile, const TiledProduct::Tile* end, const double* W,
+                            const double* x, double* y)
 {
     for (; tile != end; ++tile) {
         switch (tile->eights) {
@@ -50,7 +52,7 @@ EXCURSION_DISPATCH void add(const TiledProduct::Tile* tile, const TiledProduct::
     }
 }
 
-} // namespace
+}  // namespace
 
 TiledProduct::TiledProduct(const Eigen::MatrixXd& W) : rows_((W.rows() + 7) / 8 * 8)
 {
@@ -65,7 +67,8 @@ TiledProduct::TiledProduct(const Eigen::MatrixXd& W) : rows_((W.rows() + 7) / 8 
         tiles_.push_back({static_cast<int>(eights), static_cast<int>(columns)});
         for (Eigen::Index column = 0; column < columns; ++column)
             for (Eigen::Index eight = 0; eight < eights; ++eight)
-                Eigen::Map<Eigen::Matrix<double, 8, 1>>(values_.emplace_back().value) = tile.col(column).segment<8>(8 * eight);
+                Eigen::Map<Eigen::Matrix<double, 8, 1>>(values_.emplace_back().value) = tile.col(column).segment<8>(
+                    8 * eight);
         row += 8 * eights;
     }
 }
@@ -75,4 +78,4 @@ void TiledProduct::addTo(double* y, const double* x) const
     add(tiles_.data(), tiles_.data() + tiles_.size(), values_.empty() ? nullptr : values_.front().value, x, y);
 }
 
-} // namespace excursion
+}  // namespace excursion

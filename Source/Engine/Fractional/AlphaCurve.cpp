@@ -21,26 +21,30 @@ double deviance(const PartialFractionFit& fit, const FrequencyData& data)
 {
     if (data.deviation.size() == 0)
         return fit.cost;
-    const Eigen::MatrixXcd basis = partialFractions(fit.sections, evaluationPoints(data.frequency, 0.0, fit.sections.alpha));
+    const Eigen::MatrixXcd basis = partialFractions(fit.sections,
+                                                    evaluationPoints(data.frequency, 0.0, fit.sections.alpha));
     Eigen::MatrixXcd error = basis * fit.C.transpose() - data.value;
     error.rowwise() += fit.D.transpose().cast<Complex>();
     return error.cwiseAbs().cwiseQuotient(data.deviation).squaredNorm();
 }
 
-/// The poles at another alpha: lambda^(alpha'/alpha) is the same s. Pairs that would pass the negative axis stay just before it.
+/// The poles at another alpha: lambda^(alpha'/alpha) is the same s. Pairs that would pass the negative axis stay just
+/// before it.
 Sections carried(const Sections& sections, double alpha)
 {
     const double ratio = alpha / sections.alpha;
     auto roots = poles(sections);
     for (auto& root : roots) {
         const double size = std::pow(std::abs(root), ratio);
-        root = root.imag() == 0.0 ? Complex(std::copysign(size, root.real()), 0.0)
-                                  : std::polar(size, std::copysign(std::min(std::abs(std::arg(root)) * ratio, 0.99 * std::numbers::pi), root.imag()));
+        root = root.imag() == 0.0
+                   ? Complex(std::copysign(size, root.real()), 0.0)
+                   : std::polar(size, std::copysign(std::min(std::abs(std::arg(root)) * ratio, 0.99 * std::numbers::pi),
+                                                    root.imag()));
     }
     return mirrored(sectionsOf(roots, 0.0, std::pow(sections.scale, ratio), alpha));
 }
 
-} // namespace
+}  // namespace
 
 IdentifyOptions linearOptions(const FractionalOptions& options, double alpha)
 {
@@ -54,7 +58,8 @@ IdentifyOptions linearOptions(const FractionalOptions& options, double alpha)
 
 void AlphaCurve::search(const Progress& progress)
 {
-    const auto steps = static_cast<int>(std::ceil((options_.mostAlpha - options_.leastAlpha) / options_.gridStep - 1e-9));
+    const auto steps = static_cast<int>(
+        std::ceil((options_.mostAlpha - options_.leastAlpha) / options_.gridStep - 1e-9));
     for (int k = 0; k <= steps; ++k) {
         const double alpha = options_.leastAlpha + (options_.mostAlpha - options_.leastAlpha) * k / steps;
         const auto part = progress.part(k / (steps + 1.0), (k + 1.0) / (steps + 1.0));
@@ -99,9 +104,11 @@ void AlphaCurve::offer(const AlphaPoint& from, AlphaPoint& to) const
 
 AlphaPoint AlphaCurve::lowest() const
 {
-    const auto least = std::min_element(points_.begin(), points_.end(), [](const AlphaPoint& a, const AlphaPoint& b) { return a.V < b.V; });
+    const auto least = std::min_element(points_.begin(), points_.end(),
+                                        [](const AlphaPoint& a, const AlphaPoint& b) { return a.V < b.V; });
     AlphaPoint best = *least;
-    double low = (least == points_.begin() ? least : least - 1)->alpha, high = (least + 1 == points_.end() ? least : least + 1)->alpha;
+    double low = (least == points_.begin() ? least : least - 1)->alpha,
+           high = (least + 1 == points_.end() ? least : least + 1)->alpha;
     const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
     auto left = at(high - ratio * (high - low), best), right = at(low + ratio * (high - low), best);
     for (int k = 0; k < 18; ++k) {
@@ -136,19 +143,22 @@ double curvatureInAlpha(const PartialFractionFit& fit, const FrequencyData& data
         columns.middleCols(p * (n + 1), n) = partialFractionSlopes(sections, lambda, basis, c);
         for (Index k = 0; k < K; ++k) {
             const Complex mu = lambda[k] / sections.scale;
-            Complex slope = 0.0;   // dG/dmu
+            Complex slope = 0.0;  // dG/dmu
             for (Index i = 0; i < sections.pairs(); ++i) {
                 const Complex f = basis(k, 2 * i), g = basis(k, 2 * i + 1);
-                slope += c[2 * i + 1] * f - (c[2 * i] * f + c[2 * i + 1] * g) * (2.0 * mu + sections.factors[2 * i]) * f;
+                slope += c[2 * i + 1] * f
+                         - (c[2 * i] * f + c[2 * i + 1] * g) * (2.0 * mu + sections.factors[2 * i]) * f;
             }
             if (sections.odd())
                 slope -= c[n - 1] * basis(k, n - 1) * basis(k, n - 1);
             const double f = data.frequency[static_cast<std::size_t>(k)];
-            if (f > 0.0)   // at 0 Hz lambda does not move with alpha
-                columns(k, qr.columns() - 1) = slope * mu * Complex(std::log(2.0 * std::numbers::pi * f), 0.5 * std::numbers::pi);
+            if (f > 0.0)  // at 0 Hz lambda does not move with alpha
+                columns(k, qr.columns() - 1) = slope * mu
+                                               * Complex(std::log(2.0 * std::numbers::pi * f), 0.5 * std::numbers::pi);
         }
-        const Eigen::VectorXd weights = data.deviation.size() != 0 ? Eigen::VectorXd(data.deviation.col(o).cwiseInverse())
-                                                                   : Eigen::VectorXd(weightsOf(data).col(o));
+        const Eigen::VectorXd weights = data.deviation.size() != 0
+                                            ? Eigen::VectorXd(data.deviation.col(o).cwiseInverse())
+                                            : Eigen::VectorXd(weightsOf(data).col(o));
         Eigen::MatrixXd rows(2 * K, qr.columns());
         rows << weights.asDiagonal() * columns.real(), weights.asDiagonal() * columns.imag();
         qr.fold(rows);
@@ -157,4 +167,4 @@ double curvatureInAlpha(const PartialFractionFit& fit, const FrequencyData& data
     return 2.0 * length * length;
 }
 
-} // namespace excursion
+}  // namespace excursion

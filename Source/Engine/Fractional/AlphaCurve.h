@@ -13,12 +13,13 @@ namespace excursion {
 /// The best fit of a fractional model at one alpha.
 struct AlphaPoint {
     double alpha = 0.0;
-    double V = std::numeric_limits<double>::infinity();   ///< sum |e|^2/sigma^2; without deviations the cost
+    double V = std::numeric_limits<double>::infinity();  ///< sum |e|^2/sigma^2; without deviations the cost
     PartialFractionFit fit;
     std::string start, reason;
 };
 
-/// The curve V(alpha), everything but alpha at its best (see FractionalOptions). Refers to data and options, which must outlive it.
+/// The curve V(alpha), everything but alpha at its best (see FractionalOptions). Refers to data and options, which must
+/// outlive it.
 class AlphaCurve {
 public:
     AlphaCurve(const FrequencyData& data, const FractionalOptions& options) : data_(data), options_(options) {}
@@ -33,7 +34,7 @@ public:
     /// The lowest point about the lowest of the grid, by golden section.
     AlphaPoint lowest() const;
 
-    const std::vector<AlphaPoint>& points() const { return points_; }   ///< of the grid, ascending
+    const std::vector<AlphaPoint>& points() const { return points_; }  ///< of the grid, ascending
 
 private:
     void offer(const AlphaPoint& from, AlphaPoint& to) const;
@@ -43,11 +44,12 @@ private:
     std::vector<AlphaPoint> points_;
 };
 
-/// d2V/dalpha2 of the curve, from the Jacobian: twice the squared length of dG/dalpha/sigma at right angles to the derivatives by poles, C and D.
-/// Differences of V would ask for searches that all end in the same minimum to many digits. Without deviations 1/sigma is weightsOf().
+/// d2V/dalpha2 of the curve, from the Jacobian: twice the squared length of dG/dalpha/sigma at right angles to the
+/// derivatives by poles, C and D. Differences of V would ask for searches that all end in the same minimum to many
+/// digits. Without deviations 1/sigma is weightsOf().
 double curvatureInAlpha(const PartialFractionFit&, const FrequencyData&);
 
 /// The linear identification that one alpha asks for.
 IdentifyOptions linearOptions(const FractionalOptions&, double alpha);
 
-} // namespace excursion
+}  // namespace excursion

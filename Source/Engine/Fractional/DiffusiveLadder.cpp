@@ -36,7 +36,7 @@ Tail tailAbove(double edge, double a, double step)
     return {moment(1) - resistance / rate, rate, resistance};
 }
 
-} // namespace
+}  // namespace
 
 Complex DiffusiveLadder::power(Complex s) const
 {
@@ -56,9 +56,12 @@ Complex DiffusiveLadder::integral(Complex s) const
 
 bool LadderOptions::isValid(std::string* reason) const
 {
-    const bool valid = lowFrequency > 0.0 && highFrequency > lowFrequency && std::isfinite(highFrequency) && cellsPerDecade >= 0.5
-                    && cellsPerDecade <= 8.0;
-    return valid || refuse(reason, "a ladder needs a band that begins above 0 Hz and ends above its begin, and 0.5 to 8 cells a decade");
+    const bool valid = lowFrequency > 0.0 && highFrequency > lowFrequency && std::isfinite(highFrequency)
+                       && cellsPerDecade >= 0.5 && cellsPerDecade <= 8.0;
+    return valid
+           || refuse(
+               reason,
+               "a ladder needs a band that begins above 0 Hz and ends above its begin, and 0.5 to 8 cells a decade");
 }
 
 DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
@@ -67,11 +70,13 @@ DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "There is no such ladder: " + reason + ".");
     if (!(exponent > 0.0 && exponent < 1.0))
-        throw Error(Error::Kind::usage, "A ladder realizes powers between 0 and 1, not " + std::to_string(exponent) + ".");
+        throw Error(Error::Kind::usage,
+                    "A ladder realizes powers between 0 and 1, not " + std::to_string(exponent) + ".");
     const double step = std::log(10.0) / options.cellsPerDecade;
     // A decade beyond the band gains some 4 decades of accuracy, and the rule itself has pi^2/step nepers.
     const double margin = pi * pi / step / 3.5;
-    const double low = std::log(2.0 * pi * options.lowFrequency) - margin, high = std::log(2.0 * pi * options.highFrequency) + margin;
+    const double low = std::log(2.0 * pi * options.lowFrequency) - margin,
+                 high = std::log(2.0 * pi * options.highFrequency) + margin;
     const auto inner = static_cast<Eigen::Index>(std::ceil((high - low) / step));
     const double start = 0.5 * (low + high - step * static_cast<double>(inner - 1));
 
@@ -80,7 +85,8 @@ DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
     ladder.rates.resize(inner + 2);
     for (Eigen::Index k = 0; k < inner; ++k)
         ladder.rates[k + 1] = std::exp(start + step * static_cast<double>(k));
-    const auto below = tailBelow(ladder.rates[1], exponent, step), above = tailAbove(ladder.rates[inner], exponent, step);
+    const auto below = tailBelow(ladder.rates[1], exponent, step),
+               above = tailAbove(ladder.rates[inner], exponent, step);
     ladder.rates[0] = below.rate;
     ladder.rates[inner + 1] = above.rate;
     ladder.resistances = ladder.rates.array().pow(exponent);
@@ -93,4 +99,4 @@ DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
     return ladder;
 }
 
-} // namespace excursion
+}  // namespace excursion

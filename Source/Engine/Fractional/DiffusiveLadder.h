@@ -8,20 +8,22 @@
 
 namespace excursion {
 
-/// The diffusive (ladder) realization of a fractional power on a band: first-order memories with rates spread over the logarithm,
+/// The diffusive (ladder) realization of a fractional power on a band: first-order memories with rates spread over the
+/// logarithm,
 ///     s^a ~ R + L s + sum_k R_k s/(s + p_k),     0 < a < 1,
 /// and as s^(a-1) = s^a / s the integral with it,
 ///     s^(a-1) ~ L + R/s + sum_k R_k/(s + p_k).
 /// It comes from s^a = (sin(pi a)/pi) int_0^inf p^a s/(s + p) d ln p by the trapezoidal rule at p_k = p_0 q^k, of which
 ///     R_k = (sin(pi a)/pi) p_k^a ln q,     relative error 2 exp(-pi^2/ln q): a factor of 73 with each cell a decade.
-/// The rule's tails, below and above the cells kept, are series in p/s and s/p whose first three moments (geometric series) R, L and
-/// one more cell on each side match; cells beyond the band make up for the rest, some 10 000 times less a decade. All numbers are positive: a passive network.
+/// The rule's tails, below and above the cells kept, are series in p/s and s/p whose first three moments (geometric
+/// series) R, L and one more cell on each side match; cells beyond the band make up for the rest, some 10 000 times
+/// less a decade. All numbers are positive: a passive network.
 struct DiffusiveLadder {
-    double exponent = 0.5;             ///< a
-    double resistance = 0.0;           ///< R
-    double inductance = 0.0;           ///< L
-    Eigen::VectorXd rates;             ///< p_k in 1/s, ascending
-    Eigen::VectorXd resistances;       ///< R_k
+    double exponent = 0.5;        ///< a
+    double resistance = 0.0;      ///< R
+    double inductance = 0.0;      ///< L
+    Eigen::VectorXd rates;        ///< p_k in 1/s, ascending
+    Eigen::VectorXd resistances;  ///< R_k
 
     Eigen::Index cells() const { return rates.size(); }
 
@@ -35,7 +37,7 @@ struct DiffusiveLadder {
 ///     error  2.8e-2  3.3e-3  3.8e-4  5.3e-6  7.3e-8  1.0e-9
 /// that of the rule itself times sin(pi a).
 struct LadderOptions {
-    double lowFrequency = 10.0, highFrequency = 20000.0;   ///< Hz
+    double lowFrequency = 10.0, highFrequency = 20000.0;  ///< Hz
     double cellsPerDecade = 3.0;
 
     bool isValid(std::string* reason = nullptr) const;
@@ -44,4 +46,4 @@ struct LadderOptions {
 /// Throws Error (usage) unless 0 < exponent < 1 and the options are valid.
 DiffusiveLadder ladderFor(double exponent, const LadderOptions&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double notKnown = std::numeric_limits<double>::quiet_NaN();
-constexpr double asWell = 2.0;   // a rise of V that two standard errors make
+constexpr double asWell = 2.0;  // a rise of V that two standard errors make
 
 std::string decimals(double x)
 {
@@ -33,10 +33,12 @@ Index parametersOf(const FrequencyData& data, int order, bool free)
 /// Complex values less what the parameters of a free alpha take of them.
 double freedomOf(const FrequencyData& data, int order)
 {
-    return std::max(1.0, static_cast<double>(data.value.size()) - 0.5 * static_cast<double>(parametersOf(data, order, true)));
+    return std::max(1.0, static_cast<double>(data.value.size())
+                             - 0.5 * static_cast<double>(parametersOf(data, order, true)));
 }
 
-/// Where the curve, in units of another (`unit`), stays within what two standard errors make above `least`; first above second: nowhere.
+/// Where the curve, in units of another (`unit`), stays within what two standard errors make above `least`; first above
+/// second: nowhere.
 std::pair<double, double> rangeOf(const std::vector<AlphaLikelihood>& curve, double least, double unit = 1.0)
 {
     std::pair<double, double> range {2.0, 0.0};
@@ -46,7 +48,8 @@ std::pair<double, double> rangeOf(const std::vector<AlphaLikelihood>& curve, dou
     return range;
 }
 
-FractionalIdentification fixedAlpha(const FrequencyData& data, const FractionalOptions& options, const Progress& progress)
+FractionalIdentification fixedAlpha(const FrequencyData& data, const FractionalOptions& options,
+                                    const Progress& progress)
 {
     auto found = identify(data, linearOptions(options, *options.alpha), progress);
     FractionalIdentification result;
@@ -59,7 +62,8 @@ FractionalIdentification fixedAlpha(const FrequencyData& data, const FractionalO
     return result;
 }
 
-FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOptions& options, const Progress& progress)
+FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOptions& options,
+                                   const Progress& progress)
 {
     AlphaCurve curve(data, options);
     curve.search(progress.part(0.0, 0.85));
@@ -81,27 +85,31 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
     result.reason = best.reason;
     for (const auto& point : curve.points())
         result.curve.push_back({point.alpha, point.V / unit});
-    const auto above = std::find_if(result.curve.begin(), result.curve.end(), [&](const auto& p) { return p.alpha > best.alpha; });
+    const auto above = std::find_if(result.curve.begin(), result.curve.end(),
+                                    [&](const auto& p) { return p.alpha > best.alpha; });
     result.curve.insert(above, {best.alpha, best.V / unit});
 
     const bool inside = best.alpha > options.leastAlpha + 1e-3 && best.alpha < options.mostAlpha - 1e-3;
-    // Of the noise, or of what is left where that is more; without deviations V is the cost, over the power that curvatureInAlpha() does not divide by.
+    // Of the noise, or of what is left where that is more; without deviations V is the cost, over the power that
+    // curvatureInAlpha() does not divide by.
     const double left = known ? best.V : best.V * weightsOf(data).cwiseProduct(data.value.cwiseAbs()).squaredNorm();
     const double spread = known ? std::max(1.0, left / freedom) : left / freedom;
     result.alphaDeviation = inside && second > 0.0 ? std::sqrt(spread / second) : notKnown;
     const auto [low, high] = rangeOf(result.curve, best.V / unit);
     if (!inside)
-        result.warning = "The error falls towards the end of the search at alpha " + decimals(best.alpha) + ", so alpha is not determined.";
+        result.warning = "The error falls towards the end of the search at alpha " + decimals(best.alpha)
+                         + ", so alpha is not determined.";
     else if (!std::isfinite(result.alphaDeviation) || high > best.alpha + 3.0 * result.alphaDeviation + options.gridStep
              || low < best.alpha - 3.0 * result.alphaDeviation - options.gridStep)
-        result.warning = "At order " + std::to_string(options.order) + " any alpha from " + decimals(low) + " to " + decimals(high)
-                       + " explains the data within two standard errors, so alpha is not determined; a lower order may tell.";
+        result.warning =
+            "At order " + std::to_string(options.order) + " any alpha from " + decimals(low) + " to " + decimals(high)
+            + " explains the data within two standard errors, so alpha is not determined; a lower order may tell.";
     if (!result.warning.empty())
         result.alphaDeviation = notKnown;
     return result;
 }
 
-} // namespace
+}  // namespace
 
 bool FractionalOptions::isValid(std::string* reason) const
 {
@@ -112,20 +120,23 @@ bool FractionalOptions::isValid(std::string* reason) const
     return linearOptions(*this, alpha.value_or(1.0)).isValid(reason);
 }
 
-FractionalIdentification identifyFractional(const FrequencyData& data, const FractionalOptions& options, const Progress& progress)
+FractionalIdentification identifyFractional(const FrequencyData& data, const FractionalOptions& options,
+                                            const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The frequency response cannot be identified: " + reason + ".");
     if (data.inputs != 1)
-        throw Error(Error::Kind::data, "Fractional models are identified from responses to one input; these are to " + std::to_string(data.inputs) + ".");
+        throw Error(Error::Kind::data, "Fractional models are identified from responses to one input; these are to "
+                                           + std::to_string(data.inputs) + ".");
     auto result = options.alpha ? fixedAlpha(data, options, progress) : freeAlpha(data, options, progress);
     result.sectorMargin = sectorMargin(result.model);
     result.stable = result.sectorMargin > 0.0;
     return result;
 }
 
-FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int>& orders, const FractionalOptions& options, const Progress& progress)
+FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int>& orders,
+                                const FractionalOptions& options, const Progress& progress)
 {
     if (orders.empty() || !std::is_sorted(orders.begin(), orders.end(), std::less_equal<> {}))
         throw Error(Error::Kind::usage, "The orders of a sweep must ascend.");
@@ -136,9 +147,11 @@ FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int
         single.order = orders[k];
         FractionalSweep::Entry entry;
         entry.order = orders[k];
-        entry.found = identifyFractional(data, single, progress.part(static_cast<double>(k) / count, static_cast<double>(k + 1) / count));
-        entry.mdl = (data.deviation.size() != 0 ? 2.0 * entry.found.likelihood : values * std::log(std::max(entry.found.cost, 1e-26)))
-                  + static_cast<double>(parametersOf(data, orders[k], !options.alpha)) * std::log(values);
+        entry.found = identifyFractional(
+            data, single, progress.part(static_cast<double>(k) / count, static_cast<double>(k + 1) / count));
+        entry.mdl = (data.deviation.size() != 0 ? 2.0 * entry.found.likelihood
+                                                : values * std::log(std::max(entry.found.cost, 1e-26)))
+                    + static_cast<double>(parametersOf(data, orders[k], !options.alpha)) * std::log(values);
         sweep.entries.push_back(std::move(entry));
     }
     for (std::size_t k = 1; k < sweep.entries.size(); ++k)
@@ -151,17 +164,21 @@ FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int
     // V of all entries in the unit of the chosen one
     const bool deviations = data.deviation.size() != 0;
     const double least = deviations ? chosen.found.likelihood : freedomOf(data, chosen.order);
-    const double alpha = chosen.found.model.alpha, away = std::isfinite(chosen.found.alphaDeviation) ? 3.0 * chosen.found.alphaDeviation : 0.0;
+    const double alpha = chosen.found.model.alpha,
+                 away = std::isfinite(chosen.found.alphaDeviation) ? 3.0 * chosen.found.alphaDeviation : 0.0;
     for (const auto& entry : sweep.entries) {
-        const double unit = deviations ? 1.0 : entry.found.cost / freedomOf(data, entry.order) * freedomOf(data, chosen.order) / chosen.found.cost;
+        const double unit = deviations ? 1.0
+                                       : entry.found.cost / freedomOf(data, entry.order) * freedomOf(data, chosen.order)
+                                             / chosen.found.cost;
         const auto [low, high] = rangeOf(entry.found.curve, least, unit);
         if (&entry == &chosen || low > high || (high <= alpha + away && low >= alpha - away))
             continue;
-        sweep.warning = "Order and alpha are ambiguous: order " + std::to_string(entry.order) + " explains the data as well with alpha from " + decimals(low)
-                      + " to " + decimals(high) + "; order " + std::to_string(chosen.order) + " says " + decimals(alpha) + ".";
+        sweep.warning = "Order and alpha are ambiguous: order " + std::to_string(entry.order)
+                        + " explains the data as well with alpha from " + decimals(low) + " to " + decimals(high)
+                        + "; order " + std::to_string(chosen.order) + " says " + decimals(alpha) + ".";
         break;
     }
     return sweep;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,19 +10,21 @@
 
 namespace excursion {
 
-/// Identification of a commensurate fractional model from a frequency response (seed 5.3): that of Engine/Linear in lambda = s^alpha, on
-/// lambda_k = (j w_k)^alpha. The seed takes powers of lambda_k and no weights, and finds models that are unstable; here the lines are weighted by their
-/// standard deviation, the polynomials are orthonormal on them, the start is refined to maximum likelihood, and its poles stay out of Matignon's sector.
+/// Identification of a commensurate fractional model from a frequency response (seed 5.3): that of Engine/Linear in
+/// lambda = s^alpha, on lambda_k = (j w_k)^alpha. The seed takes powers of lambda_k and no weights, and finds models
+/// that are unstable; here the lines are weighted by their standard deviation, the polynomials are orthonormal on them,
+/// the start is refined to maximum likelihood, and its poles stay out of Matignon's sector.
 ///
-/// With alpha free, the likelihood with everything else at its best is a curve in alpha alone: V(alpha) = sum |e|^2/sigma^2 = -ln L. It is searched on
-/// a grid, each point with starts of its own, then by golden section about the lowest point, with poles carried from one alpha to the next
-/// as lambda^(alpha'/alpha). Its curvature is Fisher's information, taken from the Jacobian: deviation = (d2V/dalpha2)^(-1/2). Where the model leaves more than the noise, or
-/// no standard deviations are known, the noise is what is left, over K - P/2 complex values of P parameters.
+/// With alpha free, the likelihood with everything else at its best is a curve in alpha alone: V(alpha) = sum
+/// |e|^2/sigma^2 = -ln L. It is searched on a grid, each point with starts of its own, then by golden section about the
+/// lowest point, with poles carried from one alpha to the next as lambda^(alpha'/alpha). Its curvature is Fisher's
+/// information, taken from the Jacobian: deviation = (d2V/dalpha2)^(-1/2). Where the model leaves more than the noise,
+/// or no standard deviations are known, the noise is what is left, over K - P/2 complex values of P parameters.
 struct FractionalOptions {
     int order = 5;
-    std::optional<double> alpha;                    ///< empty: free
-    double leastAlpha = 0.2, mostAlpha = 1.2, gridStep = 0.05;   ///< where a free alpha is looked for
-    bool thorough = true;                           ///< as IdentifyOptions::thorough
+    std::optional<double> alpha;                                ///< empty: free
+    double leastAlpha = 0.2, mostAlpha = 1.2, gridStep = 0.05;  ///< where a free alpha is looked for
+    bool thorough = true;                                       ///< as IdentifyOptions::thorough
     PoleRefinementOptions refinement;
 
     bool isValid(std::string* reason = nullptr) const;
@@ -35,13 +37,17 @@ struct AlphaLikelihood {
 
 struct FractionalIdentification {
     FractionalStateSpace model;
-    double alphaDeviation = 0.0;    ///< standard error of alpha; 0 where alpha was given, NaN where it is not determined, as `warning` says
-    double cost = 0.0, errorDb = 0.0, likelihood = 0.0;   ///< as of LinearIdentification; the likelihood NaN without deviations
-    double sectorMargin = 0.0;      ///< rad
+    /// standard error of alpha; 0 where alpha was given, NaN where it is not determined, as `warning` says
+    double alphaDeviation = 0.0;
+    /// as of LinearIdentification; the likelihood NaN without deviations
+    double cost = 0.0, errorDb = 0.0, likelihood = 0.0;
+    double sectorMargin = 0.0;  ///< rad
     bool stable = false;
     std::string start, reason = "nothing was identified";
-    std::vector<AlphaLikelihood> curve;   ///< of the search for alpha, ascending; V relative to what is left where deviations are not known
-    std::string warning;            ///< a sentence where alpha is not determined: another alpha does as well, or the curve is flat; else empty
+    /// of the search for alpha, ascending; V relative to what is left where deviations are not known
+    std::vector<AlphaLikelihood> curve;
+    /// a sentence where alpha is not determined: another alpha does as well, or the curve is flat; else empty
+    std::string warning;
 };
 
 /// Throws Error (usage, data, numerical) as identify() does, and for an alpha or a search outside of (0, 2).
@@ -52,15 +58,17 @@ struct FractionalSweep {
     struct Entry {
         int order = 0;
         FractionalIdentification found;
-        double mdl = 0.0;        ///< as OrderSweep's, a free alpha counted as a parameter
+        double mdl = 0.0;  ///< as OrderSweep's, a free alpha counted as a parameter
     };
-    std::vector<Entry> entries;   ///< by ascending order
-    std::size_t chosen = 0;       ///< the lowest MDL
-    std::string sentence;         ///< why that one
-    std::string warning;          ///< a sentence where another order explains the data as well with another alpha; else empty
+    std::vector<Entry> entries;  ///< by ascending order
+    std::size_t chosen = 0;      ///< the lowest MDL
+    std::string sentence;        ///< why that one
+    /// a sentence where another order explains the data as well with another alpha; else empty
+    std::string warning;
 };
 
 /// @param orders  ascending
-FractionalSweep sweepFractional(const FrequencyData&, const std::vector<int>& orders, const FractionalOptions&, const Progress& = {});
+FractionalSweep sweepFractional(const FrequencyData&, const std::vector<int>& orders, const FractionalOptions&,
+                                const Progress& = {});
 
-} // namespace excursion
+}  // namespace excursion

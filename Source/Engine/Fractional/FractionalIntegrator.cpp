@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double forgotten = 40.0;   // exp(-40) is below rounding
+constexpr double forgotten = 40.0;  // exp(-40) is below rounding
 
 /// int_0^1 exp(-x (1 - s)) s^m ds, m = 0 .. 3.
 Eigen::Vector4d moments(double x)
@@ -39,26 +39,28 @@ Eigen::RowVector4d weights(double rate, double step)
 {
     const auto I = moments(rate * step);
     return step
-         * Eigen::RowVector4d((I[3] + 3.0 * I[2] + 2.0 * I[1]) / 6.0, -(I[3] + 2.0 * I[2] - I[1] - 2.0 * I[0]) / 2.0,
-                              (I[3] + I[2] - 2.0 * I[1]) / 2.0, -(I[3] - I[1]) / 6.0);
+           * Eigen::RowVector4d((I[3] + 3.0 * I[2] + 2.0 * I[1]) / 6.0, -(I[3] + 2.0 * I[2] - I[1] - 2.0 * I[0]) / 2.0,
+                                (I[3] + I[2] - 2.0 * I[1]) / 2.0, -(I[3] - I[1]) / 6.0);
 }
 
-} // namespace
+}  // namespace
 
 std::complex<double> FractionalIntegrator::response(std::complex<double> z) const
 {
     const auto back = 1.0 / z;
     const Eigen::Vector4cd powers(1.0, back, back * back, back * back * back);
     std::complex<double> sum = (direct.cast<std::complex<double>>().array() * powers.array()).sum();
-    for (Index k = 0; k < cells(); ++k)   // what the cell holds from before, one step later
-        sum += readout[k] * decay[k] * back * (weight.row(k).cast<std::complex<double>>() * powers).value() / (1.0 - decay[k] * back);
+    for (Index k = 0; k < cells(); ++k)  // what the cell holds from before, one step later
+        sum += readout[k] * decay[k] * back * (weight.row(k).cast<std::complex<double>>() * powers).value()
+               / (1.0 - decay[k] * back);
     return sum;
 }
 
 FractionalIntegrator integratorFor(double alpha, double step, const LadderOptions& band)
 {
     if (!(alpha > 0.0 && alpha <= 1.0) || !(step > 0.0))
-        throw Error(Error::Kind::usage, "A fractional integral needs an order above 0 and at most 1, and a step above 0 s.");
+        throw Error(Error::Kind::usage,
+                    "A fractional integral needs an order above 0 and at most 1, and a step above 0 s.");
     DiffusiveLadder ladder;
     if (alpha == 1.0) {
         ladder.rates = Eigen::VectorXd::Zero(1);
@@ -74,7 +76,8 @@ FractionalIntegrator integratorFor(double alpha, double step, const LadderOption
     }
     // The last cell matches the tail and moves with alpha: it is kept only where the one before it is.
     Index kept = 0;
-    while (kept < ladder.cells() && ladder.rates[kept + (kept + 1 == ladder.cells() && kept > 0 ? -1 : 0)] * step <= forgotten)
+    while (kept < ladder.cells()
+           && ladder.rates[kept + (kept + 1 == ladder.cells() && kept > 0 ? -1 : 0)] * step <= forgotten)
         ++kept;
     FractionalIntegrator integrator;
     integrator.decay = (-step * ladder.rates.head(kept)).array().exp();
@@ -96,8 +99,8 @@ FractionalIntegrator integratorSlope(double alpha, double step, const LadderOpti
     if (!(h > 0.0))
         throw Error(Error::Kind::usage, "Only an order between 0 and 1 has a slope on both sides.");
     const auto above = integratorFor(alpha + h, step, band), below = integratorFor(alpha - h, step, band);
-    return {(above.decay - below.decay) / (2.0 * h), (above.weight - below.weight) / (2.0 * h), (above.readout - below.readout) / (2.0 * h),
-            (above.direct - below.direct) / (2.0 * h)};
+    return {(above.decay - below.decay) / (2.0 * h), (above.weight - below.weight) / (2.0 * h),
+            (above.readout - below.readout) / (2.0 * h), (above.direct - below.direct) / (2.0 * h)};
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -31,8 +31,11 @@ FractionalPruning prune(const FractionalStateSpace& model, const FrequencyData& 
     if (!isStable(model))
         throw Error(Error::Kind::data, "Only stable models are pruned; stabilize it first.");
     const double scale = std::pow(2.0 * std::numbers::pi * data.frequency.back(), model.alpha);
-    auto pruned = prune(fitPartialFractions(sectionsOf(poles(model.form), 0.0, scale, model.alpha), data), data, options, progress);
-    return {{model.alpha, realize(pruned.fit.sections, pruned.fit.C, pruned.fit.D)}, std::move(pruned.steps), std::move(pruned.reason)};
+    auto pruned = prune(fitPartialFractions(sectionsOf(poles(model.form), 0.0, scale, model.alpha), data), data,
+                        options, progress);
+    return {{model.alpha, realize(pruned.fit.sections, pruned.fit.C, pruned.fit.D)},
+            std::move(pruned.steps),
+            std::move(pruned.reason)};
 }
 
-} // namespace excursion
+}  // namespace excursion

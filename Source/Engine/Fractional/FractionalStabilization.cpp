@@ -5,14 +5,15 @@
 
 namespace excursion {
 
-FractionalStabilization stabilized(const FractionalStateSpace& model, const FrequencyData& data, StabilizeOptions options,
-                                   const Progress& progress)
+FractionalStabilization stabilized(const FractionalStateSpace& model, const FrequencyData& data,
+                                   StabilizeOptions options, const Progress& progress)
 {
     std::string reason;
     if (!model.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be stabilized: " + reason + ".");
     if (options.method == StabilizingMethod::delay)
-        throw Error(Error::Kind::usage, "No delay is fitted with a model of fractional order; mirror, project or decompose it.");
+        throw Error(Error::Kind::usage,
+                    "No delay is fitted with a model of fractional order; mirror, project or decompose it.");
     options.alpha = model.alpha;
     auto found = stabilized(model.form, data, options, progress);
     FractionalStabilization result;
@@ -29,4 +30,4 @@ FractionalStabilization stabilized(const FractionalStateSpace& model, const Freq
 
 FrequencyData sampled(const FractionalStateSpace& model, int lines) { return sampled(model.form, lines, model.alpha); }
 
-} // namespace excursion
+}  // namespace excursion

@@ -45,4 +45,4 @@ double sectorMargin(const FractionalStateSpace& model)
 
 bool isStable(const FractionalStateSpace& model) { return sectorMargin(model) > 0.0; }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 constexpr auto formatName = "excursion-fractional-state-space";
 constexpr int formatVersion = 1;
 
-} // namespace
+}  // namespace
 
 Json toJson(const NamedFractionalStateSpace& named)
 {
@@ -43,6 +43,9 @@ NamedFractionalStateSpace readFractionalStateSpace(const std::filesystem::path& 
     return fractionalStateSpaceFromJson(JsonField(document, "", path.string()));
 }
 
-void writeFractionalStateSpace(const NamedFractionalStateSpace& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
+void writeFractionalStateSpace(const NamedFractionalStateSpace& named, const std::filesystem::path& path)
+{
+    writeJson(toJson(named), path);
+}
 
-} // namespace excursion
+}  // namespace excursion

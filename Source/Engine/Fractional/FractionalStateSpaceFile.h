@@ -6,20 +6,22 @@
 
 namespace excursion {
 
-/// A fractional model with the names of what it connects, as the document "excursion-fractional-state-space" 1 keeps it: `alpha`, and `form`,
-/// the A, B, C, D in lambda = s^alpha as a document "excursion-state-space" of continuous time.
+/// A fractional model with the names of what it connects, as the document "excursion-fractional-state-space" 1 keeps
+/// it: `alpha`, and `form`, the A, B, C, D in lambda = s^alpha as a document "excursion-state-space" of continuous
+/// time.
 struct NamedFractionalStateSpace {
     std::string name;
-    std::vector<std::string> inputs, outputs;   ///< quantities, "voltage"
+    std::vector<std::string> inputs, outputs;  ///< quantities, "voltage"
     FractionalStateSpace model;
 };
 
 nlohmann::ordered_json toJson(const NamedFractionalStateSpace&);
 
-/// Throws Error (input) naming the field when the document is none of these, alpha is not between 0 and 2, or shapes do not fit.
+/// Throws Error (input) naming the field when the document is none of these, alpha is not between 0 and 2, or shapes do
+/// not fit.
 NamedFractionalStateSpace fractionalStateSpaceFromJson(const JsonField&);
 
 NamedFractionalStateSpace readFractionalStateSpace(const std::filesystem::path&);
 void writeFractionalStateSpace(const NamedFractionalStateSpace&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,7 +10,7 @@ inline double reciprocalGamma(double x)
 {
     if (x <= 0.0 && x == std::nearbyint(x))
         return 0.0;
-    return 1.0 / std::tgamma(x);   // beyond the range of Gamma: 1/inf
+    return 1.0 / std::tgamma(x);  // beyond the range of Gamma: 1/inf
 }
 
-} // namespace excursion
+}  // namespace excursion

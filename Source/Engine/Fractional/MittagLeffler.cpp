@@ -16,8 +16,9 @@ namespace {
 using Complex = std::complex<double>;
 using std::numbers::pi;
 
-constexpr double nepers = 41.0;   // e^-41 = 1.6e-18: what truncation and step may leave of the largest integrand
-constexpr double seriesRadius = 0.9, poleRadius = 1.5;   // the series is taken for |z| up to the one, or |z|^(1/alpha) up to the other
+constexpr double nepers = 41.0;  // e^-41 = 1.6e-18: what truncation and step may leave of the largest integrand
+// the series is taken for |z| up to the one, or |z|^(1/alpha) up to the other
+constexpr double seriesRadius = 0.9, poleRadius = 1.5;
 
 Complex series(double alpha, double beta, Complex z)
 {
@@ -25,7 +26,8 @@ Complex series(double alpha, double beta, Complex z)
     for (int k = 0, small = 0; k < 4000 && small < 4; ++k, power *= z) {
         const Complex term = power * reciprocalGamma(alpha * k + beta);
         sum += term;
-        small = alpha * k + beta > 1.0 && std::abs(term) <= 1e-18 * std::abs(sum) ? small + 1 : 0;   // before, 1/Gamma has zeros
+        // before, 1/Gamma has zeros
+        small = alpha * k + beta > 1.0 && std::abs(term) <= 1e-18 * std::abs(sum) ? small + 1 : 0;
     }
     return sum;
 }
@@ -35,13 +37,14 @@ struct Parabola {
     double mu, h, reach;
 };
 
-/// The rule errs by exp(-2 pi/h) for the branch point at u = j, near which the integrand grows like a power -p of the distance, by
-/// exp(2 pi/h - pi^2/(h^2 mu)) for the growth of e^s on the other side, and by the tails left off.
+/// The rule errs by exp(-2 pi/h) for the branch point at u = j, near which the integrand grows like a power -p of the
+/// distance, by exp(2 pi/h - pi^2/(h^2 mu)) for the growth of e^s on the other side, and by the tails left off.
 Parabola parabolaFor(double alpha, double beta)
 {
-    const double mu = std::max(1.0, beta - alpha);   // the saddle of e^s s^(alpha - beta): no cancellation between nodes
+    // the saddle of e^s s^(alpha - beta): no cancellation between nodes
+    const double mu = std::max(1.0, beta - alpha);
     const double p = std::max(1.0, 2.0 * beta);
-    double x = nepers;                               // pi/h
+    double x = nepers;  // pi/h
     for (int k = 0; k < 8; ++k)
         x = 0.5 * (nepers + p * (1.0 + std::log(std::max(2.0 * x / p, 1.0))));
     x = std::max(x, mu * (1.0 + std::sqrt(1.0 + nepers / mu)));
@@ -61,15 +64,17 @@ std::vector<Pole> polesOf(double alpha, double beta, Complex z, double mu)
 {
     std::vector<Pole> poles;
     const double size = std::log(std::abs(z)) / alpha, angle = std::arg(z);
-    for (int k = static_cast<int>(std::ceil(-0.5 * alpha - 0.5 * angle / pi)); angle + 2.0 * pi * k <= alpha * pi; ++k) {
+    for (int k = static_cast<int>(std::ceil(-0.5 * alpha - 0.5 * angle / pi)); angle + 2.0 * pi * k <= alpha * pi;
+         ++k) {
         const Complex logarithm(size, (angle + 2.0 * pi * k) / alpha);
         if (size > 700.0 && std::cos(logarithm.imag()) <= 0.0)
             continue;
         // Not exp(logarithm), which loses a few digits more.
-        const Complex s = std::polar(std::pow(std::abs(z), 1.0 / alpha), logarithm.imag()), exponent = s + (1.0 - beta) * logarithm;
+        const Complex s = std::polar(std::pow(std::abs(z), 1.0 / alpha), logarithm.imag()),
+                      exponent = s + (1.0 - beta) * logarithm;
         Pole pole;
         pole.u = Complex(0.0, 1.0) * (1.0 - std::exp(0.5 * logarithm) / std::sqrt(mu));
-        if (std::abs(s.real()) < 600.0)   // two factors lose fewer digits than the exponential of a sum
+        if (std::abs(s.real()) < 600.0)  // two factors lose fewer digits than the exponential of a sum
             pole.residue = std::exp(s) * std::exp((1.0 - beta) * logarithm) / alpha;
         else if (s.imag() == 0.0 && exponent.real() > 709.0 + std::log(alpha))
             pole.residue = std::numeric_limits<double>::infinity();
@@ -108,7 +113,7 @@ Complex inverted(double alpha, double beta, Complex z)
     const double logMu = std::log(path.mu);
     Complex sum = 0.0;
     for (int k = -count; k <= count; ++k) {
-        const Complex root(1.0, (k + tau) * path.h);   // s = mu root^2, ds = 2 j mu root du
+        const Complex root(1.0, (k + tau) * path.h);  // s = mu root^2, ds = 2 j mu root du
         const Complex logS = logMu + 2.0 * std::log(root), s = path.mu * root * root;
         sum += std::exp(s + (alpha - beta) * logS) / (std::exp(alpha * logS) - z) * root;
     }
@@ -123,18 +128,22 @@ Complex inverted(double alpha, double beta, Complex z)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 Complex mittagLeffler(double alpha, double beta, Complex z)
 {
-    if (!(alpha >= 0.05 && alpha <= 3.0 && beta >= -3.5 && beta <= 12.0 && std::isfinite(z.real()) && std::isfinite(z.imag())))
-        throw Error(Error::Kind::usage, "The Mittag-Leffler function is computed for alpha of 0.05 to 3, beta of -3.5 to 12 and finite arguments.");
+    if (!(alpha >= 0.05 && alpha <= 3.0 && beta >= -3.5 && beta <= 12.0 && std::isfinite(z.real())
+          && std::isfinite(z.imag())))
+        throw Error(
+            Error::Kind::usage,
+            "The Mittag-Leffler function is computed for alpha of 0.05 to 3, beta of -3.5 to 12 and finite arguments.");
     if (std::abs(z) <= std::max(seriesRadius, std::pow(poleRadius, alpha)))
         return series(alpha, beta, z);
     // Here the tail is no more than its rounding in the integral: E_{1,1-n}(z) = z^n e^z.
     if (alpha == 1.0 && beta <= 1.0 && beta == std::nearbyint(beta))
         return std::pow(z, static_cast<int>(1.0 - beta)) * std::exp(z);
-    // E_{alpha,beta} = (E_{alpha,beta-alpha} - 1/Gamma(beta - alpha))/z: where the tail's first term vanishes, the next one leads.
+    // E_{alpha,beta} = (E_{alpha,beta-alpha} - 1/Gamma(beta - alpha))/z: where the tail's first term vanishes, the next
+    // one leads.
     if (const double first = reciprocalGamma(beta - alpha); std::abs(first) < 0.1)
         return (inverted(alpha, beta - alpha, z) - first) / z;
     return inverted(alpha, beta, z);
@@ -142,4 +151,4 @@ Complex mittagLeffler(double alpha, double beta, Complex z)
 
 double mittagLeffler(double alpha, double beta, double z) { return mittagLeffler(alpha, beta, Complex(z, 0.0)).real(); }
 
-} // namespace excursion
+}  // namespace excursion

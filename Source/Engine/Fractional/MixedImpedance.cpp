@@ -36,7 +36,8 @@ Complex slopesAt(const MixedImpedance& z, double frequency, std::array<Complex, 
 {
     const Complex s(0.0, 2.0 * pi * frequency);
     const double w0 = 2.0 * pi * z.resonance;
-    const Complex power = z.semiInductance * std::pow(s, z.alpha), q = s * s + (w0 / z.quality) * s + w0 * w0, motional = z.motional * s / q;
+    const Complex power = z.semiInductance * std::pow(s, z.alpha), q = s * s + (w0 / z.quality) * s + w0 * w0,
+                  motional = z.motional * s / q;
     slope = {z.resistance,
              power,
              z.alpha * power * std::log(s),
@@ -49,7 +50,8 @@ Complex slopesAt(const MixedImpedance& z, double frequency, std::array<Complex, 
 /// sqrt(2) e/sigma, real and imaginary part: unit variance each.
 class Residual final : public ceres::CostFunction {
 public:
-    Residual(const FrequencyData& data, const Eigen::VectorXd& weights, bool freeAlpha) : data_(data), weights_(weights), freeAlpha_(freeAlpha)
+    Residual(const FrequencyData& data, const Eigen::VectorXd& weights, bool freeAlpha)
+        : data_(data), weights_(weights), freeAlpha_(freeAlpha)
     {
         set_num_residuals(2 * static_cast<int>(data.lines()));
         mutable_parameter_block_sizes()->push_back(P);
@@ -60,7 +62,9 @@ public:
         const auto model = modelOf(parameters[0]);
         std::array<Complex, P> slope;
         for (Index k = 0; k < data_.lines(); ++k) {
-            const Complex e = weights_[k] * (slopesAt(model, data_.frequency[static_cast<std::size_t>(k)], slope) - data_.value(k, 0));
+            const Complex e = weights_[k]
+                              * (slopesAt(model, data_.frequency[static_cast<std::size_t>(k)], slope)
+                                 - data_.value(k, 0));
             residuals[2 * k] = e.real();
             residuals[2 * k + 1] = e.imag();
             if (!std::isfinite(e.real()) || !std::isfinite(e.imag()))
@@ -70,7 +74,8 @@ public:
             for (int j = 0; j < P; ++j) {
                 const bool fixed = j == alphaIndex && !freeAlpha_;
                 jacobians[0][2 * k * P + j] = fixed ? 0.0 : weights_[k] * slope[static_cast<std::size_t>(j)].real();
-                jacobians[0][(2 * k + 1) * P + j] = fixed ? 0.0 : weights_[k] * slope[static_cast<std::size_t>(j)].imag();
+                jacobians[0][(2 * k + 1) * P + j] = fixed ? 0.0
+                                                          : weights_[k] * slope[static_cast<std::size_t>(j)].imag();
             }
         }
         return true;
@@ -87,7 +92,7 @@ MixedImpedance startFor(const FrequencyData& data, const Eigen::VectorXd& weight
 {
     const auto K = data.lines();
     const double low = data.frequency.front(), high = data.frequency.back();
-    Eigen::MatrixXd rows(2 * K, 4);   // R, L s^alpha, resonance, measured
+    Eigen::MatrixXd rows(2 * K, 4);  // R, L s^alpha, resonance, measured
     const auto place = [&](Index column, auto value) {
         for (Index k = 0; k < K; ++k) {
             const Complex z = weights[k] * value(k);
@@ -111,7 +116,8 @@ MixedImpedance startFor(const FrequencyData& data, const Eigen::VectorXd& weight
                 place(2, [&](Index k) { return s(k) / (s(k) * s(k) + (w0 / quality) * s(k) + w0 * w0); });
                 // Columns of unit length: they differ by many powers of ten.
                 const Eigen::Vector4d length = rows.colwise().norm();
-                const Eigen::Matrix4d normal = length.cwiseInverse().asDiagonal() * (rows.transpose() * rows) * length.cwiseInverse().asDiagonal();
+                const Eigen::Matrix4d normal = length.cwiseInverse().asDiagonal() * (rows.transpose() * rows)
+                                               * length.cwiseInverse().asDiagonal();
                 const Eigen::Vector3d x = normal.topLeftCorner<3, 3>().ldlt().solve(normal.col(3).head<3>());
                 const double left = 1.0 - x.dot(normal.col(3).head<3>());
                 if (x.allFinite() && x.minCoeff() > 0.0 && left < least) {
@@ -122,11 +128,12 @@ MixedImpedance startFor(const FrequencyData& data, const Eigen::VectorXd& weight
             }
     }
     if (!std::isfinite(least))
-        throw Error(Error::Kind::numerical, "No impedance R + L s^alpha with a resonance resembles the response; R, L and the resonance must be positive.");
+        throw Error(Error::Kind::numerical, "No impedance R + L s^alpha with a resonance resembles the response; R, L "
+                                            "and the resonance must be positive.");
     return best;
 }
 
-} // namespace
+}  // namespace
 
 Complex MixedImpedance::at(double frequency) const
 {
@@ -152,8 +159,8 @@ MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpeda
         throw Error(Error::Kind::data, "An impedance is fitted to one response on at least 6 lines above 0 Hz.");
     const bool known = data.deviation.size() != 0;
     const Eigen::VectorXd weights = std::sqrt(2.0)
-                                  * (known ? Eigen::VectorXd(data.deviation.col(0).cwiseInverse())
-                                           : Eigen::VectorXd(weightsOf(data).col(0)));
+                                    * (known ? Eigen::VectorXd(data.deviation.col(0).cwiseInverse())
+                                             : Eigen::VectorXd(weightsOf(data).col(0)));
     const auto start = startFor(data, weights, options.alpha);
     Parameters x;
     for (int k = 0; k < P; ++k)
@@ -180,8 +187,9 @@ MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpeda
     if (options.alpha)
         fit.model.alpha = *options.alpha;
     fit.converged = summary.termination_type == ceres::CONVERGENCE;
-    fit.reason = fit.converged ? "the error no longer falls" : summary.termination_type == ceres::NO_CONVERGENCE
-                   ? "the largest number of iterations was reached" : "the search broke down";
+    fit.reason = fit.converged                                       ? "the error no longer falls"
+                 : summary.termination_type == ceres::NO_CONVERGENCE ? "the largest number of iterations was reached"
+                                                                     : "the search broke down";
 
     Eigen::Matrix<double, Eigen::Dynamic, P, Eigen::RowMajor> J(2 * data.lines(), P);
     Eigen::VectorXd r(2 * data.lines());
@@ -196,13 +204,15 @@ MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpeda
         columns.middleCols(alphaIndex, P - 1 - alphaIndex) = J.rightCols(P - 1 - alphaIndex);
         columns.conservativeResize(Eigen::NoChange, P - 1);
     }
-    const Eigen::MatrixXd R = Eigen::HouseholderQR<Eigen::MatrixXd>(columns).matrixQR().topRows(free).triangularView<Eigen::Upper>();
+    const Eigen::MatrixXd R =
+        Eigen::HouseholderQR<Eigen::MatrixXd>(columns).matrixQR().topRows(free).triangularView<Eigen::Upper>();
     const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(free, free));
     std::array<double, P> error {};
     for (int k = 0, column = 0; k < P; ++k)
         if (!(options.alpha && k == alphaIndex)) {
             const auto j = static_cast<std::size_t>(k);
-            error[j] = std::sqrt(spread) * inverse.row(column++).norm() * fit.model.values()[j];   // of the logarithm, to the parameter's own unit
+            // of the logarithm, to the parameter's own unit
+            error[j] = std::sqrt(spread) * inverse.row(column++).norm() * fit.model.values()[j];
         }
     fit.deviation = {error[0], error[1], error[2], error[3], error[4], error[5]};
     double left = 0.0;
@@ -213,4 +223,4 @@ MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpeda
     return fit;
 }
 
-} // namespace excursion
+}  // namespace excursion

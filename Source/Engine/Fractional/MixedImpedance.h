@@ -10,48 +10,52 @@
 
 namespace excursion {
 
-/// The electrical impedance of an electrodynamic driver with a semi-inductance (seed 5.37), fractional and integer orders side by side as seed 5.5
-/// asks for:
+/// The electrical impedance of an electrodynamic driver with a semi-inductance (seed 5.37), fractional and integer
+/// orders side by side as seed 5.5 asks for:
 ///     Z(s) = R + L s^alpha + K s/(s^2 + (w0/Q) s + w0^2),     K = Bl^2/m,  w0 = sqrt(k/m),  w0/Q = r/m
 /// The seed prints L in henry for any alpha; its unit is ohm s^alpha.
 struct MixedImpedance {
-    double resistance = 0.0;       ///< R, ohm
-    double semiInductance = 0.0;   ///< L, ohm s^alpha
+    double resistance = 0.0;      ///< R, ohm
+    double semiInductance = 0.0;  ///< L, ohm s^alpha
     double alpha = 0.5;
-    double motional = 0.0;         ///< K, ohm/s
-    double resonance = 0.0;        ///< w0/(2 pi), Hz
-    double quality = 0.0;          ///< Q of the mechanics alone
+    double motional = 0.0;   ///< K, ohm/s
+    double resonance = 0.0;  ///< w0/(2 pi), Hz
+    double quality = 0.0;    ///< Q of the mechanics alone
 
     static constexpr int parameters = 6;
 
     std::complex<double> at(double frequency) const;
 
     /// In the order of the members.
-    std::array<double, parameters> values() const { return {resistance, semiInductance, alpha, motional, resonance, quality}; }
+    std::array<double, parameters> values() const
+    {
+        return {resistance, semiInductance, alpha, motional, resonance, quality};
+    }
 };
 
 struct MixedImpedanceOptions {
-    std::optional<double> alpha;   ///< empty: free
+    std::optional<double> alpha;  ///< empty: free
     int maximumIterations = 100;
 
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// Maximum likelihood for Gaussian noise: Levenberg-Marquardt (Ceres) on sum |e|^2/sigma^2 over the logarithms of all parameters, all of which are
-/// above 0, with an analytic Jacobian, from the best of a grid in alpha, w0 and Q with R, L and K by linear least squares.
-/// Standard errors are the square roots of the diagonal of Fisher's inverse; where the model leaves more than the noise, or no standard
-/// deviations are known, the noise is what is left over.
+/// Maximum likelihood for Gaussian noise: Levenberg-Marquardt (Ceres) on sum |e|^2/sigma^2 over the logarithms of all
+/// parameters, all of which are above 0, with an analytic Jacobian, from the best of a grid in alpha, w0 and Q with R,
+/// L and K by linear least squares. Standard errors are the square roots of the diagonal of Fisher's inverse; where the
+/// model leaves more than the noise, or no standard deviations are known, the noise is what is left over.
 struct MixedImpedanceFit {
     MixedImpedance model;
-    MixedImpedance deviation;      ///< standard error of each parameter; of a given alpha 0
-    double errorDb = 0.0;          ///< unweighted relative rms error (seed 4.26)
-    double likelihood = 0.0;       ///< sum |e|^2/sigma^2, about 1 a line when all but noise is explained; NaN without deviations
+    MixedImpedance deviation;  ///< standard error of each parameter; of a given alpha 0
+    double errorDb = 0.0;      ///< unweighted relative rms error (seed 4.26)
+    /// sum |e|^2/sigma^2, about 1 a line when all but noise is explained; NaN without deviations
+    double likelihood = 0.0;
     bool converged = false;
     std::string reason = "the search was not run";
 };
 
-/// Throws Error (usage) for options, (data) for data that is not one output by one input or has fewer than 6 lines above 0 Hz,
-/// (numerical) when no impedance of this kind resembles it.
+/// Throws Error (usage) for options, (data) for data that is not one output by one input or has fewer than 6 lines
+/// above 0 Hz, (numerical) when no impedance of this kind resembles it.
 MixedImpedanceFit fitMixedImpedance(const FrequencyData&, const MixedImpedanceOptions& = {});
 
-} // namespace excursion
+}  // namespace excursion

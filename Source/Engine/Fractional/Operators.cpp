@@ -22,7 +22,7 @@ double secondDifference(double n, double p)
 {
     if (n < 32.0)
         return std::pow(n + 1.0, p) - 2.0 * std::pow(n, p) + std::pow(n - 1.0, p);
-    double term = 0.5 * p * (p - 1.0) / (n * n), sum = 0.0;   // binom(p, 2m) n^-2m
+    double term = 0.5 * p * (p - 1.0) / (n * n), sum = 0.0;  // binom(p, 2m) n^-2m
     for (int m = 2; m <= 14; m += 2) {
         sum += term;
         term *= (p - m) * (p - m - 1.0) / ((m + 1.0) * (m + 2.0) * n * n);
@@ -35,7 +35,7 @@ double firstWeight(double n, double p)
 {
     if (n < 32.0)
         return std::pow(n - 1.0, p) - (n - p) * std::pow(n, p - 1.0);
-    double term = 0.5 * p * (p - 1.0) / (n * n), sum = 0.0;   // binom(p, m) (-n)^-m, m >= 2
+    double term = 0.5 * p * (p - 1.0) / (n * n), sum = 0.0;  // binom(p, m) (-n)^-m, m >= 2
     for (int m = 2; m <= 14; ++m) {
         sum += term;
         term *= -(p - m) / ((m + 1.0) * n);
@@ -60,12 +60,14 @@ std::vector<double> difference(std::span<const double> f, int order, double T)
 
 void requireDerivative(std::span<const double> f, double alpha, double interval)
 {
-    require(alpha > 0.0 && alpha <= 2.0 && interval > 0.0, "A fractional derivative needs an order above 0 and at most 2, and an interval above 0 s.");
+    require(alpha > 0.0 && alpha <= 2.0 && interval > 0.0,
+            "A fractional derivative needs an order above 0 and at most 2, and an interval above 0 s.");
     if (f.size() < 4)
-        throw Error(Error::Kind::data, "A fractional derivative needs 4 samples, but there are " + std::to_string(f.size()) + ".");
+        throw Error(Error::Kind::data,
+                    "A fractional derivative needs 4 samples, but there are " + std::to_string(f.size()) + ".");
 }
 
-} // namespace
+}  // namespace
 
 std::vector<double> gruenwaldWeights(double alpha, std::size_t count)
 {
@@ -77,7 +79,8 @@ std::vector<double> gruenwaldWeights(double alpha, std::size_t count)
 
 std::vector<double> gruenwaldLetnikov(std::span<const double> f, double alpha, double interval)
 {
-    require(std::abs(alpha) <= 10.0 && interval > 0.0, "A Gruenwald-Letnikov difference needs an order of -10 to 10 and an interval above 0 s.");
+    require(std::abs(alpha) <= 10.0 && interval > 0.0,
+            "A Gruenwald-Letnikov difference needs an order of -10 to 10 and an interval above 0 s.");
     auto result = convolved(gruenwaldWeights(alpha, f.size()), f);
     const double scale = std::pow(interval, -alpha);
     for (auto& y : result)
@@ -87,7 +90,8 @@ std::vector<double> gruenwaldLetnikov(std::span<const double> f, double alpha, d
 
 std::vector<double> fractionalIntegral(std::span<const double> f, double alpha, double interval)
 {
-    require(alpha > 0.0 && alpha <= 10.0 && interval > 0.0, "A fractional integral needs an order above 0 and at most 10, and an interval above 0 s.");
+    require(alpha > 0.0 && alpha <= 10.0 && interval > 0.0,
+            "A fractional integral needs an order above 0 and at most 10, and an interval above 0 s.");
     const auto N = f.size();
     if (N == 0)
         return {};
@@ -127,4 +131,4 @@ std::vector<double> riemannLiouvilleDerivative(std::span<const double> f, double
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

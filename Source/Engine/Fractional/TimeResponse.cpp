@@ -30,8 +30,8 @@ void requireInput(const FractionalStateSpace& model, const MatrixXd& input, doub
 {
     require(model, "The model cannot be simulated");
     if (input.cols() != model.form.inputs())
-        throw Error(Error::Kind::usage, "The model has " + std::to_string(model.form.inputs()) + " inputs, but " + std::to_string(input.cols())
-                                            + " were given.");
+        throw Error(Error::Kind::usage, "The model has " + std::to_string(model.form.inputs()) + " inputs, but "
+                                            + std::to_string(input.cols()) + " were given.");
     if (!(sampleRate > 0.0))
         throw Error(Error::Kind::usage, "A simulation needs a sample rate above 0 Hz.");
 }
@@ -50,7 +50,8 @@ std::vector<MatrixXd> modalResponse(const FractionalStateSpace& model, const std
         MatrixXd A = form.A;
         for (int pass = 0; pass < 20; ++pass)
             for (Index i = 0; i < n; ++i) {
-                const double row = A.row(i).cwiseAbs().sum() - std::abs(A(i, i)), column = A.col(i).cwiseAbs().sum() - std::abs(A(i, i));
+                const double row = A.row(i).cwiseAbs().sum() - std::abs(A(i, i)),
+                             column = A.col(i).cwiseAbs().sum() - std::abs(A(i, i));
                 if (!(row > 0.0 && column > 0.0))
                     continue;
                 const double f = std::sqrt(row / column);
@@ -61,7 +62,8 @@ std::vector<MatrixXd> modalResponse(const FractionalStateSpace& model, const std
         const Eigen::EigenSolver<MatrixXd> solver(A);
         const Eigen::PartialPivLU<MatrixXcd> lu(solver.eigenvectors());
         if (!(lu.rcond() > 1e-10))
-            throw Error(Error::Kind::numerical, "The response in time is computed from eigenvectors, but two of this model's are the same within rounding.");
+            throw Error(Error::Kind::numerical, "The response in time is computed from eigenvectors, but two of this "
+                                                "model's are the same within rounding.");
         values = solver.eigenvalues();
         C = (form.C * scale.asDiagonal()).cast<std::complex<double>>() * solver.eigenvectors();
         B = lu.solve(MatrixXd(scale.cwiseInverse().asDiagonal() * form.B).cast<std::complex<double>>());
@@ -79,7 +81,7 @@ std::vector<MatrixXd> modalResponse(const FractionalStateSpace& model, const std
     return result;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<MatrixXd> stepResponse(const FractionalStateSpace& model, const std::vector<double>& times)
 {
@@ -105,8 +107,9 @@ StateSpace expanded(const FractionalStateSpace& model, const LadderOptions& band
     const auto n = form.order(), cells = ladder.cells();
     const auto I = MatrixXd::Identity(n, n);
 
-    // v is what is integrated: by the ladder itself, or by an integrator and then the ladder. States z_k, then w (of R/s), then the integrator q.
-    // Below 1: x = M (sum R_k z_k + R w + L B u), M = (I - L A)^-1, v = A x + B u.   Above: x = sum R_k z_k + R w + L q, dq/dt = v.
+    // v is what is integrated: by the ladder itself, or by an integrator and then the ladder. States z_k, then w (of
+    // R/s), then the integrator q. Below 1: x = M (sum R_k z_k + R w + L B u), M = (I - L A)^-1, v = A x + B u. Above:
+    // x = sum R_k z_k + R w + L q, dq/dt = v.
     StateSpace result;
     const Index blocks = cells + (above ? 2 : 1), order = n * blocks;
     MatrixXd X = MatrixXd::Zero(n, order), direct = MatrixXd::Zero(n, form.inputs());
@@ -118,11 +121,12 @@ StateSpace expanded(const FractionalStateSpace& model, const LadderOptions& band
     else {
         const Eigen::PartialPivLU<MatrixXd> lu(I - ladder.inductance * form.A);
         if (n > 0 && !(lu.rcond() > 1e-14))
-            throw Error(Error::Kind::numerical, "The ladder's band ends at an eigenvalue of the model; take a wider one.");
+            throw Error(Error::Kind::numerical,
+                        "The ladder's band ends at an eigenvalue of the model; take a wider one.");
         X = lu.solve(X).eval();
         direct = lu.solve(ladder.inductance * form.B);
     }
-    const MatrixXd rate = form.A * X, drive = form.A * direct + form.B;   // v
+    const MatrixXd rate = form.A * X, drive = form.A * direct + form.B;  // v
     result.A = MatrixXd::Zero(order, order);
     result.B = MatrixXd::Zero(order, form.inputs());
     for (Index k = 0; k < blocks; ++k) {
@@ -140,7 +144,8 @@ StateSpace expanded(const FractionalStateSpace& model, const LadderOptions& band
     return result;
 }
 
-MatrixXd simulateByLadder(const FractionalStateSpace& model, const MatrixXd& input, double sampleRate, const LadderOptions& band)
+MatrixXd simulateByLadder(const FractionalStateSpace& model, const MatrixXd& input, double sampleRate,
+                          const LadderOptions& band)
 {
     requireInput(model, input, sampleRate);
     if (input.rows() == 0)
@@ -157,15 +162,16 @@ MatrixXd simulateByDifference(const FractionalStateSpace& model, const MatrixXd&
     const auto weights = gruenwaldWeights(model.alpha, static_cast<std::size_t>(N));
     const Eigen::Map<const Eigen::VectorXd> w(weights.data(), N);
     const Eigen::PartialPivLU<MatrixXd> lu(power * MatrixXd::Identity(n, n) - model.form.A);
-    MatrixXd past(n, N), output(N, model.form.outputs());   // columns newest last
+    MatrixXd past(n, N), output(N, model.form.outputs());  // columns newest last
     for (Index t = 0; t < N; ++t) {
         if (t == 0)
             past.col(0).setZero();
         else
-            past.col(t) = lu.solve(model.form.B * input.row(t).transpose() - power * (past.leftCols(t) * w.segment(1, t).reverse()));
+            past.col(t) = lu.solve(model.form.B * input.row(t).transpose()
+                                   - power * (past.leftCols(t) * w.segment(1, t).reverse()));
         output.row(t) = (model.form.C * past.col(t) + model.form.D * input.row(t).transpose()).transpose();
     }
     return output;
 }
 
-} // namespace excursion
+}  // namespace excursion

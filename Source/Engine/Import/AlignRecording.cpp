@@ -14,11 +14,11 @@
 namespace excursion {
 namespace {
 
-constexpr double silence = 1e-6;          // rms of full scale
-constexpr double lateStart = 8.0;         // samples that the beginning may lack: it settles
-constexpr std::size_t earlyEnd = 8;       // and the end: what is periodic tells them
-constexpr double mostScatter = 0.25;      // samples rms of the periods about a steady clock
-constexpr double leastShare = 0.8;        // of the periods within the recording that must follow the plan
+constexpr double silence = 1e-6;      // rms of full scale
+constexpr double lateStart = 8.0;     // samples that the beginning may lack: it settles
+constexpr std::size_t earlyEnd = 8;   // and the end: what is periodic tells them
+constexpr double mostScatter = 0.25;  // samples rms of the periods about a steady clock
+constexpr double leastShare = 0.8;    // of the periods within the recording that must follow the plan
 
 [[noreturn]] void refuse(const std::string& source, const std::string& why)
 {
@@ -39,8 +39,14 @@ double rmsWithoutMean(std::span<const double> x)
 /// One attempt to lay the plan beside a recording.
 class Aligner {
 public:
-    Aligner(const Measurement& plan, const PlanPeriods& periods, const std::vector<Witness>& witnesses, double rate, const std::string& source)
-        : plan_(plan), periods_(periods), witnesses_(witnesses), rate_(rate), ratio_(rate / plan.sampleRate), source_(source)
+    Aligner(const Measurement& plan, const PlanPeriods& periods, const std::vector<Witness>& witnesses, double rate,
+            const std::string& source)
+        : plan_(plan),
+          periods_(periods),
+          witnesses_(witnesses),
+          rate_(rate),
+          ratio_(rate / plan.sampleRate),
+          source_(source)
     {
     }
 
@@ -65,7 +71,8 @@ private:
     {
         const double highest = periods_.lines.back() * plan_.sampleRate / static_cast<double>(periods_.length);
         if (highest > 0.49 * rate_)
-            refuse(source_, "is sampled at " + figure(rate_, "%.0f") + " Hz, which cannot hold what the plan plays up to " + frequencyText(highest)
+            refuse(source_, "is sampled at " + figure(rate_, "%.0f")
+                                + " Hz, which cannot hold what the plan plays up to " + frequencyText(highest)
                                 + "; record at " + figure(plan_.sampleRate, "%.0f") + " Hz.");
     }
 
@@ -78,7 +85,8 @@ private:
             if (rmsWithoutMean(samples) < silence)
                 continue;
             sound = true;
-            const auto place = ratio_ == 1.0 ? findPlan(played(), periods_, samples) : findPlan(played(), periods_, resampled(samples, ratio_));
+            const auto place = ratio_ == 1.0 ? findPlan(played(), periods_, samples)
+                                             : findPlan(played(), periods_, resampled(samples, ratio_));
             if (place.found) {
                 result_.witness = w;
                 return place;
@@ -88,12 +96,14 @@ private:
         }
         const auto length = figure(static_cast<double>(witnesses_.front().samples.size()) / rate_, "%.2f");
         if (!sound)
-            refuse(source_, "is silent on " + witnesses_.front().label + (witnesses_.size() > 1 ? " and the others" : "")
+            refuse(source_, "is silent on " + witnesses_.front().label
+                                + (witnesses_.size() > 1 ? " and the others" : "")
                                 + "; check the cables, the inputs and --map.");
         if (static_cast<double>(witnesses_.front().samples.size()) / ratio_ < static_cast<double>(periods_.length))
             refuse(source_, "is only " + length + " s long, less than one period of the plan; record all of it.");
         refuse(source_, "does not hold the plan: what was played was not found in " + witnesses_.front().label
-                            + (witnesses_.size() > 1 ? " nor in the others" : "") + "; check that the plan is the one that was played, and --map.");
+                            + (witnesses_.size() > 1 ? " nor in the others" : "")
+                            + "; check that the plan is the one that was played, and --map.");
     }
 
     void requireWhole(const PlanPlace& place) const
@@ -102,12 +112,14 @@ private:
             if (s.jump != 0.0)
                 gap(s.jump, s.at / plan_.sampleRate);
         if (place.start < -lateStart)
-            refuse(source_, "begins " + figure(seconds(-place.start), "%.2f") + " s after the plan does; start the recorder before the player.");
+            refuse(source_, "begins " + figure(seconds(-place.start), "%.2f")
+                                + " s after the plan does; start the recorder before the player.");
         const auto within = place.inside();
         if (static_cast<double>(place.seen()) < leastShare * static_cast<double>(within)) {
-            const auto first = std::find_if(place.sightings.begin(), place.sightings.end(), [](const Sighting& s) { return s.inside && !s.seen; });
-            refuse(source_, "follows the plan in only " + std::to_string(place.seen()) + " of " + std::to_string(within) + " periods, and not at "
-                                + figure(first->at / plan_.sampleRate, "%.2f")
+            const auto first = std::find_if(place.sightings.begin(), place.sightings.end(),
+                                            [](const Sighting& s) { return s.inside && !s.seen; });
+            refuse(source_, "follows the plan in only " + std::to_string(place.seen()) + " of " + std::to_string(within)
+                                + " periods, and not at " + figure(first->at / plan_.sampleRate, "%.2f")
                                 + " s; either the plan is not the one that was played, or something interrupted it.");
         }
     }
@@ -117,11 +129,16 @@ private:
     {
         const double samples = std::abs(jump) * ratio_;
         const auto count = figure(samples, samples < 0.6 ? "%.1f" : "%.0f");
-        refuse(source_, (jump < 0 ? "lacks about " : "has about ") + count + (jump < 0 ? " samples near " : " samples too many near ")
-                            + figure(recordedSeconds, "%.1f") + " s: a block was lost or repeated while recording; record again with larger buffers.");
+        refuse(source_, (jump < 0 ? "lacks about " : "has about ") + count
+                            + (jump < 0 ? " samples near " : " samples too many near ")
+                            + figure(recordedSeconds, "%.1f")
+                            + " s: a block was lost or repeated while recording; record again with larger buffers.");
     }
 
-    void countRealizations() { excursion::countRealizations(result_, plan_, witnesses_.front().samples.size(), source_); }
+    void countRealizations()
+    {
+        excursion::countRealizations(result_, plan_, witnesses_.front().samples.size(), source_);
+    }
 
     std::size_t samplesRecorded() const
     {
@@ -139,7 +156,8 @@ private:
         for (std::size_t p = 0; p < periods_.periods.size(); ++p)
             if (periods_.periods[p].used && periods_.periods[p].block < result_.realizations)
                 used.push_back(p);
-        return periodDelays(periods_, read(witness), used, byLevel, static_cast<std::size_t>(plan_.excitation->realizations));
+        return periodDelays(periods_, read(witness), used, byLevel,
+                            static_cast<std::size_t>(plan_.excitation->realizations));
     }
 
     void refine()
@@ -162,15 +180,16 @@ private:
         if (fit.jump != 0.0)
             gap(fit.jump, result_.clock.start / rate_ + seconds(fit.jumpTime));
         if (fit.scatter > mostScatter)
-            refuse(source_, "does not run on a steady clock: its periods lie " + figure(fit.scatter, "%.2f")
-                                + " samples (rms) off one; samples were lost, or the recorder's clock wanders. Record again.");
+            refuse(source_,
+                   "does not run on a steady clock: its periods lie " + figure(fit.scatter, "%.2f")
+                       + " samples (rms) off one; samples were lost, or the recorder's clock wanders. Record again.");
         const double drift = result_.clock.step / ratio_ - 1;
         result_.driftPpm = 1e6 * drift;
         result_.driftError = 1e6 * fit.driftError;
         result_.scatter = fit.scatter;
         if (std::abs(drift) < 3 * fit.driftError || std::abs(drift) * length < 0.005) {
             result_.synchronous = true;
-            result_.clock.start += drift * ratio_ * length / 2;   // the middle stays where it is
+            result_.clock.start += drift * ratio_ * length / 2;  // the middle stays where it is
             result_.clock.step = ratio_;
         }
     }
@@ -191,10 +210,12 @@ private:
         }
         result_.likeness = best;
         result_.clock.start += delay * result_.clock.step;
-        result_.startError = std::hypot(error, result_.synchronous ? 0.0 : 1e-6 * result_.driftError * static_cast<double>(samplesRecorded()));
+        result_.startError = std::hypot(
+            error, result_.synchronous ? 0.0 : 1e-6 * result_.driftError * static_cast<double>(samplesRecorded()));
         const double whole = std::round(result_.clock.start);
-        if (result_.synchronous && ratio_ == 1.0 && std::abs(result_.clock.start - whole) < std::max(0.002, 3 * result_.startError))
-            result_.clock.start = whole;   // copied, not interpolated
+        if (result_.synchronous && ratio_ == 1.0
+            && std::abs(result_.clock.start - whole) < std::max(0.002, 3 * result_.startError))
+            result_.clock.start = whole;  // copied, not interpolated
     }
 
     const Measurement& plan_;
@@ -205,28 +226,32 @@ private:
     Alignment result_;
 };
 
-} // namespace
+}  // namespace
 
-Alignment alignRecording(const Measurement& plan, const PlanPeriods& periods, const std::vector<Witness>& witnesses, double recordedRate,
-                         const std::string& source)
+Alignment alignRecording(const Measurement& plan, const PlanPeriods& periods, const std::vector<Witness>& witnesses,
+                         double recordedRate, const std::string& source)
 {
     if (witnesses.empty())
-        throw Error(Error::Kind::usage, "No channel of '" + source + "' is mapped, so it cannot be laid beside the plan.");
+        throw Error(Error::Kind::usage,
+                    "No channel of '" + source + "' is mapped, so it cannot be laid beside the plan.");
     return Aligner(plan, periods, witnesses, recordedRate, source).align();
 }
 
-void countRealizations(Alignment& alignment, const Measurement& plan, std::size_t recordedSamples, const std::string& source)
+void countRealizations(Alignment& alignment, const Measurement& plan, std::size_t recordedSamples,
+                       const std::string& source)
 {
     const auto& clock = alignment.clock;
-    const double available = std::floor((static_cast<double>(recordedSamples) - 1 - clock.start) / clock.step) + 1 + static_cast<double>(earlyEnd);
+    const double available = std::floor((static_cast<double>(recordedSamples) - 1 - clock.start) / clock.step) + 1
+                             + static_cast<double>(earlyEnd);
     const auto block = static_cast<double>(plan.excitation->samplesPerRealization());
     const auto all = plan.excitation->levels.size() * static_cast<std::size_t>(plan.excitation->realizations);
     alignment.realizations = std::min(all, static_cast<std::size_t>(std::max(0.0, std::floor(available / block))));
-    alignment.missing =
-        static_cast<std::size_t>(std::max(0.0, static_cast<double>(alignment.realizations) * block + static_cast<double>(earlyEnd) - available));
+    alignment.missing = static_cast<std::size_t>(
+        std::max(0.0, static_cast<double>(alignment.realizations) * block + static_cast<double>(earlyEnd) - available));
     if (alignment.realizations == 0)
-        refuse(source, "ends " + figure(std::max(0.0, available) / plan.sampleRate, "%.2f") + " s after the plan begins, before its first realization of "
+        refuse(source, "ends " + figure(std::max(0.0, available) / plan.sampleRate, "%.2f")
+                           + " s after the plan begins, before its first realization of "
                            + figure(block / plan.sampleRate, "%.2f") + " s is over; record all of it.");
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,7 +16,7 @@ namespace excursion {
 namespace {
 
 constexpr auto formatName = "excursion-calibration";
-constexpr double standardGravity = 9.80665;   // m/s^2
+constexpr double standardGravity = 9.80665;  // m/s^2
 
 double positive(const JsonField& field, double most = 1e12)
 {
@@ -50,17 +50,18 @@ ChannelCalibration parseChannel(const JsonField& field)
     if (field.has("senseResistor"))
         c.senseResistor = positive(field.at("senseResistor"));
     if (field.has("sensitivity"))
-        c.sensitivity = Sensitivity {positive(field.at("sensitivity")), field.at("sensitivityUnit").text("a unit such as mV/Pa")};
+        c.sensitivity = Sensitivity {positive(field.at("sensitivity")),
+                                     field.at("sensitivityUnit").text("a unit such as mV/Pa")};
     if (field.has("preampGain"))
         c.preampGainDb = field.at("preampGain").numberWithin(-120.0, 120.0);
     if (field.has("curve"))
         c.curve = field.at("curve").text("the name of a file");
     if (c.quantity)
-        c.quantityAtFullScale(*c.quantity, field.source());   // contradictions are told when the file is read
+        c.quantityAtFullScale(*c.quantity, field.source());  // contradictions are told when the file is read
     return c;
 }
 
-} // namespace
+}  // namespace
 
 double Sensitivity::voltsPer(Quantity quantity, const std::string& source) const
 {
@@ -76,8 +77,9 @@ double Sensitivity::voltsPer(Quantity quantity, const std::string& source) const
     else if (const auto scale = unitNamed(quantity, denominator); scale && scale->unit == siUnit(quantity))
         factor = scale->factor;
     if (!volts || !factor)
-        throw Error(Error::Kind::input, "'" + source + "': the sensitivity of the " + std::string(name(quantity)) + " channel is in '" + unit
-                                            + "', expected volts over its unit, such as mV/" + std::string(siUnit(quantity))
+        throw Error(Error::Kind::input, "'" + source + "': the sensitivity of the " + std::string(name(quantity))
+                                            + " channel is in '" + unit + "', expected volts over its unit, such as mV/"
+                                            + std::string(siUnit(quantity))
                                             + (quantity == Quantity::acceleration ? " or mV/g." : "."));
     return value * volts->factor / *factor;
 }
@@ -85,9 +87,13 @@ double Sensitivity::voltsPer(Quantity quantity, const std::string& source) const
 Sensitivity parseSensitivity(std::string_view text)
 {
     const auto end = text.find_first_of("mV");
-    const auto value = end == std::string_view::npos ? std::nullopt : parseNumber(text.substr(0, text.find_last_not_of(' ', end == 0 ? 0 : end - 1) + 1));
+    const auto value = end == std::string_view::npos
+                           ? std::nullopt
+                           : parseNumber(text.substr(0, text.find_last_not_of(' ', end == 0 ? 0 : end - 1) + 1));
     if (!value || !(*value > 0) || !std::isfinite(*value) || text.find('/') == std::string_view::npos)
-        throw Error(Error::Kind::usage, "'" + std::string(text) + "' is no sensitivity; write a number and its unit, such as 50mV/Pa, 10.2mV/g or 1V/mm.");
+        throw Error(Error::Kind::usage,
+                    "'" + std::string(text)
+                        + "' is no sensitivity; write a number and its unit, such as 50mV/Pa, 10.2mV/g or 1V/mm.");
     return {*value, std::string(text.substr(end))};
 }
 
@@ -98,7 +104,8 @@ double ChannelCalibration::quantityAtFullScale(Quantity asked, const std::string
     };
     const double sign = inverted ? -1.0 : 1.0;
     const auto own = unitNamed(asked, unit);
-    const bool analogue = asked == Quantity::displacement || asked == Quantity::force;   // their V may be an electrical analogue's
+    // their V may be an electrical analogue's
+    const bool analogue = asked == Quantity::displacement || asked == Quantity::force;
     if (own && asked != Quantity::voltage && !(analogue && own->unit == "V" && sensitivity)) {
         if (senseResistor || sensitivity || preampGainDb || divider)
             refuse("gives its full scale in " + unit + ", which is the " + std::string(name(asked))
@@ -107,7 +114,8 @@ double ChannelCalibration::quantityAtFullScale(Quantity asked, const std::string
     }
     const auto volts = unitNamed(Quantity::voltage, unit);
     if (!volts)
-        refuse("gives its full scale in '" + unit + "', expected V or " + acceptedUnits(asked) + " for a " + std::string(name(asked)) + ".");
+        refuse("gives its full scale in '" + unit + "', expected V or " + acceptedUnits(asked) + " for a "
+               + std::string(name(asked)) + ".");
     const double atInput = fullScale * volts->factor * std::pow(10.0, -preampGainDb.value_or(0.0) / 20.0);
     if (asked == Quantity::voltage) {
         if (senseResistor || sensitivity)
@@ -123,20 +131,23 @@ double ChannelCalibration::quantityAtFullScale(Quantity asked, const std::string
     if (senseResistor)
         return sign * atInput / *senseResistor;
     if (!sensitivity)
-        refuse("gives its full scale in V, but no " + std::string(asked == Quantity::current ? "senseResistor" : "sensitivity") + " that makes a "
+        refuse("gives its full scale in V, but no "
+               + std::string(asked == Quantity::current ? "senseResistor" : "sensitivity") + " that makes a "
                + std::string(name(asked)) + " of it.");
     return sign * atInput / sensitivity->voltsPer(asked, source);
 }
 
 const ChannelCalibration* Calibration::find(int channel) const
 {
-    const auto found = std::find_if(channels.begin(), channels.end(), [channel](const auto& c) { return c.channel == channel; });
+    const auto found = std::find_if(channels.begin(), channels.end(),
+                                    [channel](const auto& c) { return c.channel == channel; });
     return found == channels.end() ? nullptr : &*found;
 }
 
 void Calibration::put(const ChannelCalibration& calibrated)
 {
-    const auto place = std::lower_bound(channels.begin(), channels.end(), calibrated.channel, [](const auto& c, int n) { return c.channel < n; });
+    const auto place = std::lower_bound(channels.begin(), channels.end(), calibrated.channel,
+                                        [](const auto& c, int n) { return c.channel < n; });
     if (place != channels.end() && place->channel == calibrated.channel)
         *place = calibrated;
     else
@@ -161,7 +172,8 @@ Calibration readCalibration(const std::filesystem::path& path)
 
 nlohmann::ordered_json calibrationJson(const Calibration& calibration)
 {
-    nlohmann::ordered_json document {{"format", formatName}, {"version", 1}, {"channels", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json document {
+        {"format", formatName}, {"version", 1}, {"channels", nlohmann::ordered_json::array()}};
     for (const auto& c : calibration.channels) {
         nlohmann::ordered_json channel {{"channel", c.channel}};
         if (c.quantity)
@@ -191,4 +203,4 @@ nlohmann::ordered_json calibrationJson(const Calibration& calibration)
     return document;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -14,7 +14,8 @@ namespace {
 std::optional<double> scaled(Quantity quantity, std::string_view text)
 {
     const auto digits = text.find_first_not_of("+-0123456789.eE");
-    auto number = text.substr(0, digits), unit = digits == std::string_view::npos ? std::string_view() : text.substr(digits);
+    auto number = text.substr(0, digits),
+         unit = digits == std::string_view::npos ? std::string_view() : text.substr(digits);
     while (!unit.empty() && unit.front() == ' ')
         unit.remove_prefix(1);
     const auto value = parseNumber(number);
@@ -24,13 +25,14 @@ std::optional<double> scaled(Quantity quantity, std::string_view text)
     return *value * scale->factor;
 }
 
-} // namespace
+}  // namespace
 
 ChannelMapping parseChannelMapping(std::string_view text)
 {
     const auto refuse = [text](const std::string& why) {
-        throw Error(Error::Kind::usage, "'" + std::string(text) + "' " + why + "; write CHANNEL=QUANTITY:FULLSCALE, for example 1=voltage:16, "
-                                        "2=current:-4A, mic.wav:1=pressure:20Pa or 3=loopback.");
+        throw Error(Error::Kind::usage, "'" + std::string(text) + "' " + why
+                                            + "; write CHANNEL=QUANTITY:FULLSCALE, for example 1=voltage:16, "
+                                              "2=current:-4A, mic.wav:1=pressure:20Pa or 3=loopback.");
     };
     ChannelMapping mapping;
     mapping.text = text;
@@ -57,13 +59,15 @@ ChannelMapping parseChannelMapping(std::string_view text)
     }
     mapping.quantity = quantityNamed(word);
     if (!mapping.quantity)
-        refuse("names no known quantity (voltage, current, displacement, velocity, acceleration, pressure, force, or loopback)");
+        refuse("names no known quantity (voltage, current, displacement, velocity, acceleration, pressure, force, or "
+               "loopback)");
     if (colon != std::string_view::npos) {
         mapping.fullScale = scaled(*mapping.quantity, meaning.substr(colon + 1));
         if (!mapping.fullScale)
-            refuse("gives a full scale that is not a number other than 0, in " + std::string(siUnit(*mapping.quantity)) + " or with a unit of the quantity");
+            refuse("gives a full scale that is not a number other than 0, in " + std::string(siUnit(*mapping.quantity))
+                   + " or with a unit of the quantity");
     }
     return mapping;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,11 +11,12 @@ namespace excursion {
 
 /// Which channel of recorded files holds what.
 struct ChannelMapping {
-    std::string file;                    ///< empty: channels are counted through all files, in their order
-    int channel = 1;                     ///< from 1
-    std::optional<Quantity> quantity;    ///< absent: the interface's output, recorded straight by one of its inputs
-    std::optional<double> fullScale;     ///< quantity at a sample of 1.0, in its SI unit; negative: the channel is inverted
-    std::string text;                    ///< as it was written, for sentences
+    std::string file;                  ///< empty: channels are counted through all files, in their order
+    int channel = 1;                   ///< from 1
+    std::optional<Quantity> quantity;  ///< absent: the interface's output, recorded straight by one of its inputs
+    /// quantity at a sample of 1.0, in its SI unit; negative: the channel is inverted
+    std::optional<double> fullScale;
+    std::string text;  ///< as it was written, for sentences
 };
 
 /// Reads one mapping of a command line, [FILE:]CHANNEL=QUANTITY[:FULLSCALE[UNIT]] or [FILE:]CHANNEL=loopback:
@@ -23,4 +24,4 @@ struct ChannelMapping {
 /// Throws Error (usage).
 ChannelMapping parseChannelMapping(std::string_view);
 
-} // namespace excursion
+}  // namespace excursion

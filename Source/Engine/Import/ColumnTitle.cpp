@@ -58,7 +58,7 @@ bool standsAlone(std::string_view text)
     return frequencyUnit(text) || resistanceUnit(text) || angleUnit(text) || isDecibel(text);
 }
 
-} // namespace
+}  // namespace
 
 bool ColumnTitle::has(std::string_view word) const
 {
@@ -92,7 +92,7 @@ std::optional<double> frequencyUnit(std::string_view text)
 
 std::optional<double> timeUnit(std::string_view text)
 {
-    if (text == "Ms" || text == "MS")   // mega or milli
+    if (text == "Ms" || text == "MS")  // mega or milli
         return std::nullopt;
     static constexpr std::array<Known, 11> known {{{"s", 1.0},
                                                    {"sec", 1.0},
@@ -204,4 +204,4 @@ std::optional<double> timeFactor(const ColumnTitle& title)
     return title.unit.empty() ? std::optional(1.0) : timeUnit(title.unit);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,9 +10,9 @@ namespace excursion {
 
 /// A column's title, taken apart: "Voltage (mV)", "x [mm]", "f/Hz", "displacement_mm", "|Z|(ohm)", "SPL(dB)", "Ohm".
 struct ColumnTitle {
-    std::string name;                 ///< without the unit
-    std::string unit;                 ///< as it is written; empty: none
-    std::vector<std::string> words;   ///< of the name, in lower case
+    std::string name;                ///< without the unit
+    std::string unit;                ///< as it is written; empty: none
+    std::vector<std::string> words;  ///< of the name, in lower case
 
     bool has(std::string_view word) const;
 };
@@ -40,4 +40,4 @@ std::optional<double> resistanceUnit(std::string_view);
 /// ASCII letters in lower case; other bytes as they are.
 std::string lowerCase(std::string_view);
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,29 +16,31 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double mostDrift = 300e-6;
-constexpr double recognized = 0.5;             // correlation of a period with what it should be
-constexpr double leastCorrelation = 0.15;      // of the first period, anywhere
+constexpr double recognized = 0.5;         // correlation of a period with what it should be
+constexpr double leastCorrelation = 0.15;  // of the first period, anywhere
 constexpr std::size_t mostPlaces = 64, mostAnchors = 8;
-constexpr std::size_t mostJudged = 72;         // periods by which a place is judged
+constexpr std::size_t mostJudged = 72;  // periods by which a place is judged
 
 /// Mean power of the bins of a spectrum in bands of a third of an octave, one value a bin.
 std::vector<double> envelope(const std::vector<Complex>& spectrum, std::size_t first, std::size_t last)
 {
     std::vector<double> result(spectrum.size(), 0.0);
     for (std::size_t begin = first; begin <= last;) {
-        const auto end = std::min(last + 1, std::max(begin + 8, static_cast<std::size_t>(static_cast<double>(begin) * 1.26)));
+        const auto end = std::min(last + 1,
+                                  std::max(begin + 8, static_cast<std::size_t>(static_cast<double>(begin) * 1.26)));
         double power = 0.0;
         for (std::size_t k = begin; k < end; ++k)
             power += std::norm(spectrum[k]);
-        std::fill(result.begin() + static_cast<std::ptrdiff_t>(begin), result.begin() + static_cast<std::ptrdiff_t>(end),
-                  power / static_cast<double>(end - begin));
+        std::fill(result.begin() + static_cast<std::ptrdiff_t>(begin),
+                  result.begin() + static_cast<std::ptrdiff_t>(end), power / static_cast<double>(end - begin));
         begin = end;
     }
     return result;
 }
 
 /// Normalized correlation of `wanted` with each stretch of `recorded`, both with the spectral envelope of `wanted`.
-std::vector<double> correlations(std::span<const double> wanted, std::span<const double> recorded, double lowest, double highest)
+std::vector<double> correlations(std::span<const double> wanted, std::span<const double> recorded, double lowest,
+                                 double highest)
 {
     const auto L = quickLength(recorded.size() + wanted.size());
     std::vector<double> padded(wanted.begin(), wanted.end());
@@ -67,7 +69,7 @@ std::vector<double> correlations(std::span<const double> wanted, std::span<const
     double loudest = 0.0;
     for (std::size_t n = 0; n < result.size(); ++n)
         loudest = std::max(loudest, energyAt(n));
-    for (std::size_t n = 0; n < result.size(); ++n)   // 1e-3: silence resembles nothing
+    for (std::size_t n = 0; n < result.size(); ++n)  // 1e-3: silence resembles nothing
         result[n] = energy > 0 && loudest > 0 ? result[n] / std::sqrt(energy * (energyAt(n) + 1e-3 * loudest)) : 0.0;
     return result;
 }
@@ -78,13 +80,16 @@ std::vector<std::size_t> peaks(const std::vector<double>& c, std::size_t apart)
     std::vector<std::size_t> order;
     for (std::size_t n = 0; n < c.size(); ++n) {
         const double here = std::abs(c[n]);
-        if (here >= leastCorrelation && (n == 0 || here >= std::abs(c[n - 1])) && (n + 1 == c.size() || here > std::abs(c[n + 1])))
+        if (here >= leastCorrelation && (n == 0 || here >= std::abs(c[n - 1]))
+            && (n + 1 == c.size() || here > std::abs(c[n + 1])))
             order.push_back(n);
     }
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return std::abs(c[a]) > std::abs(c[b]); });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return std::abs(c[a]) > std::abs(c[b]); });
     std::vector<std::size_t> kept;
     for (const auto n : order) {
-        if (std::none_of(kept.begin(), kept.end(), [&](std::size_t k) { return std::max(k, n) - std::min(k, n) < apart; }))
+        if (std::none_of(kept.begin(), kept.end(),
+                         [&](std::size_t k) { return std::max(k, n) - std::min(k, n) < apart; }))
             kept.push_back(n);
         if (kept.size() == mostPlaces)
             break;
@@ -124,7 +129,8 @@ public:
         std::vector<std::size_t> before(chosen.begin(), middle);
         std::reverse(before.begin(), before.end());
         walk(before, true, place.sightings);
-        std::sort(place.sightings.begin(), place.sightings.end(), [](const auto& a, const auto& b) { return a.period < b.period; });
+        std::sort(place.sightings.begin(), place.sightings.end(),
+                  [](const auto& a, const auto& b) { return a.period < b.period; });
         fitLine(place);
         return place;
     }
@@ -146,7 +152,8 @@ private:
         const auto spectrum = fft(recorded_.subspan(at, N));
         const auto& X = played(period);
         double recordedPower = 0.0, expectedPower = 0.0;
-        for (auto k = static_cast<std::size_t>(plan_.lines.front()); k <= static_cast<std::size_t>(plan_.lines.back()); ++k)
+        for (auto k = static_cast<std::size_t>(plan_.lines.front()); k <= static_cast<std::size_t>(plan_.lines.back());
+             ++k)
             recordedPower += std::norm(spectrum[k]);
         std::vector<Complex> cross(N / 2 + 1);
         for (std::size_t i = 0; i < X.size(); ++i) {
@@ -170,7 +177,8 @@ private:
         const double bend = value(best - 1) - 2 * value(best) + value(best + 1);
         const double part = bend < 0 ? std::clamp((value(best - 1) - value(best + 1)) / (2 * bend), -0.5, 0.5) : 0.0;
         const double product = value(best) * static_cast<double>(N) / 2;
-        return {static_cast<double>(best) + part, product / std::sqrt(recordedPower * expectedPower), product / expectedPower};
+        return {static_cast<double>(best) + part, product / std::sqrt(recordedPower * expectedPower),
+                product / expectedPower};
     }
 
     void walk(const std::vector<std::size_t>& periods, bool backwards, std::vector<Sighting>& sightings)
@@ -180,7 +188,8 @@ private:
             const double elapsed = timeOf(period) - time, predicted = at + elapsed * (1 + drift_);
             Sighting sighting {period, predicted, false, false, 0.0};
             const double whole = std::round(predicted);
-            sighting.inside = whole >= 0 && whole + static_cast<double>(plan_.length) <= static_cast<double>(recorded_.size());
+            sighting.inside = whole >= 0
+                              && whole + static_cast<double>(plan_.length) <= static_cast<double>(recorded_.size());
             if (sighting.inside) {
                 const auto start = static_cast<std::size_t>(whole);
                 const auto match = compare(period, start, static_cast<std::size_t>(4 + mostDrift * std::abs(elapsed)));
@@ -193,14 +202,15 @@ private:
                     sighting.seen = true;
                     sighting.at = whole + elsewhere.later;
                     sighting.jump = sighting.at - predicted;
-                    if (backwards)   // it is what comes after this period that jumps
+                    if (backwards)  // it is what comes after this period that jumps
                         sighting.jump *= -1;
                 }
                 if (sighting.seen) {
                     time = timeOf(period);
                     at = sighting.at;
                     const double span = time - timeOf(anchor_);
-                    if (sighting.jump == 0.0 && std::abs(span) >= 2.0 * static_cast<double>(plan_.length) && !jumped(sightings))
+                    if (sighting.jump == 0.0 && std::abs(span) >= 2.0 * static_cast<double>(plan_.length)
+                        && !jumped(sightings))
                         drift_ = std::clamp((at - at_) / span - 1, -mostDrift, mostDrift);
                 }
             }
@@ -248,13 +258,13 @@ private:
     double at_ = 0.0, drift_ = 0.0, credit_ = 0.0;
 };
 
-/// Periods to begin with: the last ones of blocks, which are steady. The first of each level come first, the loud ones before
-/// the quiet ones: a recording may have been cut short.
+/// Periods to begin with: the last ones of blocks, which are steady. The first of each level come first, the loud ones
+/// before the quiet ones: a recording may have been cut short.
 std::vector<std::size_t> anchors(const std::vector<double>& played, const PlanPeriods& plan)
 {
     struct Anchor {
-        std::size_t period = 0, turn = 0;   ///< how many blocks of that loudness came before it
-        long loudness = 0;                  ///< in steps of 1 dB
+        std::size_t period = 0, turn = 0;  ///< how many blocks of that loudness came before it
+        long loudness = 0;                 ///< in steps of 1 dB
     };
     std::vector<Anchor> found;
     for (std::size_t p = 0; p < plan.periods.size(); ++p) {
@@ -267,7 +277,9 @@ std::vector<std::size_t> anchors(const std::vector<double>& played, const PlanPe
             anchor.turn += other.loudness == anchor.loudness ? 1 : 0;
         found.push_back(anchor);
     }
-    std::stable_sort(found.begin(), found.end(), [](const Anchor& a, const Anchor& b) { return std::tie(a.turn, b.loudness) < std::tie(b.turn, a.loudness); });
+    std::stable_sort(found.begin(), found.end(), [](const Anchor& a, const Anchor& b) {
+        return std::tie(a.turn, b.loudness) < std::tie(b.turn, a.loudness);
+    });
     std::vector<std::size_t> periods;
     for (const auto& anchor : found)
         periods.push_back(anchor.period);
@@ -283,12 +295,13 @@ std::vector<std::size_t> judges(const PlanPeriods& plan)
         return all;
     std::vector<std::size_t> edges;
     for (const auto p : all)
-        if (p == 0 || p + 1 == all.size() || plan.periods[p - 1].block != plan.periods[p].block || plan.periods[p + 1].block != plan.periods[p].block)
+        if (p == 0 || p + 1 == all.size() || plan.periods[p - 1].block != plan.periods[p].block
+            || plan.periods[p + 1].block != plan.periods[p].block)
             edges.push_back(p);
     std::vector<std::size_t> chosen;
     const auto every = (edges.size() + mostJudged - 1) / mostJudged;
     for (std::size_t i = 0; i < edges.size(); ++i)
-        if ((i / 2) % every == 0)   // both edges of a block
+        if ((i / 2) % every == 0)  // both edges of a block
             chosen.push_back(edges[i]);
     return chosen;
 }
@@ -301,21 +314,23 @@ std::size_t templateLength(const std::vector<Complex>& X, const PlanPeriods& pla
         power += std::norm(X[i]);
         moment += std::norm(X[i]) * plan.lines[i];
     }
-    const double frequency = moment / power / static_cast<double>(plan.length);   // cycles a sample
+    const double frequency = moment / power / static_cast<double>(plan.length);  // cycles a sample
     const auto sharp = static_cast<std::size_t>(1.0 / (2 * mostDrift * frequency));
     return std::min(plan.length, std::max<std::size_t>(sharp, 4096));
 }
 
-} // namespace
+}  // namespace
 
 std::size_t PlanPlace::inside() const
 {
-    return static_cast<std::size_t>(std::count_if(sightings.begin(), sightings.end(), [](const auto& s) { return s.inside; }));
+    return static_cast<std::size_t>(
+        std::count_if(sightings.begin(), sightings.end(), [](const auto& s) { return s.inside; }));
 }
 
 std::size_t PlanPlace::seen() const
 {
-    return static_cast<std::size_t>(std::count_if(sightings.begin(), sightings.end(), [](const auto& s) { return s.seen && s.jump == 0.0; }));
+    return static_cast<std::size_t>(
+        std::count_if(sightings.begin(), sightings.end(), [](const auto& s) { return s.seen && s.jump == 0.0; }));
 }
 
 PlanPlace findPlan(const std::vector<double>& played, const PlanPeriods& plan, std::span<const double> recorded)
@@ -356,9 +371,9 @@ PlanPlace findPlan(const std::vector<double>& played, const PlanPeriods& plan, s
         best = track.from(anchor, *bestAt, all).value();
         best.found = best.seen() >= 2 && 2 * best.seen() > best.inside();
         if (best.start >= -8.0 && 10 * best.seen() >= 9 * all.size())
-            break;   // nothing could fit better
+            break;  // nothing could fit better
     }
     return best;
 }
 
-} // namespace excursion
+}  // namespace excursion

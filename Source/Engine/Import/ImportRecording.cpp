@@ -15,13 +15,13 @@
 namespace excursion {
 namespace {
 
-constexpr double plainLikeness = 0.97;   // of a response to a gain and a delay, from which on it tells the time
+constexpr double plainLikeness = 0.97;  // of a response to a gain and a delay, from which on it tells the time
 
 /// A channel of a file, and what it holds.
 struct Assigned {
-    std::size_t file = 0, channel = 0;      ///< from 0
-    std::optional<Quantity> quantity;       ///< absent: loopback
-    double factor = 1.0;                    ///< quantity at a sample of 1.0
+    std::size_t file = 0, channel = 0;  ///< from 0
+    std::optional<Quantity> quantity;   ///< absent: loopback
+    double factor = 1.0;                ///< quantity at a sample of 1.0
     std::filesystem::path curve;
     double referenceFrequency = 1000.0;
 };
@@ -42,8 +42,9 @@ int trust(const Assigned& a)
 {
     if (!a.quantity)
         return 0;
-    static constexpr Quantity order[] {Quantity::voltage, Quantity::current, Quantity::acceleration, Quantity::pressure, Quantity::velocity,
-                                       Quantity::force, Quantity::displacement};
+    static constexpr Quantity order[] {Quantity::voltage,     Quantity::current,  Quantity::acceleration,
+                                       Quantity::pressure,    Quantity::velocity, Quantity::force,
+                                       Quantity::displacement};
     return 1 + static_cast<int>(std::find(std::begin(order), std::end(order), *a.quantity) - std::begin(order));
 }
 
@@ -58,18 +59,22 @@ std::vector<Source> readSources(const RecordingOptions& options)
 /// Where a mapping points to. Numbers without a file count through all files.
 Assigned locate(const ChannelMapping& mapping, const std::vector<Source>& sources)
 {
-    const auto refuse = [&](const std::string& why) { throw Error(Error::Kind::usage, "--map " + mapping.text + ": " + why); };
+    const auto refuse = [&](const std::string& why) {
+        throw Error(Error::Kind::usage, "--map " + mapping.text + ": " + why);
+    };
     Assigned place;
     place.quantity = mapping.quantity;
     auto number = static_cast<std::size_t>(mapping.channel - 1);
     if (!mapping.file.empty()) {
         std::vector<std::size_t> matching;
         for (std::size_t f = 0; f < sources.size(); ++f)
-            if (const auto& path = sources[f].path; path == mapping.file || path.filename() == mapping.file || path.stem() == mapping.file)
+            if (const auto& path = sources[f].path;
+                path == mapping.file || path.filename() == mapping.file || path.stem() == mapping.file)
                 matching.push_back(f);
         if (matching.size() != 1)
-            refuse(matching.empty() ? "none of the recordings is '" + mapping.file + "'."
-                                    : "more than one of the recordings is '" + mapping.file + "'; give its whole path.");
+            refuse(matching.empty()
+                       ? "none of the recordings is '" + mapping.file + "'."
+                       : "more than one of the recordings is '" + mapping.file + "'; give its whole path.");
         place.file = matching.front();
     } else {
         while (place.file + 1 < sources.size() && number >= sources[place.file].sound.channels.size())
@@ -80,7 +85,8 @@ Assigned locate(const ChannelMapping& mapping, const std::vector<Source>& source
         for (const auto& source : sources)
             all += source.sound.channels.size();
         const bool one = !mapping.file.empty() || sources.size() == 1;
-        refuse((one ? "'" + sources[place.file].path.string() + "' has " + std::to_string(sources[place.file].sound.channels.size())
+        refuse((one ? "'" + sources[place.file].path.string() + "' has "
+                          + std::to_string(sources[place.file].sound.channels.size())
                     : "the recordings have " + std::to_string(all))
                + " channels; they are counted from 1.");
     }
@@ -96,9 +102,11 @@ std::vector<ChannelMapping> mappingsOf(const RecordingOptions& options)
     if (options.calibration)
         for (const auto& c : options.calibration->channels)
             if (c.quantity)
-                mappings.push_back({"", c.channel, c.quantity, {}, std::to_string(c.channel) + "=" + std::string(name(*c.quantity))});
+                mappings.push_back(
+                    {"", c.channel, c.quantity, {}, std::to_string(c.channel) + "=" + std::string(name(*c.quantity))});
     if (mappings.empty())
-        throw Error(Error::Kind::usage, "A recording does not say what its channels hold; give --map, for example --map 1=voltage:16 --map 2=current:4.");
+        throw Error(Error::Kind::usage, "A recording does not say what its channels hold; give --map, for example "
+                                        "--map 1=voltage:16 --map 2=current:4.");
     return mappings;
 }
 
@@ -111,7 +119,8 @@ std::vector<Assigned> assign(const RecordingOptions& options, const std::vector<
             if (other.file == place.file && other.channel == place.channel)
                 throw Error(Error::Kind::usage, "--map " + mapping.text + ": that channel is mapped already.");
             if (other.quantity == place.quantity && (place.quantity || other.file == place.file))
-                throw Error(Error::Kind::usage, "--map " + mapping.text + ": there is a " + (place.quantity ? std::string(name(*place.quantity)) : "loopback")
+                throw Error(Error::Kind::usage, "--map " + mapping.text + ": there is a "
+                                                    + (place.quantity ? std::string(name(*place.quantity)) : "loopback")
                                                     + " already; a take holds each quantity once.");
         }
         if (place.quantity) {
@@ -120,9 +129,15 @@ std::vector<Assigned> assign(const RecordingOptions& options, const std::vector<
                 number += static_cast<int>(sources[f].sound.channels.size());
             const auto* calibrated = options.calibration ? options.calibration->find(number) : nullptr;
             if (!mapping.fullScale && !calibrated)
-                throw Error(Error::Kind::usage, "--map " + mapping.text + ": what a sample of 1.0 stands for is not known; write it behind a colon, for example "
-                                                    + mapping.text + ":4, or give a --calibration that has channel " + std::to_string(number) + ".");
-            place.factor = mapping.fullScale ? *mapping.fullScale : calibrated->quantityAtFullScale(*place.quantity, options.calibrationFile);
+                throw Error(
+                    Error::Kind::usage,
+                    "--map " + mapping.text
+                        + ": what a sample of 1.0 stands for is not known; write it behind a colon, for example "
+                        + mapping.text + ":4, or give a --calibration that has channel " + std::to_string(number)
+                        + ".");
+            place.factor = mapping.fullScale
+                               ? *mapping.fullScale
+                               : calibrated->quantityAtFullScale(*place.quantity, options.calibrationFile);
             if (calibrated && !calibrated->curve.empty()) {
                 place.curve = options.calibration->folder / calibrated->curve;
                 place.referenceFrequency = calibrated->referenceFrequency;
@@ -139,8 +154,10 @@ void requireFinite(const std::vector<Assigned>& assigned, const std::vector<Sour
         const auto& x = sources[a.file].sound.channels[a.channel];
         const auto bad = std::find_if_not(x.begin(), x.end(), [](double v) { return std::isfinite(v); });
         if (bad != x.end())
-            throw Error(Error::Kind::input, "'" + sources[a.file].path.string() + "': sample " + std::to_string(bad - x.begin()) + " of channel "
-                                                + std::to_string(a.channel + 1) + " is not a finite number; record again.");
+            throw Error(Error::Kind::input, "'" + sources[a.file].path.string() + "': sample "
+                                                + std::to_string(bad - x.begin()) + " of channel "
+                                                + std::to_string(a.channel + 1)
+                                                + " is not a finite number; record again.");
     }
 }
 
@@ -150,10 +167,12 @@ void requireUnclipped(const Assigned& a, const std::vector<Source>& sources, dou
     const auto& x = sources[a.file].sound.channels[a.channel];
     const auto size = static_cast<double>(x.size());
     Channel part;
-    part.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(std::clamp(begin, 0.0, size)), x.begin() + static_cast<std::ptrdiff_t>(std::clamp(end, 0.0, size)));
+    part.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(std::clamp(begin, 0.0, size)),
+                        x.begin() + static_cast<std::ptrdiff_t>(std::clamp(end, 0.0, size)));
     if (const auto clipped = clippedSamples(part); clipped > 0)
-        throw Error(Error::Kind::data, labelOf(a, sources) + " clips: " + std::to_string(clipped)
-                                           + " samples stand at its limit; lower the gain of that input and record again.");
+        throw Error(Error::Kind::data,
+                    labelOf(a, sources) + " clips: " + std::to_string(clipped)
+                        + " samples stand at its limit; lower the gain of that input and record again.");
 }
 
 double levelOf(const std::vector<double>& x, const Excitation& e, std::size_t level)
@@ -191,10 +210,11 @@ public:
         shorten();
         result_.take.channels.resize(assigned_.size());
         for (std::size_t f = 0; f < sources_.size(); ++f) {
-            progress.at(0.6 + 0.4 * static_cast<double>(f) / static_cast<double>(sources_.size()), "reading on the plan's clock");
+            progress.at(0.6 + 0.4 * static_cast<double>(f) / static_cast<double>(sources_.size()),
+                        "reading on the plan's clock");
             read(f);
         }
-        std::erase_if(result_.take.channels, [](const Channel& c) { return c.samples.empty(); });   // loopbacks
+        std::erase_if(result_.take.channels, [](const Channel& c) { return c.samples.empty(); });  // loopbacks
         setLevels();
         return std::move(result_);
     }
@@ -202,19 +222,24 @@ public:
 private:
     bool recorded(Quantity quantity) const
     {
-        return std::any_of(assigned_.begin(), assigned_.end(), [quantity](const Assigned& a) { return a.quantity == quantity; });
+        return std::any_of(assigned_.begin(), assigned_.end(),
+                           [quantity](const Assigned& a) { return a.quantity == quantity; });
     }
 
     void requireVoltage() const
     {
         if (!recorded(Quantity::voltage) && !(options_.gain > 0))
-            throw Error(Error::Kind::usage, "None of the channels is the voltage at the loudspeaker; map it, or give --gain, the volts at the loudspeaker for a "
+            throw Error(Error::Kind::usage, "None of the channels is the voltage at the loudspeaker; map it, or give "
+                                            "--gain, the volts at the loudspeaker for a "
                                             "played sample of 1.0, to take the plan's.");
         if (recorded(Quantity::voltage) && options_.gain > 0)
-            throw Error(Error::Kind::usage, "The voltage was recorded, so --gain has nothing to say; leave one of them out.");
-        if (std::none_of(assigned_.begin(), assigned_.end(), [](const Assigned& a) { return a.quantity && *a.quantity != Quantity::voltage; })
+            throw Error(Error::Kind::usage,
+                        "The voltage was recorded, so --gain has nothing to say; leave one of them out.");
+        if (std::none_of(assigned_.begin(), assigned_.end(),
+                         [](const Assigned& a) { return a.quantity && *a.quantity != Quantity::voltage; })
             && !recorded(Quantity::voltage))
-            throw Error(Error::Kind::usage, "No channel but a loopback is mapped, so there is no take in this recording.");
+            throw Error(Error::Kind::usage,
+                        "No channel but a loopback is mapped, so there is no take in this recording.");
     }
 
     void align(std::size_t file)
@@ -225,10 +250,11 @@ private:
             if (a.file == file)
                 own.push_back(&a);
         if (own.empty())
-            throw Error(Error::Kind::usage, "No channel of '" + source.path.string() + "' is mapped; leave the file out, or map what it holds.");
+            throw Error(Error::Kind::usage, "No channel of '" + source.path.string()
+                                                + "' is mapped; leave the file out, or map what it holds.");
         std::stable_sort(own.begin(), own.end(), [](const auto* a, const auto* b) { return trust(*a) < trust(*b); });
         if (!own.front()->quantity)
-            own.resize(1);   // a loopback is the time
+            own.resize(1);  // a loopback is the time
         std::vector<Witness> witnesses;
         for (const auto* a : own)
             witnesses.push_back({source.sound.channels[a->channel], labelOf(*a, sources_)});
@@ -243,17 +269,22 @@ private:
         if (witness->quantity && !hasVoltage)
             settleTime(*witness, done);
         else if (witness->quantity && done.alignment.likeness < plainLikeness)
-            result_.remarks.push_back("Neither the voltage in '" + done.name + "' nor another channel is much like what was played: its time is that of " + done.witness
-                                      + ", as far as its response is that of a delay.");
+            result_.remarks.push_back("Neither the voltage in '" + done.name
+                                      + "' nor another channel is much like what was played: its time is that of "
+                                      + done.witness + ", as far as its response is that of a delay.");
         else if (witness->quantity && *witness->quantity != Quantity::voltage)
-            result_.remarks.push_back(done.witness + " is more like what was played than the voltage: they may be exchanged, see 'excursion check'.");
+            result_.remarks.push_back(
+                done.witness
+                + " is more like what was played than the voltage: they may be exchanged, see 'excursion check'.");
         if (done.alignment.scatter > 0.05)
-            result_.remarks.push_back("The clock of '" + done.name + "' wanders by " + figure(done.alignment.scatter, "%.2f")
+            result_.remarks.push_back("The clock of '" + done.name + "' wanders by "
+                                      + figure(done.alignment.scatter, "%.2f")
                                       + " samples (rms) about a steady one, which is left in.");
         result_.files.push_back(std::move(done));
     }
 
-    /// The time of a file that was told by what a loudspeaker had passed: what physics allows no loudspeaker to delay, as `check` has it, is taken off.
+    /// The time of a file that was told by what a loudspeaker had passed: what physics allows no loudspeaker to delay,
+    /// as `check` has it, is taken off.
     void settleTime(const Assigned& witness, ImportedFile& done)
     {
         auto& alignment = done.alignment;
@@ -263,21 +294,25 @@ private:
         pair.excitation = shortened(*result_.take.excitation, alignment.realizations);
         const auto length = static_cast<std::size_t>(pair.excitation->totalSamples());
         const auto& played = plan_.input().samples;
-        pair.channels.push_back({Quantity::voltage, "V", 1.0, {played.begin(), played.begin() + static_cast<std::ptrdiff_t>(length)}});
+        pair.channels.push_back(
+            {Quantity::voltage, "V", 1.0, {played.begin(), played.begin() + static_cast<std::ptrdiff_t>(length)}});
         pair.channels.push_back({*witness.quantity, std::string(siUnit(*witness.quantity)), std::abs(witness.factor),
                                  onPlanClock(samples, alignment.clock, done.sampleRate, plan_.sampleRate, length)});
         for (double& x : pair.channels.back().samples)
             x *= witness.factor;
         const auto delay = check(pair).channels.back().delay;
         const bool clear = delay && delay->clear;
-        std::string told = "The time of '" + done.name + "' is that of " + done.witness + ", in which a loudspeaker lies between what was played and what was recorded";
+        std::string told = "The time of '" + done.name + "' is that of " + done.witness
+                           + ", in which a loudspeaker lies between what was played and what was recorded";
         if (clear) {
             alignment.clock.start += delay->seconds * plan_.sampleRate * alignment.clock.step;
             alignment.startError = std::hypot(alignment.startError, delay->standardError * plan_.sampleRate);
             countRealizations(alignment, plan_, samples.size(), done.name);
-            told += "; it was put right by " + figure(delay->seconds * plan_.sampleRate, "%.2f") + " samples, which no loudspeaker can make";
+            told += "; it was put right by " + figure(delay->seconds * plan_.sampleRate, "%.2f")
+                    + " samples, which no loudspeaker can make";
         }
-        result_.remarks.push_back(told + ". Against the voltage its channels may still be late or early by part of a sample"
+        result_.remarks.push_back(told
+                                  + ". Against the voltage its channels may still be late or early by part of a sample"
                                   + (*witness.quantity == Quantity::pressure ? ", and the time of flight is lost" : "")
                                   + ": a loopback or the voltage in the same file would tell.");
     }
@@ -308,10 +343,11 @@ private:
             }
         if (complete < all) {
             e = shortened(e, complete);
-            result_.remarks.push_back("'" + result_.files[shortest].name + "' ends before the plan does: " + std::to_string(complete) + " of " + std::to_string(all)
-                                      + " realizations are complete, of which the take keeps " + std::to_string(e.levels.size()) + " level"
-                                      + (e.levels.size() == 1 ? "" : "s") + " with " + std::to_string(e.realizations) + " realization"
-                                      + (e.realizations == 1 ? "" : "s") + " each.");
+            result_.remarks.push_back(
+                "'" + result_.files[shortest].name + "' ends before the plan does: " + std::to_string(complete) + " of "
+                + std::to_string(all) + " realizations are complete, of which the take keeps "
+                + std::to_string(e.levels.size()) + " level" + (e.levels.size() == 1 ? "" : "s") + " with "
+                + std::to_string(e.realizations) + " realization" + (e.realizations == 1 ? "" : "s") + " each.");
         }
         length_ = static_cast<std::size_t>(e.totalSamples());
         const auto blocks = e.levels.size() * static_cast<std::size_t>(e.realizations);
@@ -327,7 +363,8 @@ private:
         const auto& sound = sources_[file].sound;
         for (const auto& a : assigned_)
             if (a.file == file && !a.quantity) {
-                const auto loop = onPlanClock(sound.channels[a.channel], alignment.clock, sound.sampleRate, plan_.sampleRate, length_);
+                const auto loop = onPlanClock(sound.channels[a.channel], alignment.clock, sound.sampleRate,
+                                              plan_.sampleRate, length_);
                 done.loopback = interfaceResponse(periods_, loop, used_, plan_.sampleRate);
             }
         for (std::size_t i = 0; i < assigned_.size(); ++i) {
@@ -339,9 +376,12 @@ private:
             channel.quantity = *a.quantity;
             channel.unit = siUnit(*a.quantity);
             channel.fullScale = std::abs(a.factor);
-            channel.samples = onPlanClock(sound.channels[a.channel], alignment.clock, sound.sampleRate, plan_.sampleRate, length_, responseOf(a, done));
-            const bool toTheEnd = alignment.realizations * static_cast<std::size_t>(plan_.excitation->samplesPerRealization()) == length_;
-            if (toTheEnd)   // the steady state of the period before
+            channel.samples = onPlanClock(sound.channels[a.channel], alignment.clock, sound.sampleRate,
+                                          plan_.sampleRate, length_, responseOf(a, done));
+            const bool toTheEnd = alignment.realizations
+                                      * static_cast<std::size_t>(plan_.excitation->samplesPerRealization())
+                                  == length_;
+            if (toTheEnd)  // the steady state of the period before
                 for (auto n = length_ - std::min(alignment.missing, length_); n < length_; ++n)
                     channel.samples[n] = channel.samples[n - periods_.length];
             for (double& x : channel.samples)
@@ -375,11 +415,13 @@ private:
             Channel voltage;
             voltage.fullScale = options_.gain;
             voltage.assumed = true;
-            voltage.samples.assign(played.samples.begin(), played.samples.begin() + static_cast<std::ptrdiff_t>(length_));
+            voltage.samples.assign(played.samples.begin(),
+                                   played.samples.begin() + static_cast<std::ptrdiff_t>(length_));
             for (double& u : voltage.samples)
                 u *= options_.gain / played.fullScale;
             take.channels.insert(take.channels.begin(), std::move(voltage));
-            result_.remarks.push_back("The voltage was not recorded: it is the plan's at " + figure(options_.gain, "%.4g")
+            result_.remarks.push_back("The voltage was not recorded: it is the plan's at "
+                                      + figure(options_.gain, "%.4g")
                                       + " V for a played sample of 1.0, and marked as assumed.");
         }
         const auto& voltage = take.find(Quantity::voltage)->samples;
@@ -388,7 +430,8 @@ private:
             levels.push_back(levelOf(voltage, e, k));
         const double ratio = levels.back() / e.levels.back();
         if (recorded(Quantity::voltage) && (ratio < 0.98 || ratio > 1.02))
-            result_.remarks.push_back("The recorded voltage is " + figure(ratio, "%.3g") + " times the plan's; the take's levels are what was recorded.");
+            result_.remarks.push_back("The recorded voltage is " + figure(ratio, "%.3g")
+                                      + " times the plan's; the take's levels are what was recorded.");
         const bool ascend = std::adjacent_find(levels.begin(), levels.end(), std::greater_equal<>()) == levels.end();
         if (levels.front() > 0 && ascend)
             e.levels = levels;
@@ -405,27 +448,32 @@ private:
 };
 
 /// One file as it is: nothing is known of what was played.
-ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<Source>& sources, const std::vector<Assigned>& assigned)
+ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<Source>& sources,
+                             const std::vector<Assigned>& assigned)
 {
     if (sources.size() > 1)
-        throw Error(Error::Kind::usage, "Several recordings can only be laid beside one another by what was played; give its --plan.");
+        throw Error(Error::Kind::usage,
+                    "Several recordings can only be laid beside one another by what was played; give its --plan.");
     if (options.gain > 0)
         throw Error(Error::Kind::usage, "--gain takes the voltage from a plan; give the --plan that was played.");
     const auto& source = sources.front();
     const auto length = source.sound.channels.front().size(), to = options.to.value_or(length);
     if (to > length || options.from >= to)
-        throw Error(Error::Kind::usage, "'" + source.path.string() + "' has " + std::to_string(length) + " samples a channel, so samples "
-                                            + std::to_string(options.from) + " to " + std::to_string(to) + " cannot be taken.");
+        throw Error(Error::Kind::usage, "'" + source.path.string() + "' has " + std::to_string(length)
+                                            + " samples a channel, so samples " + std::to_string(options.from) + " to "
+                                            + std::to_string(to) + " cannot be taken.");
     ImportedRecording result;
     result.take.sampleRate = source.sound.sampleRate;
     for (const auto& a : assigned) {
         if (!a.quantity)
             throw Error(Error::Kind::usage, "A loopback tells nothing without the --plan that was played.");
         if (!a.curve.empty())
-            throw Error(Error::Kind::usage, "The curve of a microphone is applied where a --plan was played; take it out of the calibration for this recording.");
+            throw Error(Error::Kind::usage, "The curve of a microphone is applied where a --plan was played; take it "
+                                            "out of the calibration for this recording.");
         Channel channel {*a.quantity, std::string(siUnit(*a.quantity)), std::abs(a.factor), {}};
         const auto& x = source.sound.channels[a.channel];
-        channel.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(options.from), x.begin() + static_cast<std::ptrdiff_t>(to));
+        channel.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(options.from),
+                               x.begin() + static_cast<std::ptrdiff_t>(to));
         for (double& value : channel.samples)
             value *= a.factor;
         result.take.channels.push_back(std::move(channel));
@@ -436,11 +484,12 @@ ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<
     file.sampleRate = source.sound.sampleRate;
     file.seconds = static_cast<double>(length) / file.sampleRate;
     result.files.push_back(std::move(file));
-    result.remarks.emplace_back("No plan was given, so the recording was taken as it is, without looking for what was played.");
+    result.remarks.emplace_back(
+        "No plan was given, so the recording was taken as it is, without looking for what was played.");
     return result;
 }
 
-} // namespace
+}  // namespace
 
 ImportedRecording importRecording(const RecordingOptions& options, const Progress& progress)
 {
@@ -454,4 +503,4 @@ ImportedRecording importRecording(const RecordingOptions& options, const Progres
     return Assembly(options, sources, assigned).build(progress);
 }
 
-} // namespace excursion
+}  // namespace excursion

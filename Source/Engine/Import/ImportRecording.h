@@ -15,40 +15,43 @@
 namespace excursion {
 
 struct RecordingOptions {
-    std::vector<std::filesystem::path> files;   ///< WAV, AIFF, CAF or FLAC; each was recorded by one device
-    std::optional<Measurement> plan;            ///< what was played; absent: one file is taken as it is
-    std::vector<ChannelMapping> map;            ///< empty: what the calibration says
+    std::vector<std::filesystem::path> files;  ///< WAV, AIFF, CAF or FLAC; each was recorded by one device
+    std::optional<Measurement> plan;           ///< what was played; absent: one file is taken as it is
+    std::vector<ChannelMapping> map;           ///< empty: what the calibration says
     std::optional<Calibration> calibration;
-    std::string calibrationFile;                ///< for sentences
-    double gain = 0.0;                          ///< V at the loudspeaker for a played sample of 1.0, where the voltage was not recorded; 0: not known
-    std::size_t from = 0;                       ///< without a plan: the first sample to take
-    std::optional<std::size_t> to;              ///< and one beyond the last
+    std::string calibrationFile;  ///< for sentences
+    /// V at the loudspeaker for a played sample of 1.0, where the voltage was not recorded; 0: not known
+    double gain = 0.0;
+    std::size_t from = 0;           ///< without a plan: the first sample to take
+    std::optional<std::size_t> to;  ///< and one beyond the last
 };
 
 /// What became of one file.
 struct ImportedFile {
     std::string name;
     double sampleRate = 0.0, seconds = 0.0;
-    Alignment alignment;                            ///< not without a plan
-    std::string witness;                            ///< the channel that told the time
+    Alignment alignment;  ///< not without a plan
+    std::string witness;  ///< the channel that told the time
     std::optional<InterfaceResponse> loopback;
 };
 
 struct ImportedRecording {
     Measurement take;
     std::vector<ImportedFile> files;
-    std::vector<std::string> remarks;   ///< sentences for a person: what was assumed, left out or is odd
+    std::vector<std::string> remarks;  ///< sentences for a person: what was assumed, left out or is odd
 };
 
-/// Makes a take of recordings of a plan. Each file is laid beside the plan by itself (alignRecording) and read on the plan's clock; all its channels are shifted and resampled
-/// alike. Where only what a
-/// loudspeaker has passed tells the time, the delay that physics allows no loudspeaker (PhysicalDelay) is taken off. A loopback is the time of its file, and its response, where it is not flat, is taken off the file's other channels; a microphone's curve off its
+/// Makes a take of recordings of a plan. Each file is laid beside the plan by itself (alignRecording) and read on the
+/// plan's clock; all its channels are shifted and resampled alike. Where only what a loudspeaker has passed tells the
+/// time, the delay that physics allows no loudspeaker (PhysicalDelay) is taken off. A loopback is the time of its file,
+/// and its response, where it is not flat, is taken off the file's other channels; a microphone's curve off its
 /// channel. A voltage that nothing recorded is the plan's, at `gain`, and marked as assumed.
 ///
-/// Where a recording ends early the take ends with the last level of which all realizations are complete, or, when that is none, with the last complete realization of the
-/// first. The levels of the take are those of the recorded voltage.
+/// Where a recording ends early the take ends with the last level of which all realizations are complete, or, when that
+/// is none, with the last complete realization of the first. The levels of the take are those of the recorded voltage.
 ///
-/// Throws Error: usage for maps that do not fit the files, input for files that cannot be used, data for what alignRecording refuses, and for a channel that clips.
+/// Throws Error: usage for maps that do not fit the files, input for files that cannot be used, data for what
+/// alignRecording refuses, and for a channel that clips.
 ImportedRecording importRecording(const RecordingOptions&, const Progress& = {});
 
-} // namespace excursion
+}  // namespace excursion

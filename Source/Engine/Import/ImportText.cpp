@@ -103,7 +103,7 @@ Spectra mappedResponses(const TextTable& table, const ImportOptions& options, co
                "does not say which column is the frequency; add for example --map 1=frequency:Hz.");
 }
 
-} // namespace
+}  // namespace
 
 Take importText(std::string text, const std::string& source, const ImportOptions& options)
 {
@@ -123,7 +123,7 @@ Take importText(std::string text, const std::string& source, const ImportOptions
                        "is a frequency response; --rate, --from, --to and --remove-mean are for time signals.");
         for (const auto& line : table.remarks())
             if (const auto mark = assumedMark.substr(2);
-                line.starts_with(mark))   // what an earlier import had to assume
+                line.starts_with(mark))  // what an earlier import had to assume
                 spectra.remarks.push_back(line.substr(mark.size()));
         if (guess)
             spectra.driver.name = std::filesystem::path(source).stem().string();
@@ -161,4 +161,4 @@ Take importText(const std::filesystem::path& path, const ImportOptions& options)
     return importText(readPlainText(path), path.string(), options);
 }
 
-} // namespace excursion
+}  // namespace excursion

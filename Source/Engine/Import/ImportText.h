@@ -25,4 +25,4 @@ Take importText(const std::filesystem::path&, const ImportOptions& = {});
 /// The same of a text; `source` is its path, whose ending is looked at.
 Take importText(std::string text, const std::string& source, const ImportOptions& = {});
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,7 +9,8 @@
 
 namespace excursion {
 
-InterfaceResponse interfaceResponse(const PlanPeriods& plan, std::span<const double> loopback, const std::vector<std::size_t>& used, double sampleRate)
+InterfaceResponse interfaceResponse(const PlanPeriods& plan, std::span<const double> loopback,
+                                    const std::vector<std::size_t>& used, double sampleRate)
 {
     const auto delays = periodDelays(plan, loopback, used, false, 1);
     const auto& H = delays.response;
@@ -56,4 +57,4 @@ InterfaceResponse interfaceResponse(const PlanPeriods& plan, std::span<const dou
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -33,13 +33,13 @@ double weight(double from, double to)
     return signedWeight(to) - signedWeight(from);
 }
 
-} // namespace
+}  // namespace
 
 std::vector<double> minimumPhase(const std::vector<double>& frequency, const std::vector<double>& magnitude)
 {
     std::vector<double> phase(frequency.size(), 0.0);
     std::vector<double> x, g;
-    constexpr std::size_t many = 2000;   // beyond that the integral goes over every 48th of an octave
+    constexpr std::size_t many = 2000;  // beyond that the integral goes over every 48th of an octave
     for (std::size_t k = 0; k < frequency.size(); ++k) {
         const double at = std::log(frequency[k]);
         if (frequency.size() > many && k > 0 && k + 1 < frequency.size() && at - x.back() < std::numbers::ln2 / 48)
@@ -58,7 +58,7 @@ std::vector<double> minimumPhase(const std::vector<double>& frequency, const std
         --last;
     const double below = (g[first] - g[0]) / (x[first] - x[0]),
                  above = (g[points - 1] - g[last]) / (x[points - 1] - x[last]);
-    constexpr double farAway = 60.0;   // where the weight has died away
+    constexpr double farAway = 60.0;  // where the weight has died away
     for (std::size_t k = 0; k < phase.size(); ++k) {
         const double here = std::log(frequency[k]);
         double sum = below * weight(-farAway, x[0] - here) + above * weight(x[points - 1] - here, farAway);
@@ -73,4 +73,4 @@ std::vector<double> minimumPhase(const std::vector<double>& frequency, const std
     return phase;
 }
 
-} // namespace excursion
+}  // namespace excursion

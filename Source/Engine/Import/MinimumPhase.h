@@ -15,4 +15,4 @@ namespace excursion {
 /// @param magnitude  above 0
 std::vector<double> minimumPhase(const std::vector<double>& frequency, const std::vector<double>& magnitude);
 
-} // namespace excursion
+}  // namespace excursion

@@ -21,8 +21,8 @@ std::vector<double> angularFrequencies(const PlanPeriods& plan)
     return omega;
 }
 
-/// Noise of one line of one period: what the responses of the groups leave, at least 1e-16 of the line's power and the mean of its neighbours,
-/// as a few periods tell little about one line.
+/// Noise of one line of one period: what the responses of the groups leave, at least 1e-16 of the line's power and the
+/// mean of its neighbours, as a few periods tell little about one line.
 std::vector<double> smoothed(const std::vector<double>& noise)
 {
     constexpr std::ptrdiff_t beside = 8;
@@ -42,7 +42,8 @@ std::vector<double> smoothed(const std::vector<double>& noise)
 struct Slope {
     double delay = 0.0, error = 0.0;
 };
-Slope phaseSlope(const std::vector<Complex>& turned, const std::vector<double>& weight, const std::vector<double>& omega)
+Slope phaseSlope(const std::vector<Complex>& turned, const std::vector<double>& weight,
+                 const std::vector<double>& omega)
 {
     double numerator = 0.0, denominator = 0.0;
     for (std::size_t k = 0; k < turned.size(); ++k)
@@ -54,7 +55,8 @@ Slope phaseSlope(const std::vector<Complex>& turned, const std::vector<double>& 
 }
 
 /// The delay of a response that is a gain and a delay or nearly so, and how much it is one.
-void judgeResponse(PeriodDelays& result, const std::vector<double>& power, const std::vector<double>& omega, std::size_t period)
+void judgeResponse(PeriodDelays& result, const std::vector<double>& power, const std::vector<double>& omega,
+                   std::size_t period)
 {
     const auto& H = result.response;
     // The highest peak of the impulse response on a grid finer than a sample, then the slope of the phase that is left.
@@ -94,10 +96,10 @@ void judgeResponse(PeriodDelays& result, const std::vector<double>& power, const
         result.delay -= static_cast<double>(period);
 }
 
-} // namespace
+}  // namespace
 
-PeriodDelays periodDelays(const PlanPeriods& plan, std::span<const double> channel, const std::vector<std::size_t>& used, bool byLevel,
-                          std::size_t realizations)
+PeriodDelays periodDelays(const PlanPeriods& plan, std::span<const double> channel,
+                          const std::vector<std::size_t>& used, bool byLevel, std::size_t realizations)
 {
     const auto omega = angularFrequencies(plan);
     const auto lines = plan.lines.size();
@@ -109,7 +111,8 @@ PeriodDelays periodDelays(const PlanPeriods& plan, std::span<const double> chann
         recorded.push_back(plan.at(channel.subspan(period.start, plan.length)));
         const auto group = byLevel ? period.block / realizations : 0;
         groups = std::max(groups, group + 1);
-        result.periods.push_back({static_cast<double>(period.start) + static_cast<double>(plan.length) / 2, 0.0, 0.0, group});
+        result.periods.push_back(
+            {static_cast<double>(period.start) + static_cast<double>(plan.length) / 2, 0.0, 0.0, group});
     }
 
     LineSpectra response(groups, std::vector<Complex>(lines));
@@ -122,7 +125,8 @@ PeriodDelays periodDelays(const PlanPeriods& plan, std::span<const double> chann
             const auto& X = plan.played[plan.periods[used[i]].block];
             const auto& period = result.periods[i];
             for (std::size_t k = 0; k < lines; ++k) {
-                response[period.group][k] += recorded[i][k] * std::conj(X[k]) * std::polar(1.0, omega[k] * period.delay);
+                response[period.group][k] += recorded[i][k] * std::conj(X[k])
+                                             * std::polar(1.0, omega[k] * period.delay);
                 power[period.group][k] += std::norm(X[k]);
             }
         }
@@ -137,7 +141,9 @@ PeriodDelays periodDelays(const PlanPeriods& plan, std::span<const double> chann
             const auto& period = result.periods[i];
             for (std::size_t k = 0; k < lines; ++k) {
                 const auto expected = X[k] * response[period.group][k] * std::polar(1.0, -omega[k] * period.delay);
-                noise[k] += std::norm(recorded[i][k] - expected) / static_cast<double>(std::max<std::size_t>(1, used.size() - std::min(groups, used.size() - 1)));
+                noise[k] += std::norm(recorded[i][k] - expected)
+                            / static_cast<double>(
+                                std::max<std::size_t>(1, used.size() - std::min(groups, used.size() - 1)));
                 strength = std::max(strength, std::norm(recorded[i][k]));
             }
         }
@@ -190,7 +196,8 @@ PeriodDelays periodDelays(const PlanPeriods& plan, std::span<const double> chann
 namespace {
 
 struct LineFit {
-    double drift = 0.0, driftVariance = 0.0, offset = 0.0, offsetVariance = 0.0, jump = 0.0, jumpVariance = 0.0, chiSquare = 0.0;
+    double drift = 0.0, driftVariance = 0.0, offset = 0.0, offsetVariance = 0.0, jump = 0.0, jumpVariance = 0.0,
+           chiSquare = 0.0;
     int freedom = 0;
 };
 
@@ -234,7 +241,7 @@ LineFit fitLine(const std::vector<PeriodDelays::Period>& periods, std::size_t fr
     return fit;
 }
 
-} // namespace
+}  // namespace
 
 ClockFit fitClock(const std::vector<PeriodDelays::Period>& periods)
 {
@@ -276,4 +283,4 @@ ClockFit fitClock(const std::vector<PeriodDelays::Period>& periods)
     return clock;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -82,7 +82,7 @@ int utf16Without(std::string_view bytes)
     return odd * 2 > looked * 9 / 10 && even == 0 ? 1 : even * 2 > looked * 9 / 10 && odd == 0 ? 2 : 0;
 }
 
-} // namespace
+}  // namespace
 
 std::string plainText(std::string_view bytes, const std::string& source)
 {
@@ -122,4 +122,4 @@ std::string readPlainText(const std::filesystem::path& path, std::uintmax_t most
     return plainText(readText(path, mostBytes), path.string());
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,4 +16,4 @@ std::string plainText(std::string_view bytes, const std::string& source);
 /// The same of a file (see readText for what is refused).
 std::string readPlainText(const std::filesystem::path&, std::uintmax_t mostBytes = std::uintmax_t(1) << 30);
 
-} // namespace excursion
+}  // namespace excursion

@@ -22,8 +22,9 @@ std::vector<std::complex<double>> PlanPeriods::at(std::span<const double> onePer
 PlanPeriods periodsOf(const Measurement& plan)
 {
     if (!plan.excitation)
-        throw Error(Error::Kind::data, "The plan does not say what its excitation is, so a recording cannot be laid beside it; use what "
-                                       "'excursion excite' wrote.");
+        throw Error(Error::Kind::data,
+                    "The plan does not say what its excitation is, so a recording cannot be laid beside it; use what "
+                    "'excursion excite' wrote.");
     const auto& e = *plan.excitation;
     const auto& played = plan.input().samples;
     PlanPeriods result;
@@ -37,7 +38,8 @@ PlanPeriods periodsOf(const Measurement& plan)
     const auto inBlock = static_cast<std::size_t>(e.periodsPerRealization());
     for (std::size_t block = 0; block < blocks; ++block) {
         for (std::size_t p = 0; p < inBlock; ++p)
-            result.periods.push_back({(block * inBlock + p) * result.length, block, p >= static_cast<std::size_t>(e.settlePeriods)});
+            result.periods.push_back(
+                {(block * inBlock + p) * result.length, block, p >= static_cast<std::size_t>(e.settlePeriods)});
         result.played.push_back(result.at(std::span(played).subspan(result.periods.back().start, result.length)));
     }
     return result;
@@ -55,4 +57,4 @@ std::size_t quickLength(std::size_t n)
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,24 +13,26 @@ namespace excursion {
 /// The periods of a plan in the order of time, settling ones among them, with what each of them plays.
 struct PlanPeriods {
     struct Period {
-        std::size_t start = 0;   ///< sample of the plan
-        std::size_t block = 0;   ///< level * realizations + realization
-        bool used = false;       ///< false: it settles
+        std::size_t start = 0;  ///< sample of the plan
+        std::size_t block = 0;  ///< level * realizations + realization
+        bool used = false;      ///< false: it settles
     };
 
-    std::size_t length = 0;      ///< samples of one period, N
-    std::vector<int> lines;      ///< excited, ascending
+    std::size_t length = 0;  ///< samples of one period, N
+    std::vector<int> lines;  ///< excited, ascending
     std::vector<Period> periods;
-    std::vector<std::vector<std::complex<double>>> played;   ///< of each block, one value a line: the DFT of its last period
+    /// of each block, one value a line: the DFT of its last period
+    std::vector<std::vector<std::complex<double>>> played;
 
     /// The DFT over one period of samples, at the excited lines.
     std::vector<std::complex<double>> at(std::span<const double> onePeriod) const;
 };
 
-/// @param plan  with an excitation and its input. Throws Error (data) when the plan has no periods or is shorter than it says.
+/// @param plan  with an excitation and its input. Throws Error (data) when the plan has no periods or is shorter than
+/// it says.
 PlanPeriods periodsOf(const Measurement& plan);
 
 /// The smallest number that is at least n, even, and has no prime factor above 5: a length that transforms quickly.
 std::size_t quickLength(std::size_t n);
 
-} // namespace excursion
+}  // namespace excursion

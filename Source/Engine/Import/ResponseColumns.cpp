@@ -189,7 +189,7 @@ std::string unitOf(const Parts& parts)
     return std::string(siUnit(parts.response.output));
 }
 
-} // namespace
+}  // namespace
 
 Spectra spectraOf(const TextTable& table, const ResponseColumns& columns, bool phaseless, const std::string& source)
 {
@@ -254,4 +254,4 @@ Spectra spectraOf(const TextTable& table, const ResponseColumns& columns, bool p
     return spectra;
 }
 
-} // namespace excursion
+}  // namespace excursion

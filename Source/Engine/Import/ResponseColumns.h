@@ -12,16 +12,16 @@ namespace excursion {
 
 /// One real column of a complex one.
 struct ResponseColumn {
-    std::string column;   ///< title or number, as TextTable::find
+    std::string column;  ///< title or number, as TextTable::find
     ResponseName response;
     ResponsePart part = ResponsePart::magnitude;
-    std::string unit;   ///< empty: by default, see responseScale
+    std::string unit;  ///< empty: by default, see responseScale
 };
 
 /// The columns of a table over frequency.
 struct ResponseColumns {
     std::string frequency;
-    double frequencyFactor = 1.0;   ///< Hz
+    double frequencyFactor = 1.0;  ///< Hz
     std::vector<ResponseColumn> columns;
     std::vector<std::string> remarks;
 };
@@ -41,4 +41,4 @@ ResponseColumns responseColumnsOf(const TextTable&, const std::optional<Response
 /// Throws Error (input, usage or data) with one sentence.
 Spectra spectraOf(const TextTable&, const ResponseColumns&, bool phaseless, const std::string& source);
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,11 +13,11 @@
 namespace excursion {
 namespace {
 
-constexpr double largestCorrection = 60.0;   // dB; beyond it a file is no microphone's
+constexpr double largestCorrection = 60.0;  // dB; beyond it a file is no microphone's
 
 double toDb(std::complex<double> value) { return 20.0 * std::log10(std::max(std::abs(value), 1e-20)); }
 
-} // namespace
+}  // namespace
 
 ResponseCurve::ResponseCurve(std::vector<double> frequency, const std::vector<std::complex<double>>& value)
 {
@@ -34,11 +34,13 @@ ResponseCurve::ResponseCurve(std::vector<double> frequency, const std::vector<st
 std::complex<double> ResponseCurve::operator()(double frequency) const
 {
     const double x = std::log(std::max(frequency, 1e-6));
-    const auto above = static_cast<std::size_t>(std::upper_bound(logFrequency_.begin(), logFrequency_.end(), x) - logFrequency_.begin());
+    const auto above = static_cast<std::size_t>(std::upper_bound(logFrequency_.begin(), logFrequency_.end(), x)
+                                                - logFrequency_.begin());
     const auto low = above == 0 ? 0 : above - 1, high = std::min(above, logFrequency_.size() - 1);
     const double width = logFrequency_[high] - logFrequency_[low];
     const double part = width > 0 ? std::clamp((x - logFrequency_[low]) / width, 0.0, 1.0) : 0.0;
-    const double db = db_[low] + part * (db_[high] - db_[low]), phase = phase_[low] + part * (phase_[high] - phase_[low]);
+    const double db = db_[low] + part * (db_[high] - db_[low]),
+                 phase = phase_[low] + part * (phase_[high] - phase_[low]);
     return std::polar(std::pow(10.0, db / 20.0), phase);
 }
 
@@ -47,7 +49,9 @@ double ResponseCurve::db(double frequency) const { return toDb((*this)(frequency
 ResponseCurve readMicrophoneCurve(const std::filesystem::path& path, double reference)
 {
     constexpr double radian = std::numbers::pi / 180.0;
-    const auto refuse = [&](const std::string& why) { throw Error(Error::Kind::input, "'" + path.string() + "' " + why); };
+    const auto refuse = [&](const std::string& why) {
+        throw Error(Error::Kind::input, "'" + path.string() + "' " + why);
+    };
     const TextTable table(readPlainText(path), path.string());
     if (table.titles().size() < 2 || table.rows() < 2)
         refuse("has " + std::to_string(table.rows()) + " lines of " + std::to_string(table.titles().size())
@@ -59,9 +63,11 @@ ResponseCurve readMicrophoneCurve(const std::filesystem::path& path, double refe
     std::vector<double> magnitude;
     for (std::size_t k = 0; k < frequency.size(); ++k) {
         if (!(frequency[k] > (k == 0 ? 0.0 : frequency[k - 1])))
-            refuse("has a frequency that is not positive or not above the one before it in line " + std::to_string(table.lineOf(k)) + ".");
+            refuse("has a frequency that is not positive or not above the one before it in line "
+                   + std::to_string(table.lineOf(k)) + ".");
         if (std::abs(db[k]) > largestCorrection)
-            refuse("has a correction beyond 60 dB at " + std::to_string(frequency[k]) + " Hz; a microphone's response in dB is expected.");
+            refuse("has a correction beyond 60 dB at " + std::to_string(frequency[k])
+                   + " Hz; a microphone's response in dB is expected.");
         magnitude.push_back(std::pow(10.0, db[k] / 20.0));
     }
     const bool phases = std::any_of(degrees.begin(), degrees.end(), [](double d) { return d != 0.0; });
@@ -75,4 +81,4 @@ ResponseCurve readMicrophoneCurve(const std::filesystem::path& path, double refe
     return {frequency, value};
 }
 
-} // namespace excursion
+}  // namespace excursion

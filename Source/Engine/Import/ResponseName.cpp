@@ -55,7 +55,7 @@ std::string squeezed(std::string_view text)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<ResponseName> responseNamed(std::string_view text)
 {
@@ -162,4 +162,4 @@ std::optional<ResponseName> ratioOfUnit(std::string_view unit)
     return found;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,7 @@ namespace excursion {
 /// What a complex column over frequency is: a response, output over input, or the spectrum of one quantity.
 struct ResponseName {
     Quantity output = Quantity::voltage;
-    std::optional<Quantity> input;   ///< absent: a spectrum
+    std::optional<Quantity> input;  ///< absent: a spectrum
 
     bool operator==(const ResponseName&) const = default;
     bool isImpedance() const { return output == Quantity::voltage && input == Quantity::current; }
@@ -45,6 +45,6 @@ bool isSoundLevel(std::string_view unit);
 /// The only ratio whose unit this is: "mm/V" is displacement/voltage. nullopt when it is none, or more than one.
 std::optional<ResponseName> ratioOfUnit(std::string_view);
 
-inline constexpr double hearingThreshold = 20e-6;   ///< Pa
+inline constexpr double hearingThreshold = 20e-6;  ///< Pa
 
-} // namespace excursion
+}  // namespace excursion

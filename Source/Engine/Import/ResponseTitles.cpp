@@ -107,7 +107,7 @@ std::string quotedList(const std::vector<std::string>& names)
     return text;
 }
 
-} // namespace
+}  // namespace
 
 ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<ResponseName>& as,
                                   const std::optional<ResponseName>& guess, const std::string& source)
@@ -119,7 +119,7 @@ ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<Re
     ResponseColumns found;
     found.frequency = "1";
     found.frequencyFactor = frequencyFactor(columnTitle(titles.front())).value_or(1.0);
-    if (!table.hasTitles()) {   // frequency, magnitude and phase, as in a ZMA or FRD
+    if (!table.hasTitles()) {  // frequency, magnitude and phase, as in a ZMA or FRD
         const auto response = as ? as : guess;
         const bool sound = response && response->output == Quantity::pressure;
         found.columns.push_back({"2", response.value(), sound ? ResponsePart::decibels : ResponsePart::magnitude, {}});
@@ -131,7 +131,7 @@ ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<Re
     std::vector<std::string> left;
     for (std::size_t c = 1; c < titles.size(); ++c) {
         const auto& title = titles[c];
-        const auto number = std::to_string(c + 1);   // titles may repeat
+        const auto number = std::to_string(c + 1);  // titles may repeat
         if (frequencyFactor(columnTitle(title))) {
             found.remarks.push_back("'" + source
                                     + "' holds several curves, each with frequencies of its own; the first is taken.");
@@ -197,4 +197,4 @@ ResponseColumns responseColumnsOf(const TextTable& table, const std::optional<Re
     return found;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -20,7 +20,7 @@ constexpr std::string_view intervalMark = "// sample interval";
 
 struct Header {
     std::optional<double> peak, length, interval, start, offset;
-    double low = 0.0, high = 0.0;   ///< Hz
+    double low = 0.0, high = 0.0;  ///< Hz
     bool normalised = false, windowed = false, minimumPhase = false, clocked = false;
 };
 
@@ -86,7 +86,7 @@ std::optional<double> numberOf(std::string_view text)
     return parseNumber(decimal);
 }
 
-} // namespace
+}  // namespace
 
 bool isRewImpulse(std::string_view text)
 {
@@ -189,4 +189,4 @@ Spectra rewImpulse(std::string_view text, const std::string& source)
     return spectra;
 }
 
-} // namespace excursion
+}  // namespace excursion

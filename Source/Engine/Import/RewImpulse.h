@@ -21,4 +21,4 @@ bool isRewImpulse(std::string_view text);
 /// sentence: no interval, fewer or more samples than the header claims, a text among them.
 Spectra rewImpulse(std::string_view text, const std::string& source);
 
-} // namespace excursion
+}  // namespace excursion

@@ -143,7 +143,7 @@ bool onlyUnits(const std::vector<std::string>& cells)
                           [](const auto& cell) { return cell.empty() || isUnit(withoutBrackets(cell)); });
 }
 
-} // namespace
+}  // namespace
 
 TextTable::TextTable(std::string text, std::string source) : text_(std::move(text)), source_(std::move(source))
 {
@@ -321,4 +321,4 @@ std::optional<double> parseNumber(std::string_view text)
     return value;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -39,22 +39,22 @@ public:
 
 private:
     struct Row {
-        std::size_t line;   ///< in the file, from 1
+        std::size_t line;  ///< in the file, from 1
         std::size_t first, length;
     };
     std::string_view textOf(const Row& row) const { return std::string_view(text_).substr(row.first, row.length); }
     void findTitles(const std::vector<Row>& above, std::size_t columns);
 
     std::string text_, source_;
-    char separator_ = ',';   ///< ' ' stands for any run of blanks and tabs
+    char separator_ = ',';  ///< ' ' stands for any run of blanks and tabs
     bool hasTitles_ = false;
     std::vector<std::string> titles_, remarks_;
     std::vector<Row> rows_;
-    mutable bool points_ = false, commas_ = false;   ///< seen as decimal marks
+    mutable bool points_ = false, commas_ = false;  ///< seen as decimal marks
 };
 
 /// The number that the whole text is, without regard to the locale and with a leading plus allowed; nullopt when it is
 /// something else.
 std::optional<double> parseNumber(std::string_view);
 
-} // namespace excursion
+}  // namespace excursion

@@ -18,7 +18,7 @@
 namespace excursion {
 namespace {
 
-constexpr double frameSeconds = 0.05, partSeconds = 0.25, shortest = 0.5;   // s
+constexpr double frameSeconds = 0.05, partSeconds = 0.25, shortest = 0.5;  // s
 constexpr double steadyDb = 0.5, noisiestDb = -20.0;
 constexpr double steadyLevel = 0.02, steadyFrequency = 0.002;
 constexpr double tau = 2 * std::numbers::pi;
@@ -42,7 +42,8 @@ Stretch steadyStretch(std::span<const double> x, std::size_t frame)
     for (std::size_t k = 0; k < level.size();) {
         std::size_t end = k;
         std::vector<double> run;
-        while (end < level.size() && std::abs(level[end] - loud) <= 3.0 && (end == k || std::abs(level[end] - level[end - 1]) <= steadyDb))
+        while (end < level.size() && std::abs(level[end] - loud) <= 3.0
+               && (end == k || std::abs(level[end] - level[end - 1]) <= steadyDb))
             ++end;
         if (end - k > best.end - best.begin)
             best = {k, end};
@@ -52,8 +53,8 @@ Stretch steadyStretch(std::span<const double> x, std::size_t frame)
 }
 
 struct Fit {
-    std::complex<double> amplitude;   ///< of exp(j w n), n from the part's first sample
-    double residual = 0.0;            ///< mean square
+    std::complex<double> amplitude;  ///< of exp(j w n), n from the part's first sample
+    double residual = 0.0;           ///< mean square
 };
 
 Fit fitSine(std::span<const double> x, double omega)
@@ -70,8 +71,8 @@ Fit fitSine(std::span<const double> x, double omega)
     return {{c(0), c(1)}, (A * c - b).squaredNorm() / static_cast<double>(x.size())};
 }
 
-/// Samples at an extreme, three or more equal ones in a row, of a tone whose fundamental goes beyond that extreme: its tops are cut off. (A coarsely
-/// quantized top has as many, but is as high as the fundamental.)
+/// Samples at an extreme, three or more equal ones in a row, of a tone whose fundamental goes beyond that extreme: its
+/// tops are cut off. (A coarsely quantized top has as many, but is as high as the fundamental.)
 long flattened(std::span<const double> x, double amplitude)
 {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
@@ -98,22 +99,26 @@ double coarseFrequency(std::span<const double> x)
     for (const double v : x)
         mean += v / static_cast<double>(x.size());
     for (std::size_t n = 0; n < x.size(); ++n)
-        windowed[n] = (x[n] - mean) * (0.5 - 0.5 * std::cos(tau * static_cast<double>(n) / static_cast<double>(x.size())));
+        windowed[n] = (x[n] - mean)
+                      * (0.5 - 0.5 * std::cos(tau * static_cast<double>(n) / static_cast<double>(x.size())));
     const auto X = fft(windowed);
     std::size_t peak = 1;
     for (std::size_t k = 1; k + 1 < X.size(); ++k)
         if (std::norm(X[k]) > std::norm(X[peak]))
             peak = k;
-    const double a = std::log(std::norm(X[peak - 1]) + 1e-300), b = std::log(std::norm(X[peak]) + 1e-300), c = std::log(std::norm(X[peak + 1]) + 1e-300);
+    const double a = std::log(std::norm(X[peak - 1]) + 1e-300), b = std::log(std::norm(X[peak]) + 1e-300),
+                 c = std::log(std::norm(X[peak + 1]) + 1e-300);
     const double bend = a - 2 * b + c;
     return tau * (static_cast<double>(peak) + (bend < 0 ? 0.5 * (a - c) / bend : 0.0)) / static_cast<double>(x.size());
 }
 
-} // namespace
+}  // namespace
 
 Tone findTone(std::span<const double> samples, double sampleRate, const char* label)
 {
-    const auto refuse = [label](const std::string& why) { throw Error(Error::Kind::data, "The tone on " + std::string(label) + " cannot be used: " + why); };
+    const auto refuse = [label](const std::string& why) {
+        throw Error(Error::Kind::data, "The tone on " + std::string(label) + " cannot be used: " + why);
+    };
     if (rmsOf(samples) < 1e-6)
         refuse("the channel is silent; check the cable and --channel.");
     const auto frame = static_cast<std::size_t>(std::max(16.0, std::round(frameSeconds * sampleRate)));
@@ -135,7 +140,8 @@ Tone findTone(std::span<const double> samples, double sampleRate, const char* la
             fits.push_back(fitSine(x.subspan(p * length, length), omega));
         double sum = 0.0;
         for (std::size_t p = 1; p < parts; ++p) {
-            turns.push_back(std::arg(fits[p].amplitude * std::conj(fits[p - 1].amplitude) * std::polar(1.0, -omega * static_cast<double>(length))));
+            turns.push_back(std::arg(fits[p].amplitude * std::conj(fits[p - 1].amplitude)
+                                     * std::polar(1.0, -omega * static_cast<double>(length))));
             sum += turns.back();
         }
         if (pass < 2 && parts > 1)
@@ -158,10 +164,12 @@ Tone findTone(std::span<const double> samples, double sampleRate, const char* la
     if (const auto flat = flattened(x, tone.rms * std::numbers::sqrt2); flat > 0)
         refuse(std::to_string(flat) + " samples stand at the converter's limit; lower the gain.");
     if (tone.noiseDb > noisiestDb)
-        refuse("noise and distortion are only " + figure(-tone.noiseDb) + " dB below it; 20 dB are needed. Is anything else playing?");
+        refuse("noise and distortion are only " + figure(-tone.noiseDb)
+               + " dB below it; 20 dB are needed. Is anything else playing?");
     const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
     if (*most - *least > steadyLevel * tone.rms)
-        refuse("its level changes by " + figure(100 * (*most - *least) / tone.rms) + " % while it sounds; 2 % are allowed.");
+        refuse("its level changes by " + figure(100 * (*most - *least) / tone.rms)
+               + " % while it sounds; 2 % are allowed.");
     for (const double turn : turns)
         if (std::abs(turn) > steadyFrequency * omega * static_cast<double>(length))
             refuse("its frequency wanders by more than 0.2 %.");
@@ -175,4 +183,4 @@ Tone findTone(std::span<const double> samples, double sampleRate, const char* la
     return tone;
 }
 
-} // namespace excursion
+}  // namespace excursion

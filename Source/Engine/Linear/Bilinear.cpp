@@ -18,7 +18,8 @@ MatrixXd inverse(const MatrixXd& M, const char* pole)
 {
     const Eigen::PartialPivLU<MatrixXd> lu(M);
     if (M.rows() > 0 && !(lu.rcond() > 1e-15))
-        throw Error(Error::Kind::numerical, std::string("The bilinear transform does not exist: the model has a pole at ") + pole + ".");
+        throw Error(Error::Kind::numerical,
+                    std::string("The bilinear transform does not exist: the model has a pole at ") + pole + ".");
     return lu.inverse();
 }
 
@@ -31,7 +32,7 @@ void require(const StateSpace& model, bool continuous, const char* sentence)
         throw Error(Error::Kind::usage, sentence);
 }
 
-} // namespace
+}  // namespace
 
 StateSpace toDiscrete(const StateSpace& model, double sampleRate)
 {
@@ -43,7 +44,7 @@ StateSpace toDiscrete(const StateSpace& model, double sampleRate)
     const MatrixXd R = inverse(a * I - model.A, "2 fs");
     StateSpace result;
     result.sampleRate = sampleRate;
-    result.A = I + 2.0 * R * model.A;   // (a I - A)^-1 (a I + A), without losing the small difference to I
+    result.A = I + 2.0 * R * model.A;  // (a I - A)^-1 (a I + A), without losing the small difference to I
     result.B = std::sqrt(2.0 * a) * R * model.B;
     result.C = std::sqrt(2.0 * a) * model.C * R;
     result.D = model.D + model.C * R * model.B;
@@ -74,4 +75,4 @@ double unwarpedFrequency(double frequency, double sampleRate)
     return sampleRate / std::numbers::pi * std::tan(std::numbers::pi * frequency / sampleRate);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -5,9 +5,9 @@
 
 namespace excursion {
 
-/// The bilinear transform s = 2 fs (z - 1)/(z + 1) of seed 4.3.2, which maps the imaginary axis onto the unit circle, the stable
-/// half-plane onto its inside, and warps frequencies: omega = 2 fs tan(omega_d / 2).
-/// With a = 2 fs (eqs 4.24, and their inverse):
+/// The bilinear transform s = 2 fs (z - 1)/(z + 1) of seed 4.3.2, which maps the imaginary axis onto the unit circle,
+/// the stable half-plane onto its inside, and warps frequencies: omega = 2 fs tan(omega_d / 2). With a = 2 fs
+/// (eqs 4.24, and their inverse):
 ///     A = a (Ad + I)^-1 (Ad - I)         Ad = (a I - A)^-1 (a I + A)
 ///     B = sqrt(2a) (Ad + I)^-1 Bd        Bd = sqrt(2a) (a I - A)^-1 B
 ///     C = sqrt(2a) Cd (Ad + I)^-1        Cd = sqrt(2a) C (a I - A)^-1
@@ -18,11 +18,13 @@ namespace excursion {
 /// and Error (numerical) when it has a pole at 2 fs.
 StateSpace toDiscrete(const StateSpace&, double sampleRate);
 
-/// Discrete to continuous time. Throws Error (usage) when the model is continuous, and Error (numerical) when it has a pole at z = -1.
+/// Discrete to continuous time. Throws Error (usage) when the model is continuous, and Error (numerical) when it has a
+/// pole at z = -1.
 StateSpace toContinuous(const StateSpace&);
 
-/// The frequency (Hz) at which the discrete model has the response that the continuous one has at `frequency`, and back.
-double warpedFrequency(double frequency, double sampleRate);     ///< fs/pi atan(pi f / fs)
-double unwarpedFrequency(double frequency, double sampleRate);   ///< fs/pi tan(pi f / fs)
+/// The frequency (Hz) at which the discrete model has the response that the continuous one has at `frequency`, and
+/// back.
+double warpedFrequency(double frequency, double sampleRate);    ///< fs/pi atan(pi f / fs)
+double unwarpedFrequency(double frequency, double sampleRate);  ///< fs/pi tan(pi f / fs)
 
-} // namespace excursion
+}  // namespace excursion

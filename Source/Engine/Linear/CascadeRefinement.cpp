@@ -37,7 +37,8 @@ struct Half {
         const VectorXd c = fit.C.row(0).transpose();
         const MatrixXd permitted = permittedCoefficients(fit.sections);
         MatrixXcd result(lambda.size(), n + permitted.cols());
-        result << partialFractionSlopes(fit.sections, lambda, columns.leftCols(n), c) + columns * coefficientSlopes(fit.sections, c),
+        result << partialFractionSlopes(fit.sections, lambda, columns.leftCols(n), c)
+                      + columns * coefficientSlopes(fit.sections, c),
             columns * permitted;
         return result;
     }
@@ -49,17 +50,21 @@ struct Half {
 class Cascade {
 public:
     Cascade(const FrequencyData& between, const FrequencyData& after)
-        : between_(between), after_(after), lambda_(evaluationPoints(between.frequency, 0.0)),
-            square_(lambda_.cwiseAbs2().cast<std::complex<double>>() * -1.0),
-          ofBetween_(between.deviation.col(0).cwiseInverse()), ofAfter_(after.deviation.col(0).cwiseInverse())
+        : between_(between),
+          after_(after),
+          lambda_(evaluationPoints(between.frequency, 0.0)),
+          square_(lambda_.cwiseAbs2().cast<std::complex<double>>() * -1.0),
+          ofBetween_(between.deviation.col(0).cwiseInverse()),
+          ofAfter_(after.deviation.col(0).cwiseInverse())
     {
     }
 
     double likelihood(const PartialFractionFit& first, const PartialFractionFit& second) const
     {
-        const VectorXcd M = Half(first, lambda_).response, P = square_.cwiseProduct(M).cwiseProduct(Half(second, lambda_).response);
+        const VectorXcd M = Half(first, lambda_).response,
+                        P = square_.cwiseProduct(M).cwiseProduct(Half(second, lambda_).response);
         return (M - between_.value.col(0)).cwiseProduct(ofBetween_).squaredNorm()
-            + (P - after_.value.col(0)).cwiseProduct(ofAfter_).squaredNorm();
+               + (P - after_.value.col(0)).cwiseProduct(ofAfter_).squaredNorm();
     }
 
     /// [J, what is left], 4 K rows.
@@ -67,7 +72,8 @@ public:
     {
         const Half M(first, lambda_), K(second, lambda_);
         const MatrixXcd ofFirst = M.slopes(first, lambda_), ofSecond = K.slopes(second, lambda_);
-        const VectorXcd throughSecond = square_.cwiseProduct(K.response), throughFirst = square_.cwiseProduct(M.response);
+        const VectorXcd throughSecond = square_.cwiseProduct(K.response),
+                        throughFirst = square_.cwiseProduct(M.response);
         const Index lines = lambda_.size(), a = ofFirst.cols(), b = ofSecond.cols();
         MatrixXd top = MatrixXd::Zero(2 * lines, a + b + 1), bottom(2 * lines, a + b + 1);
         placeRealRows(top, 0, ofFirst, ofBetween_);
@@ -93,9 +99,10 @@ PartialFractionFit moved(PartialFractionFit fit, const VectorXd& step)
     const MatrixXd permitted = permittedCoefficients(fit.sections);
     VectorXd coefficients(n + 1);
     coefficients << fit.C.row(0).transpose(), fit.D;
-    coefficients += coefficientSlopes(fit.sections, fit.C.row(0).transpose()) * step.head(n) + permitted * step.tail(permitted.cols());
+    coefficients += coefficientSlopes(fit.sections, fit.C.row(0).transpose()) * step.head(n)
+                    + permitted * step.tail(permitted.cols());
     fit.sections.factors += step.head(n);
-    const MatrixXd next = permittedCoefficients(fit.sections);   // along a curve, of which the slope is a tangent
+    const MatrixXd next = permittedCoefficients(fit.sections);  // along a curve, of which the slope is a tangent
     coefficients = (next * (next.transpose() * coefficients)).eval();
     fit.C.row(0) = coefficients.head(n).transpose();
     fit.D[0] = coefficients[n];
@@ -105,27 +112,30 @@ PartialFractionFit moved(PartialFractionFit fit, const VectorXd& step)
 Index freedomOf(const PartialFractionFit& fit) { return 2 * fit.sections.order() + 1 - fit.sections.relativeDegree; }
 
 void requireCascade(const PartialFractionFit& first, const PartialFractionFit& second, const FrequencyData& between,
-                    const FrequencyData& after,
-                    const PoleRefinementOptions& options)
+                    const FrequencyData& after, const PoleRefinementOptions& options)
 {
     std::string reason;
     if (!options.isValid(&reason) || !between.isValid(&reason) || !after.isValid(&reason))
         throw Error(Error::Kind::usage, "The cascade cannot be refined: " + reason + ".");
-    if (between.value.cols() != 1 || after.value.cols() != 1 || between.frequency != after.frequency || between.deviation.size() == 0
-        || after.deviation.size() == 0)
-        throw Error(Error::Kind::usage, "The cascade cannot be refined: it takes two responses at the same frequencies, with deviations.");
+    if (between.value.cols() != 1 || after.value.cols() != 1 || between.frequency != after.frequency
+        || between.deviation.size() == 0 || after.deviation.size() == 0)
+        throw Error(Error::Kind::usage,
+                    "The cascade cannot be refined: it takes two responses at the same frequencies, with deviations.");
     for (const auto* fit : {&first, &second})
-        if (fit->C.rows() != 1 || fit->sections.sampleRate != 0.0 || fit->sections.alpha != 1.0 || !isStable(fit->sections))
-            throw Error(Error::Kind::usage,
-                        "The cascade cannot be refined: its models are not stable ones of continuous time with one output.");
+        if (fit->C.rows() != 1 || fit->sections.sampleRate != 0.0 || fit->sections.alpha != 1.0
+            || !isStable(fit->sections))
+            throw Error(
+                Error::Kind::usage,
+                "The cascade cannot be refined: its models are not stable ones of continuous time with one output.");
     if (first.sections.relativeDegree < 2)
-        throw Error(Error::Kind::usage, "The cascade cannot be refined: the relative degree of its first model is below 2.");
+        throw Error(Error::Kind::usage,
+                    "The cascade cannot be refined: the relative degree of its first model is below 2.");
 }
 
-} // namespace
+}  // namespace
 
-CascadeRefinement refineCascade(const PartialFractionFit& first, const PartialFractionFit& second, const FrequencyData& between,
-                                const FrequencyData& after,
+CascadeRefinement refineCascade(const PartialFractionFit& first, const PartialFractionFit& second,
+                                const FrequencyData& between, const FrequencyData& after,
                                 const PoleRefinementOptions& options)
 {
     requireCascade(first, second, between, after, options);
@@ -139,7 +149,8 @@ CascadeRefinement refineCascade(const PartialFractionFit& first, const PartialFr
     for (;;) {
         ++result.iterations;
         const MatrixXd rows = cascade.system(result.first, result.second);
-        const MatrixXd R = MatrixXd(Eigen::HouseholderQR<MatrixXd>(rows).matrixQR().topRows(P + 1).triangularView<Eigen::Upper>());
+        const MatrixXd R = MatrixXd(
+            Eigen::HouseholderQR<MatrixXd>(rows).matrixQR().topRows(P + 1).triangularView<Eigen::Upper>());
         steps.take(R.topLeftCorner(P, P), R.col(P).head(P), [&](const VectorXd& step) {
             const auto one = moved(result.first, step.head(a)), other = moved(result.second, step.tail(b));
             if (!isStable(one.sections) || !isStable(other.sections))
@@ -158,4 +169,4 @@ CascadeRefinement refineCascade(const PartialFractionFit& first, const PartialFr
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

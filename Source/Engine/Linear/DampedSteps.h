@@ -12,8 +12,8 @@
 
 namespace excursion {
 
-/// The steps of Levenberg and Marquardt's search, min |rest - J d|^2 + damping |d/scale|^2, the columns of J scaled to unit length: the
-/// damping grows sixfold with every step that is refused, and falls fivefold with one that is taken.
+/// The steps of Levenberg and Marquardt's search, min |rest - J d|^2 + damping |d/scale|^2, the columns of J scaled to
+/// unit length: the damping grows sixfold with every step that is refused, and falls fivefold with one that is taken.
 class DampedSteps {
 public:
     explicit DampedSteps(const PoleRefinementOptions& options) : options_(options) {}
@@ -24,8 +24,8 @@ public:
     void take(const Eigen::MatrixXd& J, const Eigen::VectorXd& rest, Lower lower)
     {
         const auto n = J.cols();
-        const Eigen::VectorXd scale
-            = J.colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+        const Eigen::VectorXd scale = J.colwise().norm().transpose().unaryExpr(
+            [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
         double gain = 0.0;
         accepted_ = false;
         for (int attempt = 0; attempt < 12 && !accepted_; ++attempt) {
@@ -41,14 +41,15 @@ public:
         still_ = accepted_ && gain < options_.costTolerance ? still_ + 1 : 0;
     }
 
-    /// Whether the search is over; then and at its largest number of iterations `summary`, with iterations, converged and reason, tells why.
+    /// Whether the search is over; then and at its largest number of iterations `summary`, with iterations, converged
+    /// and reason, tells why.
     template <class Summary>
     bool ended(Summary& summary) const
     {
         summary.converged = !accepted_ || still_ >= 2;
-        summary.reason = !accepted_           ? "no step lowers the error any further"
-                       : summary.converged ? "the error no longer falls"
-                                           : "the largest number of iterations was reached";
+        summary.reason = !accepted_          ? "no step lowers the error any further"
+                         : summary.converged ? "the error no longer falls"
+                                             : "the largest number of iterations was reached";
         return summary.converged || summary.iterations >= options_.maximumIterations;
     }
 
@@ -59,4 +60,4 @@ private:
     bool accepted_ = false;
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -27,7 +27,7 @@ bool stableBlock(const MatrixXd& L, bool continuous, double alpha)
     const double half = 0.5 * L.trace();
     if (continuous && (alpha == 1.0 || L.rows() == 1))
         return half < 0.0;
-    if (continuous)   // outside of the sector: cos(arg) = half/sqrt(determinant)
+    if (continuous)  // outside of the sector: cos(arg) = half/sqrt(determinant)
         return half < std::cos(0.5 * std::numbers::pi * alpha) * std::sqrt(L.determinant());
     // |1 + l|^2 - 1, with no digit lost at l far below 1; of a pair it is the determinant that counts.
     return L.rows() == 1 ? L(0, 0) * (2.0 + L(0, 0)) < 0.0 : 2.0 * half + L.determinant() < 0.0;
@@ -45,7 +45,8 @@ std::vector<Block> blocksOf(const MatrixXd& T, bool continuous, double alpha)
     return blocks;
 }
 
-/// Exchanges neighbouring blocks of p and q rows at `at`: [-X; I] with T11 X - X T22 = T12 spans the invariant subspace of T22.
+/// Exchanges neighbouring blocks of p and q rows at `at`: [-X; I] with T11 X - X T22 = T12 spans the invariant subspace
+/// of T22.
 void exchange(MatrixXd& T, MatrixXd& U, Index at, Index p, Index q)
 {
     const MatrixXd X = solveSylvester(T.block(at, at, p, p), T.block(at + p, at + p, q, q), T.block(at, at + p, p, q));
@@ -80,7 +81,7 @@ Index stableToTop(MatrixXd& T, MatrixXd& U, bool continuous, double alpha)
     return rows;
 }
 
-} // namespace
+}  // namespace
 
 Decomposition decomposed(const StateSpace& model, double alpha)
 {
@@ -88,8 +89,8 @@ Decomposition decomposed(const StateSpace& model, double alpha)
     if (!model.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be decomposed: " + reason + ".");
     if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && !model.continuous()))
-        throw Error(Error::Kind::usage,
-                    "The model cannot be decomposed: its order of differentiation lies between 0 and 2, and is 1 in discrete time.");
+        throw Error(Error::Kind::usage, "The model cannot be decomposed: its order of differentiation lies between 0 "
+                                        "and 2, and is 1 in discrete time.");
     const auto n = model.order();
     Decomposition result {model, model, 0.0};
     MatrixXd T = model.A, U = MatrixXd::Identity(n, n);
@@ -103,7 +104,8 @@ Decomposition decomposed(const StateSpace& model, double alpha)
     const auto k = stableToTop(T, U, model.continuous(), alpha), r = n - k;
     const MatrixXd X = solveSylvester(T.topLeftCorner(k, k), T.bottomRightCorner(r, r), -T.topRightCorner(k, r));
     if (!X.allFinite())
-        throw Error(Error::Kind::numerical, "Stable and unstable poles of the model lie too close together to be told apart.");
+        throw Error(Error::Kind::numerical,
+                    "Stable and unstable poles of the model lie too close together to be told apart.");
     const MatrixXd B = U.transpose() * model.B, C = model.C * U;
     T.diagonal().array() += shift;
     result.coupling = X.norm();
@@ -134,4 +136,4 @@ StateSpace sum(const StateSpace& a, const StateSpace& b)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -31,7 +31,8 @@ void require(const FrequencyData& data, const DelayedFitOptions& options)
     if (!data.isValid(&reason))
         throw Error(Error::Kind::data, "A delay cannot be fitted: " + reason + ".");
     if (data.inputs != 1)
-        throw Error(Error::Kind::data, "A delay is fitted to responses to one input; these are to " + std::to_string(data.inputs) + ".");
+        throw Error(Error::Kind::data,
+                    "A delay is fitted to responses to one input; these are to " + std::to_string(data.inputs) + ".");
 }
 
 PoleRefinementOptions stableRefinement(const DelayedFitOptions& options)
@@ -67,8 +68,8 @@ std::optional<PartialFractionFit> freshFit(const FrequencyData& data, const Iden
 
 /// The delay's own column when poles, C and D are projected out of it, and the residual along it.
 struct DelayColumn {
-    double length = 0.0, along = 0.0;   ///< per 1/w_max, so that units do not enter
-    double residual = 0.0;              ///< |w (G exp - model)|^2
+    double length = 0.0, along = 0.0;  ///< per 1/w_max, so that units do not enter
+    double residual = 0.0;             ///< |w (G exp - model)|^2
 };
 
 DelayColumn delayColumn(const PartialFractionFit& fit, const FrequencyData& late)
@@ -79,7 +80,7 @@ DelayColumn delayColumn(const PartialFractionFit& fit, const FrequencyData& late
     const Eigen::MatrixXcd basis = partialFractions(sections, lambda);
     const MatrixXd weights = weightsOf(late);
     const double highest = late.frequency.back();
-    Eigen::MatrixXcd columns(K, 2 * n + 3);   // basis, 1 | poles, delay, residual
+    Eigen::MatrixXcd columns(K, 2 * n + 3);  // basis, 1 | poles, delay, residual
     MatrixXd rows(2 * K, 2 * n + 3);
     TallQr all(n + 2);
     for (Index o = 0; o < p; ++o) {
@@ -89,7 +90,8 @@ DelayColumn delayColumn(const PartialFractionFit& fit, const FrequencyData& late
         for (Index k = 0; k < K; ++k) {
             const double share = late.frequency[static_cast<std::size_t>(k)] / highest;
             columns(k, 2 * n + 1) = Complex(0.0, -share) * late.value(k, o);
-            columns(k, 2 * n + 2) = late.value(k, o) - fit.D[o] - (basis.row(k) * fit.C.row(o).transpose().cast<Complex>())(0);
+            columns(k, 2 * n + 2) = late.value(k, o) - fit.D[o]
+                                    - (basis.row(k) * fit.C.row(o).transpose().cast<Complex>())(0);
         }
         rows.topRows(K) = weights.col(o).asDiagonal() * columns.real();
         rows.bottomRows(K) = weights.col(o).asDiagonal() * columns.imag();
@@ -154,12 +156,13 @@ void descend(DelayedFit& result, const FrequencyData& data, const DelayedFitOpti
     result.reason = "the largest number of steps was reached";
 }
 
-} // namespace
+}  // namespace
 
 FrequencyData delayed(FrequencyData data, double seconds)
 {
     for (Index k = 0; k < data.lines(); ++k)
-        data.value.row(k) *= std::polar(1.0, -2.0 * std::numbers::pi * data.frequency[static_cast<std::size_t>(k)] * seconds);
+        data.value.row(k) *= std::polar(1.0, -2.0 * std::numbers::pi * data.frequency[static_cast<std::size_t>(k)]
+                                                 * seconds);
     return data;
 }
 
@@ -172,14 +175,16 @@ bool DelayedFitOptions::isValid(std::string* reason) const
     return identification(*this, true).isValid(reason);
 }
 
-DelayedFit fitAtDelay(const FrequencyData& data, double seconds, const DelayedFitOptions& options, const Progress& progress)
+DelayedFit fitAtDelay(const FrequencyData& data, double seconds, const DelayedFitOptions& options,
+                      const Progress& progress)
 {
     require(data, options);
     const auto late = delayed(data, seconds);
     progress.at(0.0, "fitting with the delay");
     const auto fit = freshFit(late, identification(options, true));
     if (!fit)
-        throw Error(Error::Kind::numerical, "No stable model of order " + std::to_string(options.order) + " was found with this delay.");
+        throw Error(Error::Kind::numerical,
+                    "No stable model of order " + std::to_string(options.order) + " was found with this delay.");
     DelayedFit result;
     result.delay = seconds;
     result.fit = *fit;
@@ -206,7 +211,7 @@ DelayedFit fitDelayed(const FrequencyData& data, const DelayedFitOptions& option
         progress.at(0.8 * k / options.scan, "trying delays");
         const auto late = delayed(data, delayAt(k));
         auto fit = freshFit(late, quick);
-        if (neighbour)   // its poles may do better than any start from scratch
+        if (neighbour)  // its poles may do better than any start from scratch
             if (auto moved = refinePoles(*neighbour, late, refinement).fit; !fit || moved.cost < fit->cost)
                 fit = std::move(moved);
         result.scanned.emplace_back(delayAt(k), fit ? fit->cost : infinite);
@@ -220,7 +225,8 @@ DelayedFit fitDelayed(const FrequencyData& data, const DelayedFitOptions& option
         }
     }
     if (!std::isfinite(result.fit.cost))
-        throw Error(Error::Kind::numerical, "No stable model of order " + std::to_string(options.order) + " was found at any delay.");
+        throw Error(Error::Kind::numerical,
+                    "No stable model of order " + std::to_string(options.order) + " was found at any delay.");
     progress.at(0.8, "fitting the delay");
     descend(result, data, options, least, most);
     result.atEdge = (best == 0 || best + 1 == result.scanned.size()) && (result.delay == least || result.delay == most);
@@ -229,4 +235,4 @@ DelayedFit fitDelayed(const FrequencyData& data, const DelayedFitOptions& option
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,7 +13,8 @@ using Eigen::Index;
 
 bool FrequencyData::isValid(std::string* reason) const
 {
-    if (outputs < 1 || inputs < 1 || value.cols() != outputs * inputs || value.rows() != static_cast<Index>(frequency.size()))
+    if (outputs < 1 || inputs < 1 || value.cols() != outputs * inputs
+        || value.rows() != static_cast<Index>(frequency.size()))
         return refuse(reason, "its values do not fit its frequencies, inputs and outputs");
     if (frequency.size() < 2)
         return refuse(reason, "it has fewer than two frequencies");
@@ -25,7 +26,8 @@ bool FrequencyData::isValid(std::string* reason) const
     if (!(value.cwiseAbs2().colwise().sum().minCoeff() > 0.0))
         return refuse(reason, "it is zero at all frequencies");
     if (deviation.size() != 0
-        && (deviation.rows() != value.rows() || deviation.cols() != value.cols() || !deviation.allFinite() || !(deviation.minCoeff() > 0.0)))
+        && (deviation.rows() != value.rows() || deviation.cols() != value.cols() || !deviation.allFinite()
+            || !(deviation.minCoeff() > 0.0)))
         return refuse(reason, "its standard deviations must be as many as its values, and above 0");
     return true;
 }
@@ -63,4 +65,4 @@ Eigen::MatrixXd weightsOf(const FrequencyData& data)
     return weights;
 }
 
-} // namespace excursion
+}  // namespace excursion

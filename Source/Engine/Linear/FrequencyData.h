@@ -12,9 +12,10 @@ namespace excursion {
 /// The frequency response matrix of p outputs by m inputs on K frequencies, as the identification takes it.
 /// Column e = o + p i belongs to output o and input i.
 struct FrequencyData {
-    std::vector<double> frequency;   ///< Hz, ascending, at least 0
-    Eigen::MatrixXcd value;          ///< K x p m, output unit / input unit
-    Eigen::MatrixXd deviation;       ///< K x p m, standard deviation of the complex value; empty: not known, taken as equal on all lines
+    std::vector<double> frequency;  ///< Hz, ascending, at least 0
+    Eigen::MatrixXcd value;         ///< K x p m, output unit / input unit
+    /// K x p m, standard deviation of the complex value; empty: not known, taken as equal on all lines
+    Eigen::MatrixXd deviation;
     Eigen::Index outputs = 1, inputs = 1;
 
     Eigen::Index lines() const { return value.rows(); }
@@ -23,12 +24,13 @@ struct FrequencyData {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// Of one frequency response. The deviation is the square root of the total variance, else of the noise variance, else empty.
-/// Variances of zero, which a short record can show by chance, count as the smallest one above zero.
+/// Of one frequency response. The deviation is the square root of the total variance, else of the noise variance, else
+/// empty. Variances of zero, which a short record can show by chance, count as the smallest one above zero.
 FrequencyData frequencyDataOf(const Frf&);
 
-/// The weights 1/deviation (K x p m), scaled so that they are dimensionless: the largest weight of each entry times its rms response is 1.
-/// Without deviations 1 over the rms response. So neither units nor the level of the noise enter a numerical decision.
+/// The weights 1/deviation (K x p m), scaled so that they are dimensionless: the largest weight of each entry times its
+/// rms response is 1. Without deviations 1 over the rms response. So neither units nor the level of the noise enter a
+/// numerical decision.
 Eigen::MatrixXd weightsOf(const FrequencyData&);
 
-} // namespace excursion
+}  // namespace excursion

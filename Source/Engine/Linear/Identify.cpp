@@ -22,7 +22,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int cheapOrder = 20;   // up to here every start is tried, as it costs nothing
+constexpr int cheapOrder = 20;  // up to here every start is tried, as it costs nothing
 
 struct Candidate {
     std::string start;
@@ -35,7 +35,8 @@ double scaleFor(const FrequencyData& data, const IdentifyOptions& options)
     return options.sampleRate > 0.0 ? 1.0 : std::pow(2.0 * std::numbers::pi * data.frequency.back(), options.alpha);
 }
 
-/// Rates of the bilinear transform that put the band's end at different places of the unit circle, and its middle for wide bands.
+/// Rates of the bilinear transform that put the band's end at different places of the unit circle, and its middle for
+/// wide bands.
 std::vector<double> warpingRates(const FrequencyData& data, bool thorough)
 {
     const double high = data.frequency.back();
@@ -53,7 +54,8 @@ StateSpace subspaceAt(const FrequencyData& data, double rate, int order, bool st
     auto warped = data;
     for (auto& f : warped.frequency)
         f = warpedFrequency(f, rate);
-    auto model = toContinuous(dynamicsOf(observabilityRange(warped, rate, blockRowsFor(order, data.lines())), order, data.inputs, stable));
+    auto model = toContinuous(
+        dynamicsOf(observabilityRange(warped, rate, blockRowsFor(order, data.lines())), order, data.inputs, stable));
     if (stable)
         model = mirrored(model);
     fitInputs(model, data);
@@ -65,7 +67,8 @@ StateSpace subspaceAt(const FrequencyData& data, double rate, const IdentifyOpti
 {
     const double a = std::pow(2.0 * rate, options.alpha);
     const Eigen::VectorXcd lambda = evaluationPoints(data.frequency, 0.0, options.alpha);
-    auto range = observabilityRange(data, (a + lambda.array()) / (a - lambda.array()), blockRowsFor(options.order, data.lines()));
+    auto range = observabilityRange(data, (a + lambda.array()) / (a - lambda.array()),
+                                    blockRowsFor(options.order, data.lines()));
     range.sampleRate = 0.5 * a;
     auto model = toContinuous(dynamicsOf(range, options.order, data.inputs, false));
     if (options.refinement.stable && data.inputs == 1) {
@@ -77,7 +80,8 @@ StateSpace subspaceAt(const FrequencyData& data, double rate, const IdentifyOpti
     return model;
 }
 
-/// All models that the subspace method has to offer, up to the first that costs less than `enough`. Those whose transform does not exist are left out.
+/// All models that the subspace method has to offer, up to the first that costs less than `enough`. Those whose
+/// transform does not exist are left out.
 std::vector<StateSpace> subspaceModels(const FrequencyData& data, const IdentifyOptions& options, double enough = 0.0)
 {
     const bool stable = options.refinement.stable;
@@ -86,7 +90,8 @@ std::vector<StateSpace> subspaceModels(const FrequencyData& data, const Identify
     std::vector<StateSpace> models;
     for (const double rate : warpingRates(data, options.thorough))
         try {
-            models.push_back(options.alpha == 1.0 ? subspaceAt(data, rate, options.order, stable) : subspaceAt(data, rate, options));
+            models.push_back(options.alpha == 1.0 ? subspaceAt(data, rate, options.order, stable)
+                                                  : subspaceAt(data, rate, options));
             if (enough > 0.0 && judged(models.back(), data, options.alpha).cost < enough)
                 break;
         } catch (const Error& e) {
@@ -146,7 +151,7 @@ LinearIdentification fromFit(const PartialFractionFit& fit, const FrequencyData&
     return result;
 }
 
-} // namespace
+}  // namespace
 
 bool IdentifyOptions::isValid(std::string* reason) const
 {
@@ -177,14 +182,15 @@ Sections withoutLeast(const PartialFractionFit& fit, const FrequencyData& data, 
     Eigen::VectorXd loss = Eigen::VectorXd::Zero(sections.pairs());
     for (Index o = 0; o < data.outputs; ++o) {
         MatrixXd rows = MatrixXd::Zero(2 * K, n + 1);
-        rows.col(0).head(K) = weights.col(o);   // the constant stays: it goes first
+        rows.col(0).head(K) = weights.col(o);  // the constant stays: it goes first
         rows.block(0, 1, K, n) = weights.col(o).asDiagonal() * basis.real();
         rows.block(K, 1, K, n) = weights.col(o).asDiagonal() * basis.imag();
         TallQr qr(n + 1);
         qr.fold(rows);
         const MatrixXd inverse = qr.R().triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n + 1, n + 1));
         for (Index i = 0; i < sections.pairs(); ++i) {
-            const Eigen::Matrix2d covariance = inverse.middleRows(2 * i + 1, 2) * inverse.middleRows(2 * i + 1, 2).transpose();
+            const Eigen::Matrix2d covariance = inverse.middleRows(2 * i + 1, 2)
+                                               * inverse.middleRows(2 * i + 1, 2).transpose();
             const Eigen::Vector2d c = fit.C.block(o, 2 * i, 1, 2).transpose();
             const double increase = c.dot(covariance.inverse() * c);
             loss[i] += std::isfinite(increase) ? increase : 0.0;
@@ -204,7 +210,8 @@ LinearIdentification judged(StateSpace model, const FrequencyData& data, double 
     const MatrixXd weights = weightsOf(data);
     double error = 0.0, power = 0.0, weightedError = 0.0, weightedPower = 0.0, likelihood = 0.0;
     for (Index k = 0; k < data.lines(); ++k) {
-        const Eigen::MatrixXcd response = resolvent.response(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha));
+        const Eigen::MatrixXcd response = resolvent.response(
+            evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha));
         for (Index e = 0; e < data.value.cols(); ++e) {
             const double d = std::norm(response(e % data.outputs, e / data.outputs) - data.value(k, e));
             error += d;
@@ -247,7 +254,8 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
             if (auto found = judged(model, data, options.alpha); found.cost < best.cost)
                 best = std::move(found);
         if (!std::isfinite(best.cost))
-            throw Error(Error::Kind::numerical, "The subspace method found no model of order " + std::to_string(options.order) + ".");
+            throw Error(Error::Kind::numerical,
+                        "The subspace method found no model of order " + std::to_string(options.order) + ".");
         best.start = "subspace";
         best.reason = options.refine ? "models with several inputs are not refined" : "no refinement was asked for";
         return best;
@@ -267,13 +275,16 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
         progress.at(0.2, "fitting vectors");
         for (const bool logarithmic : {false, true})
             add(candidates, "vector fitting",
-                fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, logarithmic, options.alpha), data, 10), data);
+                fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, logarithmic, options.alpha),
+                              data, 10),
+                data);
         if (options.thorough && options.order >= 2) {
             progress.at(0.4, "pruning a larger model");
             add(candidates, "pruned", prunedTo(options.order, data, options, scale), data);
         }
     }
-    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.cost < b.cost; });
     if (candidates.empty())
         throw Error(Error::Kind::numerical, "No start gave a model of order " + std::to_string(options.order) + ".");
     const std::size_t searches = bestCost() < floor ? 1 : options.thorough ? candidates.size() : 2;
@@ -287,8 +298,9 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
         if (options.refinement.stable)
             start = mirrored(start);
         const double share = static_cast<double>(candidates.size());
-        const auto refined = refinePoles(start, data, options.refinement,
-                                         progress.part(0.5 + 0.5 * static_cast<double>(c) / share, 0.5 + 0.5 * static_cast<double>(c + 1) / share));
+        const auto refined = refinePoles(
+            start, data, options.refinement,
+            progress.part(0.5 + 0.5 * static_cast<double>(c) / share, 0.5 + 0.5 * static_cast<double>(c + 1) / share));
         if (refined.fit.cost < best.cost) {
             best = fromFit(refined.fit, data);
             best.start = candidates[c].start;
@@ -296,8 +308,9 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
         }
     }
     if (!std::isfinite(best.cost))
-        throw Error(Error::Kind::numerical, "No search for a model of order " + std::to_string(options.order) + " ended in finite numbers.");
+        throw Error(Error::Kind::numerical,
+                    "No search for a model of order " + std::to_string(options.order) + " ended in finite numbers.");
     return best;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,18 +11,21 @@
 
 namespace excursion {
 
-/// Linear identification of a frequency response (seed chapters 4.2 and 4.3.2): starts by subspace and by vector fitting, refined to
-/// maximum likelihood, the best one kept.
+/// Linear identification of a frequency response (seed chapters 4.2 and 4.3.2): starts by subspace and by vector
+/// fitting, refined to maximum likelihood, the best one kept.
 ///
-/// A continuous-time model is identified by subspace through the bilinear transform, at several warpings, since what part of the unit
-/// circle the poles fill decides how well they are seen; the refinement works directly in s with scaled frequency. In lambda = s^alpha the same
-/// transform serves; its points then lie on an arc beside the circle, which the orthogonal powers do not mind.
+/// A continuous-time model is identified by subspace through the bilinear transform, at several warpings, since what
+/// part of the unit circle the poles fill decides how well they are seen; the refinement works directly in s with
+/// scaled frequency. In lambda = s^alpha the same transform serves; its points then lie on an arc beside the circle,
+/// which the orthogonal powers do not mind.
 struct IdentifyOptions {
     int order = 4;
-    double sampleRate = 0.0;   ///< Hz; 0: a model of continuous time
-    double alpha = 1.0;        ///< order of differentiation, of models of continuous time: the model is one in lambda = s^alpha (seed 5.3)
-    bool refine = true;        ///< maximum likelihood after the starts
-    bool thorough = true;      ///< below the true order, where no start reaches the noise: more of them, also by pruning a larger model
+    double sampleRate = 0.0;  ///< Hz; 0: a model of continuous time
+    /// order of differentiation, of models of continuous time: the model is one in lambda = s^alpha (seed 5.3)
+    double alpha = 1.0;
+    bool refine = true;  ///< maximum likelihood after the starts
+    /// below the true order, where no start reaches the noise: more of them, also by pruning a larger model
+    bool thorough = true;
 
     PoleRefinementOptions refinement;
 
@@ -31,20 +34,23 @@ struct IdentifyOptions {
 
 struct LinearIdentification {
     StateSpace model;
-    double cost = 0.0;             ///< weighted relative squared error, as PartialFractionFit::cost
-    double errorDb = 0.0;          ///< unweighted relative rms error of all entries (seed 4.26)
-    double likelihood = 0.0;       ///< sum of |model - measured|^2 / deviation^2; NaN without deviations. About 1 a value when all but noise is explained
-    bool stable = false;           ///< by the region that belongs to sampleRate and alpha
-    std::string start;             ///< where the model came from: "subspace", "vector fitting", "pruned", ..
-    std::string reason = "nothing was identified";   ///< why the refinement stopped
-    std::optional<Sections> sections;   ///< of models with one input
+    double cost = 0.0;     ///< weighted relative squared error, as PartialFractionFit::cost
+    double errorDb = 0.0;  ///< unweighted relative rms error of all entries (seed 4.26)
+    /// sum of |model - measured|^2 / deviation^2; NaN without deviations. About 1 a value when all but noise is
+    /// explained
+    double likelihood = 0.0;
+    bool stable = false;  ///< by the region that belongs to sampleRate and alpha
+    std::string start;    ///< where the model came from: "subspace", "vector fitting", "pruned", ..
+    std::string reason = "nothing was identified";  ///< why the refinement stopped
+    std::optional<Sections> sections;               ///< of models with one input
 };
 
 /// Throws Error (usage, data) for options or data that make no sense, (numerical) when no start gave a model.
 /// Models with several inputs are those of the subspace method; their refinement is left out, and `reason` says so.
 LinearIdentification identify(const FrequencyData&, const IdentifyOptions&, const Progress& = {});
 
-/// The fit without the section that matters least: the one whose loss, the others' coefficients refitted, raises the cost least.
+/// The fit without the section that matters least: the one whose loss, the others' coefficients refitted, raises the
+/// cost least.
 /// @param odd  take out the lone real pole instead of a pair
 Sections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd);
 
@@ -52,4 +58,4 @@ Sections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd)
 /// @param alpha  of a model in s^alpha
 LinearIdentification judged(StateSpace, const FrequencyData&, double alpha = 1.0);
 
-} // namespace excursion
+}  // namespace excursion

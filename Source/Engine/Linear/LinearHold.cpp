@@ -32,4 +32,4 @@ LinearHold linearHold(const StateSpace& model, double sampleRate)
     return hold;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -30,17 +30,20 @@ void requireTogether(const FrequencyData& displacement, const FrequencyData& pre
         if (!data->isValid(&reason))
             throw Error(Error::Kind::data, "Motor and cone cannot be told from these responses: " + reason + ".");
         if (data->value.cols() != 1)
-            throw Error(Error::Kind::data, "Motor and cone are told from one displacement and one pressure, each to one voltage.");
+            throw Error(Error::Kind::data,
+                        "Motor and cone are told from one displacement and one pressure, each to one voltage.");
     }
     if (displacement.frequency != pressure.frequency)
         throw Error(Error::Kind::data, "Displacement and pressure must be given at the same frequencies.");
     if (!(displacement.frequency.front() > 0.0))
         throw Error(Error::Kind::data, "Motor and cone are told at frequencies above 0 Hz.");
     if (!(displacement.value.cwiseAbs().minCoeff() > 0.0))
-        throw Error(Error::Kind::data, "The displacement is zero at a frequency, so there is no cone to be told there.");
+        throw Error(Error::Kind::data,
+                    "The displacement is zero at a frequency, so there is no cone to be told there.");
 }
 
-/// States x, dx/dt [, d2x/dt2] first, what is left at right angles to them; outputs displacement, velocity, acceleration.
+/// States x, dx/dt [, d2x/dt2] first, what is left at right angles to them; outputs displacement, velocity,
+/// acceleration.
 StateSpace withMotion(const StateSpace& motor, Index relativeDegree)
 {
     const auto n = motor.order();
@@ -85,7 +88,7 @@ StateSpace modelOf(const PartialFractionFit& fit) { return realize(fit.sections,
 bool explained(double likelihood, Index lines)
 {
     const auto K = static_cast<double>(lines);
-    return likelihood <= K + 5.0 * std::sqrt(K);   // one that is not known explains nothing
+    return likelihood <= K + 5.0 * std::sqrt(K);  // one that is not known explains nothing
 }
 
 IdentifyOptions identifyOptions(const MotorConeOptions& options, int order)
@@ -98,7 +101,8 @@ IdentifyOptions identifyOptions(const MotorConeOptions& options, int order)
     return identifying;
 }
 
-void findMotor(const FrequencyData& displacement, const MotorConeOptions& options, Halves& halves, const Progress& progress)
+void findMotor(const FrequencyData& displacement, const MotorConeOptions& options, Halves& halves,
+               const Progress& progress)
 {
     const auto identifying = identifyOptions(options, options.motorOrder);
     auto start = *identify(displacement, identifying, progress).sections;
@@ -109,8 +113,8 @@ void findMotor(const FrequencyData& displacement, const MotorConeOptions& option
 }
 
 /// P/(s^2 X), X the motor's where that is asked for or the displacement is not told.
-void divide(const FrequencyData& displacement, const FrequencyData& pressure, const StateSpace& motor, double leastSignalDb,
-            MotorCone& result)
+void divide(const FrequencyData& displacement, const FrequencyData& pressure, const StateSpace& motor,
+            double leastSignalDb, MotorCone& result)
 {
     const bool known = displacement.deviation.size() != 0;
     const double least = std::pow(10.0, leastSignalDb / 20.0);
@@ -128,7 +132,8 @@ void divide(const FrequencyData& displacement, const FrequencyData& pressure, co
         else
             misfit += std::norm(modelled[k] / displacement.value(k, 0) - 1.0);
     }
-    misfit = std::sqrt(misfit / std::max(1.0, static_cast<double>(std::count(result.told.begin(), result.told.end(), true))));
+    misfit = std::sqrt(misfit
+                       / std::max(1.0, static_cast<double>(std::count(result.told.begin(), result.told.end(), true))));
     for (Index k = 0; k < cone.lines(); ++k) {
         const Complex s = points[k];
         const bool told = result.told[static_cast<std::size_t>(k)];
@@ -141,7 +146,7 @@ void divide(const FrequencyData& displacement, const FrequencyData& pressure, co
             continue;
         // |G| r_p is finite where the pressure itself happens to be zero.
         const double ofPressure = pressure.deviation(k, 0) / std::abs(s * s * moved);
-        double relative = 0.0;   // r_x
+        double relative = 0.0;  // r_x
         if (result.from == ConeFrom::quotient)
             relative = !measured ? misfit : known ? displacement.deviation(k, 0) / std::abs(moved) : 0.0;
         cone.deviation(k, 0) = std::hypot(ofPressure, relative * std::abs(cone.value(k, 0)));
@@ -157,8 +162,8 @@ StateSpace accelerated(const StateSpace& motor)
 }
 
 /// Motor and cone together, kept if the motor still explains the displacement.
-void refineTogether(const FrequencyData& displacement, const FrequencyData& pressure, const MotorConeOptions& options, Halves& halves,
-                    MotorCone& result)
+void refineTogether(const FrequencyData& displacement, const FrequencyData& pressure, const MotorConeOptions& options,
+                    Halves& halves, MotorCone& result)
 {
     auto refinement = options.refinement;
     refinement.maximumIterations = std::max(refinement.maximumIterations, 100);
@@ -174,30 +179,34 @@ std::string sentenceFor(const MotorCone& result, bool known, double leastSignalD
 {
     if (!known)
         return "The noise of the displacement is not known, so neither is how far motor and cone can be told apart.";
-    const auto all = result.told.size(), count = static_cast<std::size_t>(std::count(result.told.begin(), result.told.end(), true));
+    const auto all = result.told.size(),
+               count = static_cast<std::size_t>(std::count(result.told.begin(), result.told.end(), true));
     const std::string level = std::to_string(std::lround(leastSignalDb)) + " dB above its noise";
     if (count == all)
-        return "The displacement stands at least " + level + " at all frequencies, so motor and cone are told apart at all of them.";
+        return "The displacement stands at least " + level
+               + " at all frequencies, so motor and cone are told apart at all of them.";
     return "The displacement stands at least " + level + " at " + std::to_string(count) + " of " + std::to_string(all)
-        + " frequencies, the highest of them "
-         + hertz(result.toldUpTo) + "; elsewhere only motor and cone together are measured, and how they share rests on the motor's model.";
+           + " frequencies, the highest of them " + hertz(result.toldUpTo)
+           + "; elsewhere only motor and cone together are measured, and how they share rests on the motor's model.";
 }
 
-} // namespace
+}  // namespace
 
 bool MotorConeOptions::isValid(std::string* reason) const
 {
     if (relativeDegree != 2 && relativeDegree != 3)
         return refuse(reason, "the relative degree of a displacement is 2 or 3");
     if (motorOrder < relativeDegree || motorOrder > 100 || coneOrder < 0 || coneOrder > 400)
-        return refuse(reason, "the motor's order must lie between its relative degree and 100, the cone's between 0 and 400");
+        return refuse(reason,
+                      "the motor's order must lie between its relative degree and 100, the cone's between 0 and 400");
     if (!std::isfinite(delay) || !(leastSignalDb >= 0.0) || !std::isfinite(leastSignalDb))
-        return refuse(reason, "the delay must be finite, and the least level of the displacement 0 dB above its noise or more");
+        return refuse(reason,
+                      "the delay must be finite, and the least level of the displacement 0 dB above its noise or more");
     return refinement.isValid(reason);
 }
 
-MotorCone identifyMotorCone(const FrequencyData& displacement, const FrequencyData& pressure, const MotorConeOptions& options,
-                            const Progress& progress)
+MotorCone identifyMotorCone(const FrequencyData& displacement, const FrequencyData& pressure,
+                            const MotorConeOptions& options, const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -211,13 +220,16 @@ MotorCone identifyMotorCone(const FrequencyData& displacement, const FrequencyDa
     findMotor(displacement, options, halves, progress.part(0.0, 0.3));
     result.from = options.from;
     if (options.from == ConeFrom::automatic)
-        result.from = explained(judged(modelOf(halves.motor), displacement).likelihood, displacement.lines()) ? ConeFrom::motor
-                                                                                                              : ConeFrom::quotient;
+        result.from = explained(judged(modelOf(halves.motor), displacement).likelihood, displacement.lines())
+                          ? ConeFrom::motor
+                          : ConeFrom::quotient;
     divide(displacement, prompt, modelOf(halves.motor), options.leastSignalDb, result);
     if (std::count(result.told.begin(), result.told.end(), true) <= options.coneOrder)
-        throw Error(Error::Kind::data, "The displacement stands out of its noise at too few frequencies to tell a cone of order "
-                                           + std::to_string(options.coneOrder) + " from the motor.");
-    const auto found = identify(result.coneResponse, identifyOptions(options, options.coneOrder), progress.part(0.3, 0.9));
+        throw Error(Error::Kind::data,
+                    "The displacement stands out of its noise at too few frequencies to tell a cone of order "
+                        + std::to_string(options.coneOrder) + " from the motor.");
+    const auto found = identify(result.coneResponse, identifyOptions(options, options.coneOrder),
+                                progress.part(0.3, 0.9));
     halves.cone = fitPartialFractions(*found.sections, result.coneResponse);
     halves.coneStopped = found.reason;
     if (options.from == ConeFrom::automatic && result.from == ConeFrom::motor && prompt.deviation.size() != 0)
@@ -241,4 +253,4 @@ MotorCone identifyMotorCone(const FrequencyData& displacement, const FrequencyDa
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

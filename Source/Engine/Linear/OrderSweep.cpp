@@ -17,13 +17,14 @@ double mdlOf(const LinearIdentification& found, const FrequencyData& data)
     const double price = static_cast<double>(n * (m + p) + m * p) * std::log(values);
     if (data.deviation.size() != 0)
         return 2.0 * found.likelihood + price;
-    return values * std::log(std::max(found.cost, 1e-26)) + price;   // below that there is rounding only
+    return values * std::log(std::max(found.cost, 1e-26)) + price;  // below that there is rounding only
 }
 
 std::string inDecibels(double db)
 {
     const auto tenths = static_cast<long>(std::lround(10.0 * db));
-    return (tenths < 0 ? "-" : "") + std::to_string(std::labs(tenths) / 10) + "." + std::to_string(std::labs(tenths) % 10) + " dB";
+    return (tenths < 0 ? "-" : "") + std::to_string(std::labs(tenths) / 10) + "."
+           + std::to_string(std::labs(tenths) % 10) + " dB";
 }
 
 void choose(OrderSweep& sweep, bool validated, bool deviations)
@@ -39,21 +40,26 @@ void choose(OrderSweep& sweep, bool validated, bool deviations)
         for (std::size_t k = best; k-- > 0;)
             if (*entries[k].validationDb <= *entries[best].validationDb + 0.5)
                 sweep.chosen = k;
-        sweep.sentence = "Order " + text(sweep.chosen) + " is the smallest within 0.5 dB of the lowest validation error ("
-                       + inDecibels(*entries[best].validationDb) + " at order " + text(best) + ").";
+        sweep.sentence = "Order " + text(sweep.chosen)
+                         + " is the smallest within 0.5 dB of the lowest validation error ("
+                         + inDecibels(*entries[best].validationDb) + " at order " + text(best) + ").";
         return;
     }
     for (std::size_t k = 1; k < entries.size(); ++k)
         if (entries[k].mdl < entries[best].mdl)
             best = k;
     sweep.chosen = best;
-    sweep.sentence = "Order " + text(best) + " has the lowest description length: higher orders lower the error by less than their parameters cost";
+    sweep.sentence =
+        "Order " + text(best)
+        + " has the lowest description length: higher orders lower the error by less than their parameters cost";
     if (deviations)
         sweep.sentence += ", lower ones leave more than the noise";
-    sweep.sentence += entries.size() > 1 && best + 1 == entries.size() ? "; it is the largest that was tried, so a larger one may be better." : ".";
+    sweep.sentence += entries.size() > 1 && best + 1 == entries.size()
+                          ? "; it is the largest that was tried, so a larger one may be better."
+                          : ".";
 }
 
-} // namespace
+}  // namespace
 
 bool OrderSweepOptions::isValid(std::string* reason) const
 {
@@ -62,12 +68,14 @@ bool OrderSweepOptions::isValid(std::string* reason) const
     return identify.isValid(reason);
 }
 
-OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& options, const FrequencyData* validation, const Progress& progress)
+OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& options, const FrequencyData* validation,
+                       const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The orders cannot be swept: " + reason + ".");
-    if (validation && (validation->inputs != data.inputs || validation->outputs != data.outputs || !validation->isValid(&reason)))
+    if (validation
+        && (validation->inputs != data.inputs || validation->outputs != data.outputs || !validation->isValid(&reason)))
         throw Error(Error::Kind::data, "The validation response does not fit the one that is identified.");
     OrderSweep sweep;
     const auto count = options.orders.size();
@@ -83,14 +91,16 @@ OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& optio
         entry.found = identify(data, identifying, part);
         // Two orders up a pair goes; one up, from an odd order, the lone pole.
         for (const int above : {order + 1, order + 2}) {
-            if (!identifying.refine || above > options.orders.back() || !fits[static_cast<std::size_t>(above)] || (above == order + 1 && above % 2 == 0))
+            if (!identifying.refine || above > options.orders.back() || !fits[static_cast<std::size_t>(above)]
+                || (above == order + 1 && above % 2 == 0))
                 continue;
             const auto start = withoutLeast(*fits[static_cast<std::size_t>(above)], data, above == order + 1);
             if (!isStable(start))
                 continue;
             const auto refined = refinePoles(start, data, identifying.refinement);
             if (refined.fit.cost < entry.found.cost) {
-                entry.found = judged(realize(refined.fit.sections, refined.fit.C, refined.fit.D), data, identifying.alpha);
+                entry.found = judged(realize(refined.fit.sections, refined.fit.C, refined.fit.D), data,
+                                     identifying.alpha);
                 entry.found.cost = refined.fit.cost;
                 entry.found.sections = refined.fit.sections;
                 entry.found.start = "pruned";
@@ -109,4 +119,4 @@ OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& optio
     return sweep;
 }
 
-} // namespace excursion
+}  // namespace excursion

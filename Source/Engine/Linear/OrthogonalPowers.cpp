@@ -24,7 +24,7 @@ OrthogonalPowers orthogonalPowers(const Eigen::VectorXcd& z, const Eigen::Vector
         basis.H(i + 1, i) = after;
         if (i + 1 == q)
             break;
-        if (after <= 1e-13 * before) {   // the points carry no more
+        if (after <= 1e-13 * before) {  // the points carry no more
             basis.values.conservativeResize(Eigen::NoChange, i + 1);
             basis.H.conservativeResize(i + 2, i + 1);
             break;
@@ -34,4 +34,4 @@ OrthogonalPowers orthogonalPowers(const Eigen::VectorXcd& z, const Eigen::Vector
     return basis;
 }
 
-} // namespace excursion
+}  // namespace excursion

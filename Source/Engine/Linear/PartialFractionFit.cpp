@@ -30,7 +30,9 @@ constexpr double rounding = 1e-15;
 /// What does not change in a search: points, weighted responses, and their power.
 struct Problem {
     Problem(const FrequencyData& data, const Sections& sections)
-        : lambda(evaluationPoints(data.frequency, sections.sampleRate, sections.alpha)), weights(weightsOf(data)), value(data.value.cwiseProduct(weights)),
+        : lambda(evaluationPoints(data.frequency, sections.sampleRate, sections.alpha)),
+          weights(weightsOf(data)),
+          value(data.value.cwiseProduct(weights)),
           power(value.squaredNorm())
     {
     }
@@ -50,11 +52,13 @@ Problem problemOf(const FrequencyData& data, const Sections& sections)
         throw Error(Error::Kind::data, "Partial fractions are fitted to responses to one input; these are to "
                                            + std::to_string(data.inputs) + ".");
     if (sections.relativeDegree < 0 || sections.relativeDegree > std::min<Index>(3, sections.order()))
-        throw Error(Error::Kind::usage, "The relative degree of partial fractions lies between 0 and 3, and is at most their order.");
+        throw Error(Error::Kind::usage,
+                    "The relative degree of partial fractions lies between 0 and 3, and is at most their order.");
     return Problem(data, sections);
 }
 
-/// C and D of one output from the triangular factor of [basis, 1 | .. | y] times `permitted`, and what the truncated solution leaves behind.
+/// C and D of one output from the triangular factor of [basis, 1 | .. | y] times `permitted`, and what the truncated
+/// solution leaves behind.
 double solveOutput(const MatrixXd& R, const MatrixXd& permitted, Index o, PartialFractionFit& fit)
 {
     const auto free = permitted.cols(), n = permitted.rows() - 1;
@@ -137,14 +141,15 @@ Projected projectedJacobian(const PartialFractionFit& fit, const Problem& proble
     return {all.R().topLeftCorner(n, n), all.R().col(n).head(n)};
 }
 
-} // namespace
+}  // namespace
 
 PartialFractionFit fitPartialFractions(const Sections& sections, const FrequencyData& data)
 {
     return fitAt(sections, problemOf(data, sections));
 }
 
-Sections spreadPoles(Index order, const FrequencyData& data, double sampleRate, double scale, bool logarithmic, double alpha)
+Sections spreadPoles(Index order, const FrequencyData& data, double sampleRate, double scale, bool logarithmic,
+                     double alpha)
 {
     std::vector<Complex> roots;
     const double high = data.frequency.back();
@@ -195,7 +200,8 @@ Sections relocatePoles(const Sections& sections, const FrequencyData& data)
     mean(0, n) = strength * static_cast<double>(K);
     mean(0, n + 1) = strength * static_cast<double>(K);
     sigma.fold(mean);
-    const VectorXd x = truncatedSolve(sigma.R().topLeftCorner(n + 1, n + 1), sigma.R().col(n + 1).head(n + 1), rounding);
+    const VectorXd x = truncatedSolve(sigma.R().topLeftCorner(n + 1, n + 1), sigma.R().col(n + 1).head(n + 1),
+                                      rounding);
     const double constant = std::abs(x[n]) > 1e-8 ? x[n] : std::copysign(1e-8, x[n]);
     auto zeroModel = realize(sections, x.head(n).transpose(), VectorXd::Constant(1, constant));
     zeroModel.A -= zeroModel.B * zeroModel.C / constant;
@@ -208,7 +214,8 @@ bool PoleRefinementOptions::isValid(std::string* reason) const
     return valid || refuse(reason, "a refinement needs at least one iteration and a tolerance between 0 and 1");
 }
 
-PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, const PoleRefinementOptions& options, const Progress& progress)
+PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, const PoleRefinementOptions& options,
+                           const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -249,4 +256,4 @@ PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, con
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -49,7 +49,8 @@ Complex product(const PoleZeroGain& g, Complex lambda)
     return value;
 }
 
-/// The states scaled so that each receives as much as it gives (Osborne 1960): diag(T, 1) as a similarity of [A, B; C, D].
+/// The states scaled so that each receives as much as it gives (Osborne 1960): diag(T, 1) as a similarity of [A, B; C,
+/// D].
 StateSpace levelled(StateSpace model)
 {
     auto& [A, B, C, D, rate] = model;
@@ -85,7 +86,8 @@ std::vector<Complex> zerosFrom(StateSpace model, double place)
     return roots;
 }
 
-/// The same without a pencil: in w = 1/(lambda - place) the model has a direct term, its response at the place, and zeros at infinity lie at w = 0.
+/// The same without a pencil: in w = 1/(lambda - place) the model has a direct term, its response at the place, and
+/// zeros at infinity lie at w = 0.
 ///     G = G(place) - C N^2 (w I - N)^-1 B,  N = (A - place I)^-1,  zeros: eigenvalues of N + B C N^2 / G(place)
 std::vector<Complex> zerosInverted(const StateSpace& model, double place)
 {
@@ -108,7 +110,7 @@ std::vector<Complex> zerosInverted(const StateSpace& model, double place)
 std::vector<Complex> atMost(std::size_t most, std::vector<Complex> roots)
 {
     roots = paired(std::move(roots));
-    while (roots.size() > most)   // rounding has brought one in from infinity
+    while (roots.size() > most)  // rounding has brought one in from infinity
         roots.resize(roots.size() - (roots.back().imag() < 0.0 ? 2 : 1));
     return roots;
 }
@@ -130,7 +132,8 @@ std::vector<Factor> factorsOf(const std::vector<Complex>& roots)
             real.push_back(root.real());
     std::size_t k = 0;
     for (; k + 1 < real.size(); k += 2)
-        factors.push_back({2, -(real[k] + real[k + 1]), real[k] * real[k + 1], std::sqrt(std::abs(real[k] * real[k + 1]))});
+        factors.push_back(
+            {2, -(real[k] + real[k + 1]), real[k] * real[k + 1], std::sqrt(std::abs(real[k] * real[k + 1]))});
     if (k < real.size())
         factors.push_back({1, 0.0, -real[k], std::abs(real[k])});
     return factors;
@@ -155,7 +158,7 @@ StateSpace section(const Factor& zeros, const Factor& poles, double sampleRate)
         const double b = poles.b / scale, e = poles.e / (scale * scale);
         sections.factors.resize(2);
         sections.factors << b, e;
-        double first = 0.0, constant = 1.0 / (scale * scale);   // numerator beyond D, in mu
+        double first = 0.0, constant = 1.0 / (scale * scale);  // numerator beyond D, in mu
         if (zeros.degree == 2) {
             D = 1.0;
             first = (zeros.b - poles.b) / scale;
@@ -169,9 +172,12 @@ StateSpace section(const Factor& zeros, const Factor& poles, double sampleRate)
     return realize(sections, C, Eigen::VectorXd::Constant(1, D));
 }
 
-} // namespace
+}  // namespace
 
-Complex respond(const PoleZeroGain& g, double frequency) { return g.gain * product(g, evaluationPoint(frequency, g.sampleRate)); }
+Complex respond(const PoleZeroGain& g, double frequency)
+{
+    return g.gain * product(g, evaluationPoint(frequency, g.sampleRate));
+}
 
 PoleZeroGain poleZeroGainOf(const StateSpace& model)
 {
@@ -206,7 +212,9 @@ PoleZeroGain poleZeroGainOf(const StateSpace& model)
     for (auto& candidate : candidates) {
         auto trial = g;
         trial.zeros = atMost(g.poles.size(), std::move(candidate));
-        const auto pointAt = [&](Index k) { return evaluationPoint(data.frequency[static_cast<std::size_t>(k)], g.sampleRate); };
+        const auto pointAt = [&](Index k) {
+            return evaluationPoint(data.frequency[static_cast<std::size_t>(k)], g.sampleRate);
+        };
         trial.gain = (data.value(strongest, 0) / product(trial, pointAt(strongest))).real();
         double misfit = 0.0;
         for (Index k = 0; k < data.lines(); ++k)
@@ -218,14 +226,17 @@ PoleZeroGain poleZeroGainOf(const StateSpace& model)
         }
     }
     if (!(least < 1e-6))
-        throw Error(Error::Kind::numerical, "The model's poles and zeros cannot be told well enough: their product does not give the response back.");
+        throw Error(
+            Error::Kind::numerical,
+            "The model's poles and zeros cannot be told well enough: their product does not give the response back.");
     return g;
 }
 
 StateSpace series(const StateSpace& first, const StateSpace& second)
 {
     if (first.sampleRate != second.sampleRate || first.outputs() != second.inputs())
-        throw Error(Error::Kind::usage, "Models follow one another when sample rates agree, and the outputs of the one are the inputs of the other.");
+        throw Error(Error::Kind::usage, "Models follow one another when sample rates agree, and the outputs of the one "
+                                        "are the inputs of the other.");
     const auto n = first.order(), k = second.order();
     StateSpace result;
     result.sampleRate = first.sampleRate;
@@ -286,4 +297,4 @@ StateSpace realize(const PoleZeroGain& g)
     return model;
 }
 
-} // namespace excursion
+}  // namespace excursion

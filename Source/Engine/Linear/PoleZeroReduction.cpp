@@ -27,7 +27,7 @@ struct Edit {
     std::vector<std::size_t> poles, zeros;
     bool cancelled = false;
     double rippleDb = 0.0;
-    double growth = 1.0;   ///< factor of 1 + errorBound
+    double growth = 1.0;  ///< factor of 1 + errorBound
 };
 
 std::size_t sizeAt(const std::vector<Complex>& roots, std::size_t k) { return roots[k].imag() != 0.0 ? 2 : 1; }
@@ -80,7 +80,9 @@ public:
         const auto consider = [&](const Edit& edit) {
             const auto saved = saves(edit);
             if (saved > 0 && static_cast<int>(g_.poles.size() - saved) >= options_.order && std::isfinite(edit.rippleDb)
-                && (!found || edit.rippleDb * static_cast<double>(saves(*found)) < found->rippleDb * static_cast<double>(saved)))
+                && (!found
+                    || edit.rippleDb * static_cast<double>(saves(*found))
+                           < found->rippleDb * static_cast<double>(saved)))
                 found = edit;
         };
         if (options_.pairs)
@@ -114,9 +116,10 @@ public:
         double least = unbounded, most = 0.0;
         step.error = 0.0;
         for (std::size_t k = 0; k < frequency_.size(); ++k) {
-            auto ratio = resolvent.response(evaluationPoint(frequency_[k], model.sampleRate, options_.alpha))(0, 0) / first_[k];
+            auto ratio = resolvent.response(evaluationPoint(frequency_[k], model.sampleRate, options_.alpha))(0, 0)
+                         / first_[k];
             if (!std::isfinite(std::abs(ratio)))
-                continue;   // at a zero on the axis there is no ratio
+                continue;  // at a zero on the axis there is no ratio
             if (!model.continuous())
                 ratio *= std::polar(1.0, -2.0 * pi * frequency_[k] / model.sampleRate * samplesEarly_);
             least = std::min(least, std::abs(ratio));
@@ -143,7 +146,10 @@ private:
         return count;
     }
 
-    RootDistance distance(Complex root) const { return distanceToBand(root, g_.sampleRate, low_, high_, options_.alpha); }
+    RootDistance distance(Complex root) const
+    {
+        return distanceToBand(root, g_.sampleRate, low_, high_, options_.alpha);
+    }
 
     double remoteness(Complex root) const
     {
@@ -189,7 +195,9 @@ private:
         const auto poles = g_.poles.size() - sizeAt(g_.poles, p);
         std::vector<std::size_t> order;
         eachGroup(g_.zeros, [&](std::size_t q) { order.push_back(q); });
-        std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) { return rippleOf(g_.zeros[a]) < rippleOf(g_.zeros[b]); });
+        std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+            return rippleOf(g_.zeros[a]) < rippleOf(g_.zeros[b]);
+        });
         for (const auto q : order) {
             if (zeros <= poles)
                 break;
@@ -199,7 +207,8 @@ private:
         return edit;
     }
 
-    /// lambda - r = z (1 - r_z/z), or -r_z (1 - z/r_z) with r_z = 1 + r; in continuous time -r (1 - s/r): the constant stays in the gain.
+    /// lambda - r = z (1 - r_z/z), or -r_z (1 - z/r_z) with r_z = 1 + r; in continuous time -r (1 - s/r): the constant
+    /// stays in the gain.
     void leave(const std::vector<Complex>& roots, std::size_t k, int sign)
     {
         for (std::size_t i = k; i < k + sizeAt(roots, k); ++i) {
@@ -218,7 +227,8 @@ private:
     {
         std::sort(groups.rbegin(), groups.rend());
         for (const auto k : groups)
-            roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(k), roots.begin() + static_cast<std::ptrdiff_t>(k + sizeAt(roots, k)));
+            roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(k),
+                        roots.begin() + static_cast<std::ptrdiff_t>(k + sizeAt(roots, k)));
     }
 };
 
@@ -231,7 +241,7 @@ std::vector<Complex> rootsOf(const std::vector<Complex>& roots, const std::vecto
     return result;
 }
 
-} // namespace
+}  // namespace
 
 bool PoleZeroReductionOptions::isValid(std::string* reason) const
 {
@@ -252,7 +262,8 @@ PoleZeroReduction reduceByPolesAndZeros(const StateSpace& model, const PoleZeroR
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be reduced: " + reason + ".");
     if (model.continuous() && options.high == 0.0)
-        throw Error(Error::Kind::usage, "A model of continuous time is reduced within a band: no pole is remote from all frequencies.");
+        throw Error(Error::Kind::usage,
+                    "A model of continuous time is reduced within a band: no pole is remote from all frequencies.");
     if (!model.continuous() && options.high > 0.5 * model.sampleRate)
         throw Error(Error::Kind::usage, "The band goes beyond half the sample rate of the model.");
     if (!model.continuous() && options.alpha != 1.0)
@@ -289,4 +300,4 @@ PoleZeroReduction reduceByPolesAndZeros(const StateSpace& model, const PoleZeroR
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -34,7 +34,7 @@ Coefficients solve(const MatrixXcd& powers, const FrequencyData& data, const Mat
     const auto K = data.lines(), p = data.outputs, n = powers.cols() - 1;
     std::vector<TallQr> each;
     TallQr common(n + 1);
-    MatrixXd rows(2 * K, 2 * n + 2);   // N (n + 1) | D (n), right-hand side
+    MatrixXd rows(2 * K, 2 * n + 2);  // N (n + 1) | D (n), right-hand side
     for (Index o = 0; o < p; ++o) {
         const VectorXd w = weights.col(o).cwiseQuotient(divisor);
         const MatrixXcd product = data.value.col(o).asDiagonal() * powers;
@@ -57,12 +57,16 @@ Coefficients solve(const MatrixXcd& powers, const FrequencyData& data, const Mat
     return found;
 }
 
-} // namespace
+}  // namespace
 
 bool RationalOptions::isValid(std::string* reason) const
 {
-    const bool valid = order >= 1 && order <= 400 && sampleRate >= 0.0 && std::isfinite(sampleRate) && iterations >= 0 && tolerance > 0.0;
-    return valid || refuse(reason, "the order must lie between 1 and 400, rate and iterations at 0 or above, and the tolerance above 0");
+    const bool valid = order >= 1 && order <= 400 && sampleRate >= 0.0 && std::isfinite(sampleRate) && iterations >= 0
+                       && tolerance > 0.0;
+    return valid
+           || refuse(
+               reason,
+               "the order must lie between 1 and 400, rate and iterations at 0 or above, and the tolerance above 0");
 }
 
 RationalFit fitRational(const FrequencyData& data, const RationalOptions& options)
@@ -73,19 +77,23 @@ RationalFit fitRational(const FrequencyData& data, const RationalOptions& option
     if (!data.isValid(&reason))
         throw Error(Error::Kind::data, "A rational response cannot be fitted: " + reason + ".");
     if (data.inputs != 1)
-        throw Error(Error::Kind::data, "A rational response is fitted to one input; the data has " + std::to_string(data.inputs) + ".");
+        throw Error(Error::Kind::data,
+                    "A rational response is fitted to one input; the data has " + std::to_string(data.inputs) + ".");
     const Index n = options.order, K = data.lines();
     const double scale = options.sampleRate > 0.0 ? 1.0 : 2.0 * std::numbers::pi * data.frequency.back();
     const VectorXcd mu = evaluationPoints(data.frequency, options.sampleRate) / scale;
     const auto basis = orthogonalPowers(mu, VectorXd::Ones(K), n + 1);
     if (basis.values.cols() < n + 1 || 2 * K < 2 * n + 2)
-        throw Error(Error::Kind::data, "A rational response of order " + std::to_string(n) + " needs more than " + std::to_string(K) + " lines.");
+        throw Error(Error::Kind::data, "A rational response of order " + std::to_string(n) + " needs more than "
+                                           + std::to_string(K) + " lines.");
     const MatrixXd weights = weightsOf(data);
     const auto& P = basis.values;
 
     RationalFit result;
     auto found = solve(P, data, weights, VectorXd::Ones(K));
-    const auto denominator = [&P, n](const VectorXd& d) -> VectorXcd { return P.leftCols(n) * d.cast<std::complex<double>>() + P.col(n); };
+    const auto denominator = [&P, n](const VectorXd& d) -> VectorXcd {
+        return P.leftCols(n) * d.cast<std::complex<double>>() + P.col(n);
+    };
     result.converged = options.iterations == 0;
     while (result.iterations < options.iterations && !result.converged) {
         ++result.iterations;
@@ -98,7 +106,8 @@ RationalFit fitRational(const FrequencyData& data, const RationalOptions& option
     MatrixXd comrade = basis.H.topLeftCorner(n, n);
     comrade.col(n - 1) -= basis.H(n, n - 1) * found.D;
     if (!comrade.allFinite())
-        throw Error(Error::Kind::numerical, "The rational fit of order " + std::to_string(n) + " did not end in finite numbers.");
+        throw Error(Error::Kind::numerical,
+                    "The rational fit of order " + std::to_string(n) + " did not end in finite numbers.");
     const Eigen::EigenSolver<MatrixXd> solver(comrade, false);
     std::vector<std::complex<double>> roots;
     for (const auto& root : solver.eigenvalues())
@@ -110,8 +119,9 @@ RationalFit fitRational(const FrequencyData& data, const RationalOptions& option
     for (Index o = 0; o < data.outputs; ++o)
         quotient.value.col(o) = (P * found.N.col(o).cast<std::complex<double>>()).cwiseQuotient(D);
     result.fit = fitPartialFractions(sectionsOf(roots, options.sampleRate, scale), quotient);
-    result.fit.cost = (quotient.value - data.value).cwiseProduct(weights).squaredNorm() / data.value.cwiseProduct(weights).squaredNorm();
+    result.fit.cost = (quotient.value - data.value).cwiseProduct(weights).squaredNorm()
+                      / data.value.cwiseProduct(weights).squaredNorm();
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -41,7 +41,7 @@ MatrixXd root(const MatrixXd& W)
     return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-} // namespace
+}  // namespace
 
 Balanced balanced(const StateSpace& model)
 {
@@ -111,10 +111,13 @@ StateSpace truncated(const Balanced& balanced, Index order, Truncation how)
 bool PruningOptions::isValid(std::string* reason) const
 {
     const bool valid = order >= 0 && errorDb <= 0.0 && std::isfinite(errorDb) && refinementIterations >= 1;
-    return valid || refuse(reason, "pruning needs an order of at least 0, an error of at most 0 dB, and at least one iteration after each step");
+    return valid
+           || refuse(reason, "pruning needs an order of at least 0, an error of at most 0 dB, and at least one "
+                             "iteration after each step");
 }
 
-Pruning prune(const PartialFractionFit& start, const FrequencyData& data, const PruningOptions& options, const Progress& progress)
+Pruning prune(const PartialFractionFit& start, const FrequencyData& data, const PruningOptions& options,
+              const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -149,4 +152,4 @@ Pruning prune(const PartialFractionFit& start, const FrequencyData& data, const 
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -28,7 +28,7 @@ Eigen::MatrixXd markovRows(const Sections& sections)
     return rows;
 }
 
-} // namespace
+}  // namespace
 
 Eigen::MatrixXd permittedCoefficients(const Sections& sections)
 {
@@ -53,4 +53,4 @@ Eigen::MatrixXd coefficientSlopes(const Sections& sections, const Eigen::VectorX
     return markovRows(sections).completeOrthogonalDecomposition().solve(moved);
 }
 
-} // namespace excursion
+}  // namespace excursion

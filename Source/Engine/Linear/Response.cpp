@@ -105,4 +105,4 @@ double relativeErrorDb(const Frf& measured, const Frf& model)
     return 10.0 * std::log10(error / power);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,7 +8,8 @@ namespace excursion {
 
 /// What frequency responses are computed at: lambda = z - 1 in discrete time, lambda = j w in continuous time, so that
 ///     G = C (lambda I - L)^-1 B + D,  L = A - I or A.
-/// z - 1 = 2j sin(w/2) exp(j w/2), w = 2 pi f / fs, loses no digits at frequencies far below the sample rate, where z itself would.
+/// z - 1 = 2j sin(w/2) exp(j w/2), w = 2 pi f / fs, loses no digits at frequencies far below the sample rate, where z
+/// itself would.
 /// @param alpha  of systems of fractional order in continuous time: lambda = (j w)^alpha
 std::complex<double> evaluationPoint(double frequency, double sampleRate, double alpha = 1.0);
 Eigen::VectorXcd evaluationPoints(const std::vector<double>& frequency, double sampleRate, double alpha = 1.0);
@@ -26,10 +27,11 @@ public:
 
 private:
     Eigen::MatrixXcd T_, U_, CU_, UB_, D_;
-    Eigen::MatrixXcd solveLeft(std::complex<double> lambda) const;   // C U (lambda I - T)^-1
+    Eigen::MatrixXcd solveLeft(std::complex<double> lambda) const;  // C U (lambda I - T)^-1
 };
 
-/// The frequency response at frequencies in Hz, one p x m matrix each. Throws Error (usage) when the model is not valid.
+/// The frequency response at frequencies in Hz, one p x m matrix each. Throws Error (usage) when the model is not
+/// valid.
 std::vector<Eigen::MatrixXcd> respond(const StateSpace&, const std::vector<double>& frequency);
 
 /// The response of one input and output, as an Frf without variances.
@@ -38,4 +40,4 @@ Frf frfOf(const StateSpace&, const std::vector<double>& frequency, Eigen::Index 
 /// 20 log10(|model - measured| / |measured|), rms over the lines of the Frf (seed 4.26).
 double relativeErrorDb(const Frf& measured, const Frf& model);
 
-} // namespace excursion
+}  // namespace excursion

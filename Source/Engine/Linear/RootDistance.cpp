@@ -13,14 +13,15 @@ namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
 
-/// A root turned by the angle between the nearer ray and the upper half of the imaginary axis: then it lies Im along, and Re aside.
+/// A root turned by the angle between the nearer ray and the upper half of the imaginary axis: then it lies Im along,
+/// and Re aside.
 std::complex<double> alongRay(std::complex<double> root, double alpha)
 {
     const std::complex<double> upper(root.real(), std::abs(root.imag()));
     return alpha == 1.0 ? upper : upper * std::polar(1.0, 0.25 * turn * (1.0 - alpha));
 }
 
-} // namespace
+}  // namespace
 
 double nearestFrequency(std::complex<double> root, double sampleRate, double alpha)
 {
@@ -47,11 +48,11 @@ RootDistance distanceToBand(std::complex<double> root, double sampleRate, double
         return distance;
     }
     const double radius = std::abs(1.0 + root), across = 0.5 * sampleRate - f;
-    if (f >= low && f <= high)   // 1 - |z|, with the digits of a root near 1
+    if (f >= low && f <= high)  // 1 - |z|, with the digits of a root near 1
         distance.least = std::abs(2.0 * root.real() + std::norm(root)) / (1.0 + radius);
     if (across >= low && across <= high)
         distance.most = 1.0 + radius;
     return distance;
 }
 
-} // namespace excursion
+}  // namespace excursion

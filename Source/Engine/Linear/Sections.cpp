@@ -68,7 +68,8 @@ bool isStable(const Sections& sections)
     for (Index i = 0; i < sections.pairs(); ++i) {
         const double b = sections.factors[2 * i], e = sections.factors[2 * i + 1];
         // Jury's conditions for z^2 + (b - 2) z + (1 - b + e)
-        // in continuous time -b/(2 sqrt(e)) is the cosine of a complex pair's angle, and beyond 1 in size for two real roots of one sign
+        // in continuous time -b/(2 sqrt(e)) is the cosine of a complex pair's angle, and beyond 1 in size for two real
+        // roots of one sign
         if (discrete ? !(e < b && e > 0.0 && 4.0 - 2.0 * b + e > 0.0) : !(e > 0.0 && b > border * std::sqrt(e)))
             return false;
     }
@@ -91,7 +92,8 @@ Sections mirrored(const Sections& sections)
             if (root.imag() == 0.0)
                 root = -size;
             else if (angle <= border) {
-                const double beyond = std::clamp(2.0 * border - angle, border + 1e-9, 0.5 * (border + std::numbers::pi));
+                const double beyond = std::clamp(2.0 * border - angle, border + 1e-9,
+                                                 0.5 * (border + std::numbers::pi));
                 root = std::polar(size, std::copysign(beyond, root.imag()));
             }
         } else if (root.real() >= 0.0)
@@ -120,16 +122,18 @@ Eigen::MatrixXcd partialFractions(const Sections& sections, const Eigen::VectorX
     return basis;
 }
 
-Eigen::MatrixXcd partialFractionSlopes(const Sections& sections, const Eigen::VectorXcd& lambda, const Eigen::MatrixXcd& basis,
-                                       const Eigen::VectorXd& c)
+Eigen::MatrixXcd partialFractionSlopes(const Sections& sections, const Eigen::VectorXcd& lambda,
+                                       const Eigen::MatrixXcd& basis, const Eigen::VectorXd& c)
 {
     Eigen::MatrixXcd slopes(basis.rows(), basis.cols());
     const double unit = 1.0 / sections.scale;
     for (Index i = 0; i < sections.pairs(); ++i)
         for (Index k = 0; k < basis.rows(); ++k) {
             const Complex f = basis(k, 2 * i), g = basis(k, 2 * i + 1);
-            const double mr = c[2 * i] * f.real() + c[2 * i + 1] * g.real(), mi = c[2 * i] * f.imag() + c[2 * i + 1] * g.imag();
-            const double er = -(mr * f.real() - mi * f.imag()), ei = -(mr * f.imag() + mi * f.real());   // -m/q = dm/de
+            const double mr = c[2 * i] * f.real() + c[2 * i + 1] * g.real(),
+                         mi = c[2 * i] * f.imag() + c[2 * i + 1] * g.imag();
+            // -m/q = dm/de
+            const double er = -(mr * f.real() - mi * f.imag()), ei = -(mr * f.imag() + mi * f.real());
             const double x = unit * lambda[k].real(), y = unit * lambda[k].imag(), half = 0.5 * c[2 * i + 1];
             slopes(k, 2 * i) = {x * er - y * ei + half * f.real(), x * ei + y * er + half * f.imag()};
             slopes(k, 2 * i + 1) = {er, ei};
@@ -150,7 +154,8 @@ StateSpace realize(const Sections& sections, const Eigen::MatrixXd& C, const Eig
     model.B = Eigen::VectorXd::Zero(n);
     model.C = C;
     model.D = D;
-    // x1 = u/q, x2 = (mu + b/2) u/q:  mu x1 = -b/2 x1 + x2,  mu x2 = (b^2/4 - e) x1 - b/2 x2 + u; then x1 is stretched to t x1.
+    // x1 = u/q, x2 = (mu + b/2) u/q:  mu x1 = -b/2 x1 + x2,  mu x2 = (b^2/4 - e) x1 - b/2 x2 + u; then x1 is stretched
+    // to t x1.
     for (Index i = 0; i < sections.pairs(); ++i) {
         const double b = sections.factors[2 * i], e = sections.factors[2 * i + 1], d = 0.25 * b * b - e;
         const double t = std::max(std::sqrt(std::abs(d)), 1e-3 * std::max(std::abs(0.5 * b), std::sqrt(std::abs(e))));
@@ -181,4 +186,4 @@ StateSpace realize(const Sections& sections, const Eigen::MatrixXd& C, const Eig
     return model;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -23,14 +23,14 @@ void require(const StateSpace& model, const MatrixXd& input)
                                             + std::to_string(input.cols()) + " were given.");
 }
 
-} // namespace
+}  // namespace
 
 MatrixXd simulate(const StateSpace& model, const MatrixXd& input, const VectorXd& initial)
 {
     require(model, input);
     if (initial.size() != 0 && initial.size() != model.order())
-        throw Error(Error::Kind::usage, "The initial state has " + std::to_string(initial.size()) + " numbers, the model "
-                                            + std::to_string(model.order()) + " states.");
+        throw Error(Error::Kind::usage, "The initial state has " + std::to_string(initial.size())
+                                            + " numbers, the model " + std::to_string(model.order()) + " states.");
     VectorXd x = initial.size() != 0 ? initial : VectorXd::Zero(model.order()), next(model.order());
     MatrixXd output(input.rows(), model.outputs());
     for (Eigen::Index t = 0; t < input.rows(); ++t) {
@@ -57,8 +57,9 @@ VectorXd periodicState(const StateSpace& model, const MatrixXd& input)
     }
     const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd::Identity(model.order(), model.order()) - power);
     if (model.order() > 0 && !(lu.rcond() > 1e-14))
-        throw Error(Error::Kind::numerical, "The model has no steady state for this period: one of its poles keeps what it holds.");
+        throw Error(Error::Kind::numerical,
+                    "The model has no steady state for this period: one of its poles keeps what it holds.");
     return lu.solve(x);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -69,7 +69,8 @@ StateSpace evenlyReached(const StateSpace& unstable)
     // Lengths first: states of unlike units would be mistaken for ones that are not reached.
     auto scaled = unstable;
     const MatrixXd Y = reachedBackwards(unstable);
-    const Eigen::VectorXd length = Y.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr([](double l) { return l > 0.0 ? l : 1.0; });
+    const Eigen::VectorXd length = Y.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(
+        [](double l) { return l > 0.0 ? l : 1.0; });
     scaled = transformed(unstable, MatrixXd(length.asDiagonal()));
     const MatrixXd even = length.cwiseInverse().asDiagonal() * Y * length.cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (even + even.transpose()));
@@ -100,7 +101,8 @@ StateSpace timesAllPass(const StateSpace& model)
     MatrixXd F = -B.transpose(), W = identity(model.inputs());
     if (!model.continuous()) {
         const Eigen::SelfAdjointEigenSolver<MatrixXd> gain(identity(model.inputs()) + B.transpose() * B);
-        F = -gain.eigenvectors() * gain.eigenvalues().cwiseInverse().asDiagonal() * gain.eigenvectors().transpose() * B.transpose() * A;
+        F = -gain.eigenvectors() * gain.eigenvalues().cwiseInverse().asDiagonal() * gain.eigenvectors().transpose()
+            * B.transpose() * A;
         W = gain.operatorInverseSqrt();
     }
     const auto n = stable.order();
@@ -125,7 +127,8 @@ double scaleFor(const StateSpace& model, const FrequencyData& data, double alpha
 }
 
 /// The constrained fit that starts from a stable model. @return why it stopped
-std::string refit(StateSpace& model, const FrequencyData& data, const StabilizeOptions& options, const Progress& progress)
+std::string refit(StateSpace& model, const FrequencyData& data, const StabilizeOptions& options,
+                  const Progress& progress)
 {
     if (data.inputs > 1) {
         fitInputs(model, data, options.alpha);
@@ -134,19 +137,22 @@ std::string refit(StateSpace& model, const FrequencyData& data, const StabilizeO
     auto refinement = options.refinement;
     refinement.stable = true;
     // The factors round the poles: what lies on the border to the last digit would not count as stable.
-    const auto start = mirrored(sectionsOf(poles(model), model.sampleRate, scaleFor(model, data, options.alpha), options.alpha));
+    const auto start = mirrored(
+        sectionsOf(poles(model), model.sampleRate, scaleFor(model, data, options.alpha), options.alpha));
     const auto refined = refinePoles(start, data, refinement, progress);
     model = realize(refined.fit.sections, refined.fit.C, refined.fit.D);
     return refined.reason;
 }
 
-void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeOptions& options, const Progress& progress)
+void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeOptions& options,
+              const Progress& progress)
 {
     DelayedFitOptions fitting;
     fitting.order = static_cast<int>(result.model.order());
     fitting.sampleRate = result.model.sampleRate;
     fitting.refinement = options.refinement;
-    const auto found = options.seconds ? fitAtDelay(data, *options.seconds, fitting, progress) : fitDelayed(data, fitting, progress);
+    const auto found = options.seconds ? fitAtDelay(data, *options.seconds, fitting, progress)
+                                       : fitDelayed(data, fitting, progress);
     result.model = realize(found.fit.sections, found.fit.C, found.fit.D);
     result.delay = found.delay;
     if (!options.seconds)
@@ -155,7 +161,7 @@ void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeO
     result.steps.push_back(stepOf("delayed", result.model, delayed(data, found.delay), 1.0));
 }
 
-} // namespace
+}  // namespace
 
 StateSpace mirroredByAllPass(const StateSpace& model)
 {
@@ -175,7 +181,8 @@ StateSpace mirroredAtSector(const StateSpace& model, double alpha)
 StateSpace stableProjection(const StateSpace& model, Index delay)
 {
     if (delay < 0 || (delay > 0 && model.continuous()))
-        throw Error(Error::Kind::usage, "Only models of discrete time are projected with a delay, and by 0 samples or more.");
+        throw Error(Error::Kind::usage,
+                    "Only models of discrete time are projected with a delay, and by 0 samples or more.");
     const auto [stable, unstable, coupling] = decomposed(model);
     if (model.continuous())
         return stable;
@@ -217,11 +224,13 @@ bool StabilizeOptions::isValid(std::string* reason) const
     if (seconds && !std::isfinite(*seconds))
         return refuse(reason, "the delay must be a finite number of seconds");
     if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && method == StabilizingMethod::delay))
-        return refuse(reason, "the order of differentiation must lie between 0 and 2, and be 1 where a delay is fitted");
+        return refuse(reason,
+                      "the order of differentiation must lie between 0 and 2, and be 1 where a delay is fitted");
     return refinement.isValid(reason);
 }
 
-Stabilization stabilized(const StateSpace& model, const FrequencyData& data, const StabilizeOptions& options, const Progress& progress)
+Stabilization stabilized(const StateSpace& model, const FrequencyData& data, const StabilizeOptions& options,
+                         const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason) || !model.isValid(&reason))
@@ -268,7 +277,8 @@ FrequencyData sampled(const StateSpace& model, int lines, double alpha)
 {
     double slow = std::numeric_limits<double>::infinity(), fast = 0.0;
     for (auto pole : poles(model)) {
-        const double size = model.continuous() ? std::pow(std::abs(pole), 1.0 / alpha) : std::abs(pole - 1.0) * model.sampleRate;
+        const double size = model.continuous() ? std::pow(std::abs(pole), 1.0 / alpha)
+                                               : std::abs(pole - 1.0) * model.sampleRate;
         if (size > 0.0) {
             slow = std::min(slow, size);
             fast = std::max(fast, size);
@@ -286,9 +296,12 @@ FrequencyData sampled(const StateSpace& model, int lines, double alpha)
     const Resolvent resolvent(model);
     data.value.resize(static_cast<Index>(data.frequency.size()), data.inputs * data.outputs);
     for (Index k = 0; k < data.lines(); ++k)
-        data.value.row(k)
-            = resolvent.response(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha)).reshaped().transpose();
+        data.value.row(
+            k) = resolvent
+                     .response(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha))
+                     .reshaped()
+                     .transpose();
     return data;
 }
 
-} // namespace excursion
+}  // namespace excursion

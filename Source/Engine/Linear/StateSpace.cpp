@@ -28,7 +28,7 @@ std::vector<Complex> sorted(std::vector<Complex> values)
 
 std::string shape(const Eigen::MatrixXd& M) { return std::to_string(M.rows()) + " x " + std::to_string(M.cols()); }
 
-} // namespace
+}  // namespace
 
 bool StateSpace::isValid(std::string* reason) const
 {
@@ -37,9 +37,11 @@ bool StateSpace::isValid(std::string* reason) const
     if (A.rows() != A.cols())
         return refuse(reason, "the A of a state-space model must be square, but is " + shape(A));
     if (B.rows() != A.rows() || B.cols() != D.cols())
-        return refuse(reason, "the B of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be " + shape(B));
+        return refuse(reason, "the B of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be "
+                                  + shape(B));
     if (C.rows() != D.rows() || C.cols() != A.cols())
-        return refuse(reason, "the C of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be " + shape(C));
+        return refuse(reason, "the C of a state-space model with A " + shape(A) + " and D " + shape(D) + " cannot be "
+                                  + shape(C));
     if (!A.allFinite() || !B.allFinite() || !C.allFinite() || !D.allFinite())
         return refuse(reason, "a number of the state-space model is not finite");
     if (!(sampleRate >= 0.0) || !std::isfinite(sampleRate))
@@ -60,7 +62,8 @@ std::vector<Complex> zeros(const StateSpace& model)
 {
     if (model.inputs() != model.outputs())
         throw Error(Error::Kind::usage, "Zeros are computed of models with as many inputs as outputs; this one has "
-                                            + std::to_string(model.inputs()) + " and " + std::to_string(model.outputs()) + ".");
+                                            + std::to_string(model.inputs()) + " and " + std::to_string(model.outputs())
+                                            + ".");
     const auto n = model.order(), m = model.inputs();
     if (n == 0)
         return {};
@@ -102,4 +105,4 @@ StateSpace transformed(const StateSpace& model, const Eigen::MatrixXd& T)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -24,7 +24,7 @@ std::vector<std::string> names(const JsonField& field)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 Json matrixJson(const Eigen::MatrixXd& M)
 {
@@ -99,6 +99,9 @@ NamedStateSpace readStateSpace(const std::filesystem::path& path)
     return stateSpaceFromJson(JsonField(document, "", path.string()));
 }
 
-void writeStateSpace(const NamedStateSpace& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
+void writeStateSpace(const NamedStateSpace& named, const std::filesystem::path& path)
+{
+    writeJson(toJson(named), path);
+}
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,9 +13,10 @@ namespace excursion {
 /// A linear model with the names of what it connects, as the document "excursion-state-space" 1 keeps it.
 struct NamedStateSpace {
     std::string name;
-    std::vector<std::string> inputs, outputs;   ///< quantities, "voltage"
+    std::vector<std::string> inputs, outputs;  ///< quantities, "voltage"
     StateSpace model;
-    double delay = 0.0;                         ///< s: the model has the response times exp(-j w delay); see Stabilization.h
+    /// s: the model has the response times exp(-j w delay); see Stabilization.h
+    double delay = 0.0;
 };
 
 nlohmann::ordered_json toJson(const NamedStateSpace&);
@@ -30,4 +31,4 @@ void writeStateSpace(const NamedStateSpace&, const std::filesystem::path&);
 nlohmann::ordered_json matrixJson(const Eigen::MatrixXd&);
 Eigen::MatrixXd matrixFrom(const JsonField&, Eigen::Index rows, Eigen::Index columns);
 
-} // namespace excursion
+}  // namespace excursion

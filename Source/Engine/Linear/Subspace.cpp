@@ -28,11 +28,12 @@ void require(const FrequencyData& data, double sampleRate)
     if (!data.isValid(&reason))
         throw Error(Error::Kind::data, "The frequency response cannot be identified: " + reason + ".");
     if (!(sampleRate > 0.0) || data.frequency.back() > 0.5 * sampleRate * (1.0 + 1e-12))
-        throw Error(Error::Kind::usage, "Frequencies of a model in discrete time go up to half its sample rate, but the response goes to "
-                                            + std::to_string(data.frequency.back()) + " Hz.");
+        throw Error(Error::Kind::usage,
+                    "Frequencies of a model in discrete time go up to half its sample rate, but the response goes to "
+                        + std::to_string(data.frequency.back()) + " Hz.");
 }
 
-} // namespace
+}  // namespace
 
 ObservabilityRange observabilityRange(const FrequencyData& data, double sampleRate, Index q)
 {
@@ -90,7 +91,8 @@ StateSpace dynamicsOf(const ObservabilityRange& range, Index order, Index inputs
     const auto p = range.outputScale.size();
     const auto q = range.U.rows() / p;
     if (order < 0 || order >= q)
-        throw Error(Error::Kind::data, "A model of order " + std::to_string(order) + " needs more lines than the frequency response has.");
+        throw Error(Error::Kind::data,
+                    "A model of order " + std::to_string(order) + " needs more lines than the frequency response has.");
     // sum_j h_ji O_j, i = 0 .. q-2, equals O_i A
     const auto O = range.U.leftCols(order);
     MatrixXd shifted = MatrixXd::Zero((q - 1) * p, order);
@@ -100,7 +102,7 @@ StateSpace dynamicsOf(const ObservabilityRange& range, Index order, Index inputs
     StateSpace model;
     model.sampleRate = range.sampleRate;
     model.A.resize(order, order);
-    if (order > 0)   // Eigen's factorization of no columns is not defined
+    if (order > 0)  // Eigen's factorization of no columns is not defined
         model.A = Eigen::ColPivHouseholderQR<MatrixXd>(O.topRows((q - 1) * p)).solve(shifted);
     model.C = range.outputScale.cwiseInverse().asDiagonal() * O.topRows(p) / range.constant;
     model.B = MatrixXd::Zero(order, inputs);
@@ -117,7 +119,7 @@ StateSpace mirrored(const StateSpace& model)
     const auto n = T.rows();
     bool changed = false;
     for (Index k = 0; k < n;) {
-        const Index size = k + 1 < n && T(k + 1, k) != 0.0 ? 2 : 1;   // a block of 2 holds a complex pair
+        const Index size = k + 1 < n && T(k + 1, k) != 0.0 ? 2 : 1;  // a block of 2 holds a complex pair
         const double real = size == 2 ? 0.5 * (T(k, k) + T(k + 1, k + 1)) : T(k, k);
         const double radius = size == 2 ? std::sqrt(std::abs(T.block(k, k, 2, 2).determinant())) : std::abs(T(k, k));
         if (model.continuous() ? real >= 0.0 : radius >= 1.0) {
@@ -147,8 +149,8 @@ void fitInputs(StateSpace& model, const FrequencyData& data, double alpha)
     if (n > 0) {
         const Resolvent resolvent(model);
         for (Index k = 0; k < K; ++k)
-            rows[static_cast<std::size_t>(k)]
-                = resolvent.left(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha));
+            rows[static_cast<std::size_t>(k)] = resolvent.left(
+                evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha));
     }
     for (Index i = 0; i < data.inputs; ++i) {
         TallQr qr(n + p + 1);
@@ -183,9 +185,10 @@ StateSpace identifySubspace(const FrequencyData& data, double sampleRate, Index 
 {
     if (order < 0)
         throw Error(Error::Kind::usage, "The order of a model cannot be below 0.");
-    auto model = dynamicsOf(observabilityRange(data, sampleRate, blockRowsFor(order, data.lines())), order, data.inputs, stable);
+    auto model = dynamicsOf(observabilityRange(data, sampleRate, blockRowsFor(order, data.lines())), order, data.inputs,
+                            stable);
     fitInputs(model, data);
     return model;
 }
 
-} // namespace excursion
+}  // namespace excursion

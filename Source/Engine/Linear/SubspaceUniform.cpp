@@ -15,15 +15,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 /// The real part at line 0 from those of lines 1 .. 4 of an even function: cubic in k^2 through them.
-double extrapolated(double g1, double g2, double g3, double g4) { return (56.0 * g1 - 28.0 * g2 + 8.0 * g3 - g4) / 35.0; }
+double extrapolated(double g1, double g2, double g3, double g4)
+{
+    return (56.0 * g1 - 28.0 * g2 + 8.0 * g3 - g4) / 35.0;
+}
 
 [[noreturn]] void refuse(const std::string& why)
 {
-    throw Error(Error::Kind::data, "The frequency response does not lie on a uniform grid up to half the sample rate (" + why
-                                       + "), which this algorithm needs; algorithm 2 takes any grid.");
+    throw Error(Error::Kind::data, "The frequency response does not lie on a uniform grid up to half the sample rate ("
+                                       + why + "), which this algorithm needs; algorithm 2 takes any grid.");
 }
 
-} // namespace
+}  // namespace
 
 ObservabilityRange observabilityRangeUniform(const FrequencyData& data, double sampleRate, Index q)
 {
@@ -39,7 +42,9 @@ ObservabilityRange observabilityRangeUniform(const FrequencyData& data, double s
     if (first > 1)
         refuse("its first line is line " + std::to_string(first));
     for (Index k = 0; k < K; ++k)
-        if (std::abs(data.frequency[static_cast<std::size_t>(k)] - static_cast<double>(first + k) * sampleRate / static_cast<double>(N)) > 1e-6 * step)
+        if (std::abs(data.frequency[static_cast<std::size_t>(k)]
+                     - static_cast<double>(first + k) * sampleRate / static_cast<double>(N))
+            > 1e-6 * step)
             refuse("line " + std::to_string(k) + " is off the grid");
     const Index half = N / 2, last = first + K - 1;
     if (last > half || last < half - 1 || N % 2 != 0)
@@ -57,7 +62,8 @@ ObservabilityRange observabilityRangeUniform(const FrequencyData& data, double s
         if (first == 1)
             spectrum[0] = extrapolated(re(1), re(2), re(3), re(4));
         if (last == half - 1)
-            spectrum[static_cast<std::size_t>(half)] = extrapolated(re(half - 1), re(half - 2), re(half - 3), re(half - 4));
+            spectrum[static_cast<std::size_t>(half)] = extrapolated(re(half - 1), re(half - 2), re(half - 3),
+                                                                    re(half - 4));
         const auto h = inverseFft(spectrum, static_cast<std::size_t>(N));
         const Index o = e % p, i = e / p;
         for (Index a = 0; a < q; ++a)
@@ -76,4 +82,4 @@ ObservabilityRange observabilityRangeUniform(const FrequencyData& data, double s
     return range;
 }
 
-} // namespace excursion
+}  // namespace excursion

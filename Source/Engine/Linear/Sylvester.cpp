@@ -32,7 +32,8 @@ MatrixXd solveSylvester(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C)
         for (Index i = n; i-- > 0;) {
             const auto gap = Ta(i, i) - Tb(j, j);
             if (!(std::abs(gap) > least))
-                throw Error(Error::Kind::numerical, "A Sylvester equation has no solution: its matrices share an eigenvalue.");
+                throw Error(Error::Kind::numerical,
+                            "A Sylvester equation has no solution: its matrices share an eigenvalue.");
             y[i] /= gap;
             y.head(i) -= y[i] * Ta.col(i).head(i);
         }
@@ -41,4 +42,4 @@ MatrixXd solveSylvester(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C)
     return (a.matrixU() * Y * b.matrixU().adjoint()).real();
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,11 +11,11 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index blockRows = 256;   // 2 kB a column: a pair of columns stays in the first-level cache
+constexpr Index blockRows = 256;  // 2 kB a column: a pair of columns stays in the first-level cache
 
 Four& four(double* p) { return *reinterpret_cast<Four*>(p); }
 
-constexpr Index panel = 4;   // reflections that are applied together: each load of a column serves all of them
+constexpr Index panel = 4;  // reflections that are applied together: each load of a column serves all of them
 
 /// v^T w over `rows`.
 [[gnu::always_inline]] inline double dot(double* v, double* w, Index rows)
@@ -31,7 +31,8 @@ constexpr Index panel = 4;   // reflections that are applied together: each load
 }
 
 /// One reflection onto columns first .. last: R's row j and the block.
-[[gnu::always_inline]] inline void reflect(double* R, double* block, Index stride, Index rows, Index P, Index j, double tau, Index first, Index last)
+[[gnu::always_inline]] inline void reflect(double* R, double* block, Index stride, Index rows, Index P, Index j,
+                                           double tau, Index first, Index last)
 {
     double* v = block + j * stride;
     for (Index c = first; c < last; ++c) {
@@ -43,8 +44,9 @@ constexpr Index panel = 4;   // reflections that are applied together: each load
     }
 }
 
-/// One block of rows, column after column with stride `stride`, folded into R (upper triangular, stride P), four columns at a time:
-/// H1 H2 H3 H4 = I - V T V^T (Schreiber & Van Loan 1989), where the part of V that stands beside R is the identity.
+/// One block of rows, column after column with stride `stride`, folded into R (upper triangular, stride P), four
+/// columns at a time: H1 H2 H3 H4 = I - V T V^T (Schreiber & Van Loan 1989), where the part of V that stands beside R
+/// is the identity.
 EXCURSION_DISPATCH
 void foldBlock(double* R, double* block, Index stride, Index rows, Index P)
 {
@@ -56,7 +58,7 @@ void foldBlock(double* R, double* block, Index stride, Index rows, Index P)
             double* v = block + (j + k) * stride;
             const double squares = dot(v, v, rows);
             if (!(squares > 0.0))
-                continue;   // nothing to reflect: tau stays 0
+                continue;  // nothing to reflect: tau stays 0
             double& diagonal = R[(j + k) + (j + k) * P];
             const double length = std::sqrt(diagonal * diagonal + squares);
             const double beta = diagonal > 0.0 ? -length : length;
@@ -74,7 +76,7 @@ void foldBlock(double* R, double* block, Index stride, Index rows, Index P)
                     T[i][k] -= tau * T[i][l] * between[l];
         }
         if (size < panel)
-            break;   // the last columns: none stand to the right
+            break;  // the last columns: none stand to the right
         double* v0 = block + j * stride;
         double* v1 = v0 + stride;
         double* v2 = v1 + stride;
@@ -95,10 +97,10 @@ void foldBlock(double* R, double* block, Index stride, Index rows, Index P)
                 b2 += four(v2 + r) * y;
                 b3 += four(v3 + r) * y;
             }
-            double sums[2][panel] = {{(a0[0] + a0[1]) + (a0[2] + a0[3]), (a1[0] + a1[1]) + (a1[2] + a1[3]), (a2[0] + a2[1]) + (a2[2] + a2[3]),
-                                      (a3[0] + a3[1]) + (a3[2] + a3[3])},
-                                     {(b0[0] + b0[1]) + (b0[2] + b0[3]), (b1[0] + b1[1]) + (b1[2] + b1[3]), (b2[0] + b2[1]) + (b2[2] + b2[3]),
-                                      (b3[0] + b3[1]) + (b3[2] + b3[3])}};
+            double sums[2][panel] = {{(a0[0] + a0[1]) + (a0[2] + a0[3]), (a1[0] + a1[1]) + (a1[2] + a1[3]),
+                                      (a2[0] + a2[1]) + (a2[2] + a2[3]), (a3[0] + a3[1]) + (a3[2] + a3[3])},
+                                     {(b0[0] + b0[1]) + (b0[2] + b0[3]), (b1[0] + b1[1]) + (b1[2] + b1[3]),
+                                      (b2[0] + b2[1]) + (b2[2] + b2[3]), (b3[0] + b3[1]) + (b3[2] + b3[3])}};
             double w[2][panel];
             for (int column = 0; column < (pair ? 2 : 1); ++column) {
                 double* top = R + j + (c + column) * P;
@@ -108,7 +110,7 @@ void foldBlock(double* R, double* block, Index stride, Index rows, Index P)
                         sums[column][k] += block[(j + k) * stride + r] * x[r];
                     sums[column][k] += top[k];
                 }
-                for (Index k = 0; k < panel; ++k) {   // T^T times the sums
+                for (Index k = 0; k < panel; ++k) {  // T^T times the sums
                     w[column][k] = 0.0;
                     for (Index i = 0; i <= k; ++i)
                         w[column][k] += T[i][k] * sums[column][i];
@@ -126,12 +128,13 @@ void foldBlock(double* R, double* block, Index stride, Index rows, Index P)
                 }
             else
                 for (Index r = 0; r < whole; r += 4)
-                    four(a + r) -= w[0][0] * four(v0 + r) + w[0][1] * four(v1 + r) + w[0][2] * four(v2 + r) + w[0][3] * four(v3 + r);
+                    four(a + r) -= w[0][0] * four(v0 + r) + w[0][1] * four(v1 + r) + w[0][2] * four(v2 + r)
+                                   + w[0][3] * four(v3 + r);
         }
     }
 }
 
-} // namespace
+}  // namespace
 
 TallQr::TallQr(Index columns) : R_(Eigen::MatrixXd::Zero(columns, columns)) {}
 
@@ -139,7 +142,8 @@ void TallQr::fold(Eigen::Ref<Eigen::MatrixXd> rows)
 {
     eigen_assert(rows.cols() == R_.cols());
     for (Index first = 0; first < rows.rows(); first += blockRows)
-        foldBlock(R_.data(), rows.data() + first, rows.outerStride(), std::min(blockRows, rows.rows() - first), R_.cols());
+        foldBlock(R_.data(), rows.data() + first, rows.outerStride(), std::min(blockRows, rows.rows() - first),
+                  R_.cols());
 }
 
-} // namespace excursion
+}  // namespace excursion

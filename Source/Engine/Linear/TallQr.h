@@ -5,11 +5,12 @@
 
 namespace excursion {
 
-/// The triangular factor R of a tall matrix M = Q R that arrives in blocks of rows and never stands in memory as a whole
-/// (Golub & Van Loan 2013, 5.2 and 6.5: Householder reflections that fold new rows into an old R). With a right-hand side as its last column
+/// The triangular factor R of a tall matrix M = Q R that arrives in blocks of rows and never stands in memory as a
+/// whole (Golub & Van Loan 2013, 5.2 and 6.5: Householder reflections that fold new rows into an old R). With a
+/// right-hand side as its last column
 ///     M = [J, r]:  R = [R_J, q; 0, rho],  min |J d - r| = |R_J d - q| and what is left is |rho|,
-/// so least squares needs R alone, at the accuracy of orthogonal transformations: normal equations would square the condition.
-/// Rows are taken in the order in which they come: same rows, same bits on the same kind of processor.
+/// so least squares needs R alone, at the accuracy of orthogonal transformations: normal equations would square the
+/// condition. Rows are taken in the order in which they come: same rows, same bits on the same kind of processor.
 class TallQr {
 public:
     explicit TallQr(Eigen::Index columns);
@@ -26,4 +27,4 @@ private:
     Eigen::MatrixXd R_;
 };
 
-} // namespace excursion
+}  // namespace excursion

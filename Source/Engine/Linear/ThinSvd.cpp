@@ -17,4 +17,4 @@ ThinSvd leftSvd(const Eigen::MatrixXd& A)
     return {svd.matrixU(), svd.singularValues(), {}};
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -18,4 +18,4 @@ ThinSvd thinSvd(const Eigen::MatrixXd& A);
 /// The same without V, which is left empty.
 ThinSvd leftSvd(const Eigen::MatrixXd& A);
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,8 +9,8 @@ Eigen::MatrixXd truncatedSolve(const Eigen::MatrixXd& R, const Eigen::MatrixXd& 
 {
     if (R.cols() == 0)
         return Eigen::MatrixXd::Zero(0, q.cols());
-    const Eigen::VectorXd scale
-        = R.colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+    const Eigen::VectorXd scale = R.colwise().norm().transpose().unaryExpr(
+        [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
     const auto [U, s, V] = thinSvd(R * scale.asDiagonal());
     Eigen::MatrixXd y = U.transpose() * q;
     for (Eigen::Index k = 0; k < s.size(); ++k)
@@ -18,4 +18,4 @@ Eigen::MatrixXd truncatedSolve(const Eigen::MatrixXd& R, const Eigen::MatrixXd& 
     return scale.asDiagonal() * (V * y);
 }
 
-} // namespace excursion
+}  // namespace excursion

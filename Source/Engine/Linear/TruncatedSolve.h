@@ -9,4 +9,4 @@ namespace excursion {
 /// `relative` times the largest left out.
 Eigen::MatrixXd truncatedSolve(const Eigen::MatrixXd& R, const Eigen::MatrixXd& q, double relative = 1e-15);
 
-} // namespace excursion
+}  // namespace excursion

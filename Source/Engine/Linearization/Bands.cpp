@@ -39,4 +39,4 @@ Bands::Values Bands::split(double u)
     return {u - high, high - highest, highest};
 }
 
-} // namespace excursion
+}  // namespace excursion

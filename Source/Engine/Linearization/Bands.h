@@ -6,9 +6,11 @@
 
 namespace excursion {
 
-/// Splits a signal in three that sum up to it, lowest first: H_1 and H_2 are high-passes of second order in a row, the bands are
+/// Splits a signal in three that sum up to it, lowest first: H_1 and H_2 are high-passes of second order in a row, the
+/// bands are
 ///     u - H_1 u,   H_1 u - H_2 H_1 u,   H_2 H_1 u.
-/// A band that is turned down leaves a high-pass of second order, so what moves a cone goes first, and there is no delay.
+/// A band that is turned down leaves a high-pass of second order, so what moves a cone goes first, and there is no
+/// delay.
 class Bands {
 public:
     static constexpr std::size_t count = 3;
@@ -21,7 +23,8 @@ public:
     Values split(double u);
 
 private:
-    /// Butterworth's high-pass of second order in the trapezoidal form (Zavalishin, The Art of VA Filter Design, 2012, section 4).
+    /// Butterworth's high-pass of second order in the trapezoidal form (Zavalishin, The Art of VA Filter Design, 2012,
+    /// section 4).
     struct HighPass {
         double a1 = 0.0, a2 = 0.0, a3 = 0.0, first = 0.0, second = 0.0;
         double step(double u);
@@ -29,4 +32,4 @@ private:
     std::array<HighPass, 2> filters_;
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,18 +9,25 @@
 namespace excursion {
 namespace {
 
-constexpr double fadeTime = 0.05;        // s, from mode to mode
-constexpr double levelTime = 0.005;      // s, see Glide
-constexpr double plainTime = 0.0003;     // s, see Glide: gone within the latency
+constexpr double fadeTime = 0.05;     // s, from mode to mode
+constexpr double levelTime = 0.005;   // s, see Glide
+constexpr double plainTime = 0.0003;  // s, see Glide: gone within the latency
 
-} // namespace
+}  // namespace
 
 Chain::Chain(const Model& model, const RealTimeOptions& options, const ChainControls& controls)
-    : bend_(model, options, controls.linearization), cone_(model, options.sampleRate * options.oversampling),
+    : bend_(model, options, controls.linearization),
+      cone_(model, options.sampleRate * options.oversampling),
       coneRecovery_(static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
-      wet_(static_cast<int>(fadeTime * options.sampleRate), bend_.latency()), played_(static_cast<int>(fadeTime * options.sampleRate), 0),
-      perVolt_(1.0 / plateau(model)), factor_(options.oversampling), fullScale_(levelTime, options.sampleRate), before_(levelTime, options.sampleRate),
-      after_(levelTime, options.sampleRate), plainGain_(plainTime, options.sampleRate, 1.0), plain_(static_cast<std::size_t>(bend_.latency()))
+      wet_(static_cast<int>(fadeTime * options.sampleRate), bend_.latency()),
+      played_(static_cast<int>(fadeTime * options.sampleRate), 0),
+      perVolt_(1.0 / plateau(model)),
+      factor_(options.oversampling),
+      fullScale_(levelTime, options.sampleRate),
+      before_(levelTime, options.sampleRate),
+      after_(levelTime, options.sampleRate),
+      plainGain_(plainTime, options.sampleRate, 1.0),
+      plain_(static_cast<std::size_t>(bend_.latency()))
 {
     set(controls);
     reset();
@@ -29,9 +36,10 @@ Chain::Chain(const Model& model, const RealTimeOptions& options, const ChainCont
 void Chain::set(const ChainControls& controls)
 {
     const auto mode = controls.mode;
-    const bool bends = mode == Mode::linearize || mode == Mode::audition, plays = mode != Mode::bypass && mode != Mode::linearize;
+    const bool bends = mode == Mode::linearize || mode == Mode::audition,
+               plays = mode != Mode::bypass && mode != Mode::linearize;
     if (mode != Mode::bypass) {
-        if (!wet_.runs()) {   // what is switched in finds nothing of before
+        if (!wet_.runs()) {  // what is switched in finds nothing of before
             bend_.turn(false);
             bend_.reset();
             coneRecovery_.reset();
@@ -53,7 +61,8 @@ void Chain::set(const ChainControls& controls)
     bend_.set(controls.linearization);
     bend_.turn(bends);
     limit_ = bends ? controls.linearization.voltageLimit : std::numeric_limits<double>::infinity();
-    if (controls.fullScale > 0.0 && std::isfinite(controls.fullScale) && controls.trim >= 0.0 && std::isfinite(controls.trim)) {
+    if (controls.fullScale > 0.0 && std::isfinite(controls.fullScale) && controls.trim >= 0.0
+        && std::isfinite(controls.trim)) {
         fullScale_.aim(controls.fullScale);
         if (mode != Mode::bypass) {
             before_.aim(plays ? 1.0 : controls.trim);
@@ -152,4 +161,4 @@ Chain::Meters Chain::take()
     return {bend, {displacement_.take(), current_.take(), 0}, bend.faults + faults_.load(std::memory_order_relaxed)};
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,17 +10,21 @@
 namespace excursion {
 namespace {
 
-constexpr double shareTime = 0.003;   // s, see Glide
+constexpr double shareTime = 0.003;  // s, see Glide
 
-} // namespace
+}  // namespace
 
 Cone::Cone(const Model& model, double sampleRate)
     : corrected_(stableSubsteps(model, sampleRate, ExponentialAdams::stable) > 1),
       substeps_(corrected_ ? stableSubsteps(model, sampleRate, ExponentialAdams::stableCorrected) : 1),
-      motion_(model, 1.0 / (sampleRate * substeps_), corrected_), plausible_(model),
-      reference_(model, sampleRate), radiator_(model), area_(radiator_.area()), share_(shareTime, sampleRate)
+      motion_(model, 1.0 / (sampleRate * substeps_), corrected_),
+      plausible_(model),
+      reference_(model, sampleRate),
+      radiator_(model),
+      area_(radiator_.area()),
+      share_(shareTime, sampleRate)
 {
-    const auto linear = linearize(linearPart(model));   // as in Reference
+    const auto linear = linearize(linearPart(model));  // as in Reference
     linear_ = (linear.C.row(Linearization::sound) * reference_.basis()).transpose() / area_;
     linearInput_ = linear.D[Linearization::sound] / area_;
 }
@@ -55,11 +59,12 @@ bool Cone::step(double& sample)
     reference_.step(u);
     const double linear = linear_.dot(reference_.state()) + linearInput_ * u, share = share_.step();
     sample = radiator_.at(motion_.state().data(), acceleration).flow / area_ - share * linear;
-    if (plausible_.holds(motion_.current(), motion_.displacement(), motion_.velocity()) && std::isfinite(acceleration) && std::isfinite(linear))
+    if (plausible_.holds(motion_.current(), motion_.displacement(), motion_.velocity()) && std::isfinite(acceleration)
+        && std::isfinite(linear))
         return true;
     rest();
     sample = 0.0;
     return false;
 }
 
-} // namespace excursion
+}  // namespace excursion

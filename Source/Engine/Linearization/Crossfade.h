@@ -10,9 +10,10 @@
 
 namespace excursion {
 
-/// Plays the engine that was handed over last: when a new one comes, both run, the new one unheard at first, until what it has to remember of the
-/// signal is there, and then the old one fades into the new. A third that is offered meanwhile waits. Until the first one comes the signal goes through as it is.
-/// Engines have process(const double* in, double* out, std::size_t n), and all of them the same latency.
+/// Plays the engine that was handed over last: when a new one comes, both run, the new one unheard at first, until what
+/// it has to remember of the signal is there, and then the old one fades into the new. A third that is offered
+/// meanwhile waits. Until the first one comes the signal goes through as it is. Engines have process(const double* in,
+/// double* out, std::size_t n), and all of them the same latency.
 template <class Engine>
 class Crossfade {
 public:
@@ -40,7 +41,7 @@ public:
         left_ = 0;
     }
 
-    Engine* current() { return now_ ? now_->engine.get() : nullptr; }   ///< on the audio thread
+    Engine* current() { return now_ ? now_->engine.get() : nullptr; }  ///< on the audio thread
 
     /// On the audio thread: work(engine) for every engine that runs, so that all hear of new controls.
     template <class Work>
@@ -96,4 +97,4 @@ private:
     std::array<double, 256> before_ {};
 };
 
-} // namespace excursion
+}  // namespace excursion

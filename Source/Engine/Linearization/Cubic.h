@@ -20,7 +20,8 @@ struct Cubic {
     static Cubic between(double start, double slopeAtStart, double end, double slopeAtEnd)
     {
         const double rise = end - start;
-        return {{start, slopeAtStart, 3.0 * rise - 2.0 * slopeAtStart - slopeAtEnd, slopeAtStart + slopeAtEnd - 2.0 * rise}};
+        return {{start, slopeAtStart, 3.0 * rise - 2.0 * slopeAtStart - slopeAtEnd,
+                 slopeAtStart + slopeAtEnd - 2.0 * rise}};
     }
 
     /// Through the sample before, with value and slope (per step) at the start, and the value at the end.
@@ -40,4 +41,4 @@ struct Cubic {
     double end() const { return c[0] + c[1] + c[2] + c[3]; }
 };
 
-} // namespace excursion
+}  // namespace excursion

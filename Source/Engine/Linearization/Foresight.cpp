@@ -9,7 +9,8 @@
 
 namespace excursion {
 
-Foresight::Foresight(const Model& model, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps, double step, double since)
+Foresight::Foresight(const Model& model, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps,
+                     double step, double since)
     : coasting(times.size(), reference.basis().cols()), driven(Eigen::MatrixXd::Zero(times.size(), steps))
 {
     const auto linear = linearize(linearPart(model));
@@ -44,14 +45,15 @@ Bands::Values largestWithin(const Eigen::VectorXd& rest, const Eigen::MatrixXd& 
 {
     Bands::Values factors {};
     for (std::size_t b = 0; b < Bands::count; ++b) {
-        // The bands above this one as they may be at most, those below given up. They have to keep the limit by themselves: what one
-        // band takes back of another today it need not take back tomorrow.
+        // The bands above this one as they may be at most, those below given up. They have to keep the limit by
+        // themselves: what one band takes back of another today it need not take back tomorrow.
         double high = most[b];
         for (Eigen::Index i = 0; i < rest.size() && high >= 0.0; ++i) {
             double others = rest[i];
             for (std::size_t above = b + 1; above < Bands::count; ++above)
                 others += most[above] * parts(i, static_cast<Eigen::Index>(above));
-            const double part = parts(i, static_cast<Eigen::Index>(b)), room = limit - std::copysign(others, part * others);
+            const double part = parts(i, static_cast<Eigen::Index>(b)),
+                         room = limit - std::copysign(others, part * others);
             if (std::abs(others) > limit)
                 high = -1.0;
             else if (room < high * std::abs(part))
@@ -59,11 +61,12 @@ Bands::Values largestWithin(const Eigen::VectorXd& rest, const Eigen::MatrixXd& 
         }
         if (high >= 0.0) {
             factors[b] = high;
-            std::copy(most.begin() + static_cast<std::ptrdiff_t>(b) + 1, most.end(), factors.begin() + static_cast<std::ptrdiff_t>(b) + 1);
+            std::copy(most.begin() + static_cast<std::ptrdiff_t>(b) + 1, most.end(),
+                      factors.begin() + static_cast<std::ptrdiff_t>(b) + 1);
             return factors;
         }
     }
     return factors;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,8 +19,8 @@ std::vector<double> mirrored(const HalfBandTaps& half, double scale)
     return both;
 }
 
-/// out[j] = sum_k taps[k] x[j + k] for j = 0 .. n-1 (the taps are symmetric). Four outputs at a time, so that the sums need
-/// not wait for one another; each of them adds in the same order at whatever place of a block it stands.
+/// out[j] = sum_k taps[k] x[j + k] for j = 0 .. n-1 (the taps are symmetric). Four outputs at a time, so that the sums
+/// need not wait for one another; each of them adds in the same order at whatever place of a block it stands.
 void convolve(const std::vector<double>& taps, const double* x, std::size_t n, double* out, std::size_t stride)
 {
     const std::size_t count = taps.size();
@@ -41,7 +41,7 @@ void convolve(const std::vector<double>& taps, const double* x, std::size_t n, d
     }
 }
 
-} // namespace
+}  // namespace
 
 HalfBandTaps::HalfBandTaps(double width, double attenuation)
 {
@@ -58,7 +58,7 @@ HalfBandTaps::HalfBandTaps(double width, double attenuation)
         sum += side.back();
     }
     for (auto& tap : side)
-        tap *= 0.25 / sum;   // exactly 1 at 0 Hz
+        tap *= 0.25 / sum;  // exactly 1 at 0 Hz
 }
 
 Doubler::Doubler(const HalfBandTaps& half, std::size_t longestBlock)
@@ -74,10 +74,11 @@ void Doubler::process(const double* in, std::size_t n, double* out)
     const std::size_t past = taps_.size() - 1;
     std::copy(in, in + n, history_.begin() + static_cast<std::ptrdiff_t>(past));
     convolve(taps_, history_.data(), n, out, 2);
-    const std::size_t behind = (past - 1) / 2;   // (reach - 1) / 2
+    const std::size_t behind = (past - 1) / 2;  // (reach - 1) / 2
     for (std::size_t j = 0; j < n; ++j)
         out[2 * j + 1] = history_[past + j - behind];
-    std::copy(history_.begin() + static_cast<std::ptrdiff_t>(n), history_.begin() + static_cast<std::ptrdiff_t>(n + past), history_.begin());
+    std::copy(history_.begin() + static_cast<std::ptrdiff_t>(n),
+              history_.begin() + static_cast<std::ptrdiff_t>(n + past), history_.begin());
 }
 
 Halver::Halver(const HalfBandTaps& half, std::size_t longestBlock)
@@ -93,18 +94,20 @@ void Halver::reset()
 
 void Halver::process(const double* in, std::size_t n, double* out)
 {
-    // z[j] = h_0 y[2j - reach] + sum over odd k of h_k y[2j - reach - k]: the first falls on odd, the others on even inputs.
+    // z[j] = h_0 y[2j - reach] + sum over odd k of h_k y[2j - reach - k]: the first falls on odd, the others on even
+    // inputs.
     const std::size_t past = taps_.size() - 1;
     for (std::size_t j = 0; j < n; ++j) {
         even_[past + j] = in[2 * j];
         odd_[past + j] = in[2 * j + 1];
     }
     convolve(taps_, even_.data(), n, out, 1);
-    const std::size_t behind = (past + 1) / 2;   // (reach + 1) / 2
+    const std::size_t behind = (past + 1) / 2;  // (reach + 1) / 2
     for (std::size_t j = 0; j < n; ++j)
         out[j] += 0.5 * odd_[past + j - behind];
     for (auto* phase : {&even_, &odd_})
-        std::copy(phase->begin() + static_cast<std::ptrdiff_t>(n), phase->begin() + static_cast<std::ptrdiff_t>(n + past), phase->begin());
+        std::copy(phase->begin() + static_cast<std::ptrdiff_t>(n),
+                  phase->begin() + static_cast<std::ptrdiff_t>(n + past), phase->begin());
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,15 +9,16 @@ namespace excursion {
 /// A linear-phase half-band filter between two rates, one twice the other, as a sinc under a Kaiser window
 /// (Kaiser & Schafer, IEEE Trans. ASSP 28, 1980):
 ///     h_0 = 1/2,   h_k = sin(pi k/2)/(pi k) w(k) = h_-k for odd k <= reach,   h_k = 0 for the other even k.
-/// With frequencies relative to the higher rate, it passes up to 1/4 - width/2 and stops from 1/4 + width/2 on, both with an
-/// error of 10^(-attenuation/20).
+/// With frequencies relative to the higher rate, it passes up to 1/4 - width/2 and stops from 1/4 + width/2 on, both
+/// with an error of 10^(-attenuation/20).
 struct HalfBandTaps {
     /// @param width        of the transition, relative to the higher rate
     /// @param attenuation  dB, more than 50
     HalfBandTaps(double width, double attenuation);
 
-    int reach() const { return 2 * static_cast<int>(side.size()) - 1; }   ///< odd; the delay of one pass, samples of the higher rate
-    std::vector<double> side;                                             ///< h_1, h_3, h_5, ...
+    /// odd; the delay of one pass, samples of the higher rate
+    int reach() const { return 2 * static_cast<int>(side.size()) - 1; }
+    std::vector<double> side;  ///< h_1, h_3, h_5, ...
 };
 
 /// One channel's way up: doubles the rate, with a delay of reach() samples of the higher rate.
@@ -47,7 +48,7 @@ public:
 
 private:
     std::vector<double> taps_;
-    std::vector<double> even_, odd_;   ///< histories of the two phases, then room for a block
+    std::vector<double> even_, odd_;  ///< histories of the two phases, then room for a block
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -7,7 +7,8 @@
 
 namespace excursion {
 
-/// Hands a new engine (a Predistorter, a Speaker, or anything) to the audio thread and takes the old one back, without a lock:
+/// Hands a new engine (a Predistorter, a Speaker, or anything) to the audio thread and takes the old one back, without
+/// a lock:
 ///  - offer() and collect() are for other threads: they allocate and free;
 ///  - take() and retire() are for the audio thread, one at a time: two atomic exchanges, nothing else.
 /// An engine that was offered and not yet taken is replaced by the next one.
@@ -48,14 +49,15 @@ public:
     Parcel* take()
     {
         // A plain look first: an exchange at every block would fetch the cache line from the other thread each time.
-        return offered_.load(std::memory_order_relaxed) ? offered_.exchange(nullptr, std::memory_order_acquire) : nullptr;
+        return offered_.load(std::memory_order_relaxed) ? offered_.exchange(nullptr, std::memory_order_acquire)
+                                                        : nullptr;
     }
 
     void retire(Parcel* parcel)
     {
         parcel->next = retired_.load(std::memory_order_relaxed);
-        while (!retired_.compare_exchange_weak(parcel->next, parcel, std::memory_order_release, std::memory_order_relaxed)) {
-        }
+        while (!retired_.compare_exchange_weak(parcel->next, parcel, std::memory_order_release,
+                                               std::memory_order_relaxed)) {}
     }
 
 private:
@@ -63,4 +65,4 @@ private:
     std::atomic<Parcel*> offered_ {nullptr}, retired_ {nullptr};
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,13 +10,14 @@
 namespace excursion {
 namespace {
 
-constexpr double hold = 0.05, release = 0.2, forgetting = 5.0;   // s
-constexpr double slope = 10.0, target = 0.985;                   // of the limit
-constexpr double descent = 0.96;                                 // of a mean that is above the limit: the limit that it is given
+constexpr double hold = 0.05, release = 0.2, forgetting = 5.0;  // s
+constexpr double slope = 10.0, target = 0.985;                  // of the limit
+// of a mean that is above the limit: the limit that it is given
+constexpr double descent = 0.96;
 constexpr double largestExcess = 30.0, near = 0.3, closeLook = 0.25, tooMuch = 1.5;
 
 constexpr int points = 33;
-constexpr double farthest = 4.0;   // of what was measured
+constexpr double farthest = 4.0;  // of what was measured
 
 double gridOf(const Model& model)
 {
@@ -31,7 +32,8 @@ std::vector<double> holdingHeat(const Model& model, double sampleRate, double gr
     if (!model.electrical() || !(grid > 0.0))
         return heat;
     Inverse inverse(model, sampleRate);
-    const double ohms = model.baseParameter("Re").value, perMetre = model.baseParameter("K").value / model.baseParameter("Bl").value;
+    const double ohms = model.baseParameter("Re").value,
+                 perMetre = model.baseParameter("K").value / model.baseParameter("Bl").value;
     for (int k = 1; k < points; ++k) {
         double worst = heat.back();
         for (const double x : {k * grid, -k * grid}) {
@@ -48,13 +50,20 @@ std::vector<double> holdingHeat(const Model& model, double sampleRate, double gr
     return heat;
 }
 
-} // namespace
+}  // namespace
 
 HeatFactor::HeatFactor(const Model& model, double sampleRate)
-    : ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), share_(ticks::share(LinearizationControls::averagingTime, sampleRate)),
-      forgetting_(ticks::share(forgetting, sampleRate)), load_(model, sampleRate), grid_(gridOf(model)),
-      holding_(holdingHeat(model, sampleRate, grid_)), ahead_(ticks::in(hold, sampleRate)),
-      expected_(ticks::in(hold, sampleRate)), heats_(ticks::in(hold, sampleRate)), factor_(release, sampleRate), effort_(release, sampleRate)
+    : ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0),
+      share_(ticks::share(LinearizationControls::averagingTime, sampleRate)),
+      forgetting_(ticks::share(forgetting, sampleRate)),
+      load_(model, sampleRate),
+      grid_(gridOf(model)),
+      holding_(holdingHeat(model, sampleRate, grid_)),
+      ahead_(ticks::in(hold, sampleRate)),
+      expected_(ticks::in(hold, sampleRate)),
+      heats_(ticks::in(hold, sampleRate)),
+      factor_(release, sampleRate),
+      effort_(release, sampleRate)
 {
 }
 
@@ -94,7 +103,9 @@ double HeatFactor::decide(double limit, bool moving, double heat, double peak, d
         load_.reset();
     loads_ = close;
 
-    const auto place = grid_ > 0.0 ? static_cast<std::size_t>(std::min(std::ceil(reach / grid_), static_cast<double>(holding_.size() - 1))) : 0;
+    const auto place = grid_ > 0.0 ? static_cast<std::size_t>(
+                           std::min(std::ceil(reach / grid_), static_cast<double>(holding_.size() - 1)))
+                                   : 0;
     const double come = std::max(ahead_.step(peak_) * excess_, holding_[place]);
     peak_ = 0.0;
     leads_ = moving || (leads_ && mean_ * limit > target);
@@ -108,4 +119,4 @@ double HeatFactor::decide(double limit, bool moving, double heat, double peak, d
     return factor_.step(come > allowed ? std::sqrt(allowed / come) : 1.0, moving);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -32,7 +32,7 @@ constexpr double unexpected = 1e-3;
 double byTime(const Tangent& t) { return t.v[0]; }
 double byCurrent(const Tangent& t) { return t.v[1]; }
 
-} // namespace
+}  // namespace
 
 Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.electrical()), period_(1.0 / sampleRate)
 {
@@ -41,7 +41,8 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
     std::vector<LinearMemory::Block> blocks;
     for (const auto& component : model.components) {
         const auto& effect = *component.effect;
-        std::vector<double> parameters, coefficients(static_cast<std::size_t>(effect.coefficientCount(component.extent)));
+        std::vector<double> parameters,
+            coefficients(static_cast<std::size_t>(effect.coefficientCount(component.extent)));
         for (const auto& parameter : component.parameters)
             parameters.push_back(parameter.value);
         effect.prepare(component.extent, parameters.data(), coefficients.data());
@@ -49,7 +50,8 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
             visited = std::max(visited, component.extent.current);
 
         std::vector<Tangent> constants(coefficients.begin(), coefficients.end());
-        std::vector<Tangent> silent(static_cast<std::size_t>(effect.memorySize(component.extent)), Tangent(0.0)), unused = silent;
+        std::vector<Tangent> silent(static_cast<std::size_t>(effect.memorySize(component.extent)), Tangent(0.0)),
+            unused = silent;
         const Motion<Tangent> rest {carrying(0.0, 0.0, 1.0), Tangent(0.0), Tangent(0.0)};
         effect.contribute(component.extent, constants.data(), rest, silent.data(), unused.data(), atRest);
         const auto form = linearForm(effect, component.extent, coefficients.data());
@@ -63,13 +65,14 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
             dropByCurrent_ += form->drop[0];
             forceByCurrent_ += form->force[0];
         } else {
-            curved_.push_back({&effect, component.extent, std::move(constants), std::nullopt, std::nullopt, silent, unused});
+            curved_.push_back(
+                {&effect, component.extent, std::move(constants), std::nullopt, std::nullopt, silent, unused});
         }
         if (silent.empty())
             continue;
         const auto rates = linearRates(effect, component.extent, coefficients.data());
         auto block = !rates ? std::nullopt
-                   : form   ? LinearMemory::summed(*rates, form->dropByMemory, form->forceByMemory, sampleRate)
+                     : form ? LinearMemory::summed(*rates, form->dropByMemory, form->forceByMemory, sampleRate)
                             : LinearMemory::readable(*rates, sampleRate);
         if (block) {
             if (!form)
@@ -148,7 +151,8 @@ double Inverse::solve(const MotionPoint& to, double guess)
 
     const auto& [di, dx, dv] = linear_.drop;
     const auto& [fi, fx, fv] = linear_.force;
-    double drop = di * guess + dx * to.x + dv * to.v, force = fi * guess + fx * to.x + fv * to.v, forceByTime = fx * to.v + fv * to.a;
+    double drop = di * guess + dx * to.x + dv * to.v, force = fi * guess + fx * to.x + fv * to.v,
+           forceByTime = fx * to.v + fv * to.a;
     const auto lag = together_.step(motion);
     drop += lag.drop;
     force += lag.force;
@@ -162,13 +166,14 @@ double Inverse::solve(const MotionPoint& to, double guess)
     Balance<Tangent> sum;
     sum.inductance = Tangent(linear_.inductance);
     sum.mass = Tangent(linear_.mass);
-    sum.drop = carrying(drop, 0.0, dropByCurrent_);   // nobody asks how it goes on in time
+    sum.drop = carrying(drop, 0.0, dropByCurrent_);  // nobody asks how it goes on in time
     sum.force = carrying(force, forceByTime, forceByCurrent_);
     const Motion<Tangent> at {carrying(guess, 0.0, 1.0), carrying(to.x, to.v, 0.0), carrying(to.v, to.a, 0.0)};
     for (auto& part : curved_) {
         if (part.block) {
             for (std::size_t k = 0; k < part.state.size(); ++k)
-                part.state[k] = carrying(together_.value(*part.block, k), together_.rate(*part.block, k), together_.byCurrent(*part.block, k));
+                part.state[k] = carrying(together_.value(*part.block, k), together_.rate(*part.block, k),
+                                         together_.byCurrent(*part.block, k));
         } else if (part.memory) {
             auto& memory = *part.memory;
             memory.step(motion);
@@ -178,7 +183,7 @@ double Inverse::solve(const MotionPoint& to, double guess)
         }
         part.effect->contribute(part.extent, part.coefficients.data(), at, part.state.data(), part.rate.data(), sum);
     }
-    const double missing = sum.mass.a * to.a - sum.force.a;   // N
+    const double missing = sum.mass.a * to.a - sum.force.a;  // N
     if (!electrical_)
         return missing;
 
@@ -203,4 +208,4 @@ double Inverse::solve(const MotionPoint& to, double guess)
     return corrected(sum.drop) + corrected(sum.inductance) * slope + corrected(sum.fluxSlope) * to.v;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,22 +13,25 @@ inline constexpr std::size_t lanes = 4;
 
 inline std::size_t roundedUpToLanes(std::size_t states) { return (states + lanes - 1) / lanes * lanes; }
 
-/// What is known of each state, quantity by quantity (all of one length, a multiple of `lanes`), laid out as a loop over the states reads it:
-/// all quantities of the first four states, then those of the next four.
+/// What is known of each state, quantity by quantity (all of one length, a multiple of `lanes`), laid out as a loop
+/// over the states reads it: all quantities of the first four states, then those of the next four.
 inline std::vector<double> laidOut(const std::vector<std::vector<double>>& quantities)
 {
     std::vector<double> result;
     for (std::size_t state = 0; state < quantities.front().size(); state += lanes)
         for (const auto& values : quantities)
-            result.insert(result.end(), values.begin() + static_cast<std::ptrdiff_t>(state), values.begin() + static_cast<std::ptrdiff_t>(state + lanes));
+            result.insert(result.end(), values.begin() + static_cast<std::ptrdiff_t>(state),
+                          values.begin() + static_cast<std::ptrdiff_t>(state + lanes));
     return result;
 }
 
-/// One step of states that are laid out as decay, turn (what each takes of its neighbour in a block of two), `inputs` weights and `outputs` sums:
+/// One step of states that are laid out as decay, turn (what each takes of its neighbour in a block of two), `inputs`
+/// weights and `outputs` sums:
 ///     y(1) = decay y(0) + turn y'(0) + sum_k input_k w_k,    output_k = sum y(1) s_k.
 /// For a function that is compiled for several processors (EXCURSION_DISPATCH) to be made of.
 template <int inputs, int outputs>
-[[gnu::always_inline]] inline void advanceLaid(std::size_t rows, const double* laid, const double* input, double* state, double* output)
+[[gnu::always_inline]] inline void advanceLaid(std::size_t rows, const double* laid, const double* input, double* state,
+                                               double* output)
 {
     Four sums[outputs] = {};
     for (std::size_t row = 0; row < rows; row += lanes) {
@@ -45,4 +48,4 @@ template <int inputs, int outputs>
         output[k] = (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -36,7 +36,9 @@ std::optional<LinearForm> linearForm(const Effect& effect, const Extent& extent,
         memory[k] = 0.0;
     }
 
-    const auto agrees = [](double value, double expected, double size) { return std::abs(value - expected) <= 1e-9 * size; };
+    const auto agrees = [](double value, double expected, double size) {
+        return std::abs(value - expected) <= 1e-9 * size;
+    };
     for (int trial = 1; trial <= 8; ++trial) {
         std::array<double, 3> at {};
         double drop = 0.0, force = 0.0, dropSize = 0.0, forceSize = 0.0;
@@ -47,7 +49,8 @@ std::optional<LinearForm> linearForm(const Effect& effect, const Extent& extent,
             forceSize += std::abs(byForce * q);
         };
         for (std::size_t q = 0; q < 3; ++q) {
-            at[q] = 1.7 * visited[q] * std::sin(1.0 + 2.3 * trial + 1.7 * static_cast<double>(q));   // also beyond what was visited
+            // also beyond what was visited
+            at[q] = 1.7 * visited[q] * std::sin(1.0 + 2.3 * trial + 1.7 * static_cast<double>(q));
             count(form.drop[q], form.force[q], at[q]);
         }
         for (std::size_t k = 0; k < n; ++k) {
@@ -95,4 +98,4 @@ std::optional<LinearRates> linearRates(const Effect& effect, const Extent& exten
     return rates;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,8 @@
 namespace excursion {
 
 /// What a base or an effect adds to the balance when that is linear in current, motion and memory,
-///     drop = d . (i, x, v) + D . m,   force = f . (i, x, v) + F . m,   with constant inductance and mass and no flux slope.
+///     drop = d . (i, x, v) + D . m,   force = f . (i, x, v) + F . m,   with constant inductance and mass and no flux
+///     slope.
 /// Asked of the effect itself, once, so that an audio thread need not ask it at every sample.
 struct LinearForm {
     double inductance = 0.0, mass = 0.0;
@@ -26,7 +27,7 @@ std::optional<LinearForm> linearForm(const Effect&, const Extent&, const double*
 
 /// The rates of an effect's memory where they are linear, dm/dt = A m + b (i, x, v).
 struct LinearRates {
-    Eigen::MatrixXd A;   ///< 1/s
+    Eigen::MatrixXd A;  ///< 1/s
     Eigen::Matrix<double, Eigen::Dynamic, 3> b;
 };
 
@@ -34,4 +35,4 @@ struct LinearRates {
 /// @param coefficients  of the effect, prepared
 std::optional<LinearRates> linearRates(const Effect&, const Extent&, const double* coefficients);
 
-} // namespace excursion
+}  // namespace excursion

@@ -42,7 +42,7 @@ LinearMemory::Row rowOf(double decay, double turn, const Eigen::RowVectorXd& G)
 /// What Cubic::past makes of its end: both its highest coefficients take half of it.
 double byEnd(const LinearMemory::Row& row) { return 0.5 * (row.byMotion[2] + row.byMotion[3]); }
 
-} // namespace
+}  // namespace
 
 std::optional<LinearMemory::Block> LinearMemory::summed(const LinearRates& rates, const std::vector<double>& drop,
                                                         const std::vector<double>& force, double sampleRate)
@@ -52,7 +52,9 @@ std::optional<LinearMemory::Block> LinearMemory::summed(const LinearRates& rates
         return std::nullopt;
     const auto n = rates.A.rows();
     const Eigen::Map<const Eigen::RowVectorXd> D(drop.data(), n), F(force.data(), n);
-    const Eigen::MatrixXd decay = modes.inverse * exponential(rates.A, Eigen::VectorXd::Zero(n), 1.0 / sampleRate, 1).decay * modes.basis;
+    const Eigen::MatrixXd decay = modes.inverse
+                                  * exponential(rates.A, Eigen::VectorXd::Zero(n), 1.0 / sampleRate, 1).decay
+                                  * modes.basis;
     const Eigen::MatrixXd G = modes.inverse * weights(rates, sampleRate);
     const Eigen::RowVectorXd byDrop = D * modes.basis, byForce = F * modes.basis, byTime = F * rates.A * modes.basis;
     Block block;
@@ -75,7 +77,9 @@ std::optional<LinearMemory::Block> LinearMemory::readable(const LinearRates& rat
 {
     if (!rates.A.isDiagonal(0.0))
         return std::nullopt;
-    const Eigen::MatrixXd decay = exponential(rates.A, Eigen::VectorXd::Zero(rates.A.rows()), 1.0 / sampleRate, 1).decay, G = weights(rates, sampleRate);
+    const Eigen::MatrixXd decay =
+                              exponential(rates.A, Eigen::VectorXd::Zero(rates.A.rows()), 1.0 / sampleRate, 1).decay,
+                          G = weights(rates, sampleRate);
     Block block;
     block.rates = rates;
     for (Eigen::Index k = 0; k < rates.A.rows(); ++k)
@@ -85,7 +89,7 @@ std::optional<LinearMemory::Block> LinearMemory::readable(const LinearRates& rat
 
 LinearMemory::LinearMemory(std::vector<Block> blocks) : blocks_(std::move(blocks))
 {
-    std::vector<Row> rows;   // pairs first, so that none falls apart
+    std::vector<Row> rows;  // pairs first, so that none falls apart
     for (const auto& block : blocks_)
         rows.insert(rows.end(), block.pairs.begin(), block.pairs.end());
     for (const auto& block : blocks_) {
@@ -122,12 +126,14 @@ void LinearMemory::reset()
 LinearMemory::Sums LinearMemory::step(const MotionCubic& motion)
 {
     std::array<double, 12> c;
-    std::copy_n(motion.v.c.begin(), 4, std::copy_n(motion.x.c.begin(), 4, std::copy_n(motion.i.c.begin(), 4, c.begin())));
+    std::copy_n(motion.v.c.begin(), 4,
+                std::copy_n(motion.x.c.begin(), 4, std::copy_n(motion.i.c.begin(), 4, c.begin())));
     end_ = {motion.i.end(), motion.x.end(), motion.v.end()};
     std::array<double, 3> sums {};
     before_ = value_;
     carry(value_.size(), laid_.data(), c.data(), value_.data(), sums.data());
-    return {sums[0], sums[1], sums[2] + forceByTime_[0] * end_[0] + forceByTime_[1] * end_[1] + forceByTime_[2] * end_[2]};
+    return {sums[0], sums[1],
+            sums[2] + forceByTime_[0] * end_[0] + forceByTime_[1] * end_[1] + forceByTime_[2] * end_[2]};
 }
 
 void LinearMemory::correct(double current)
@@ -143,4 +149,4 @@ double LinearMemory::rate(std::size_t block, std::size_t k) const
     return A(row, row) * value(block, k) + b(row, 0) * end_[0] + b(row, 1) * end_[1] + b(row, 2) * end_[2];
 }
 
-} // namespace excursion
+}  // namespace excursion

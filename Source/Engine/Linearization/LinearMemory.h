@@ -16,8 +16,8 @@ struct MotionCubic {
     Cubic i, x, v;
 };
 
-/// The memories of all effects whose rates are linear, dm/dt = A m + b (i, x, v), side by side and as modes: they are carried along a given
-/// motion in one pass. The step is exact for cubic motions,
+/// The memories of all effects whose rates are linear, dm/dt = A m + b (i, x, v), side by side and as modes: they are
+/// carried along a given motion in one pass. The step is exact for cubic motions,
 ///     m(1) = exp(A T) m(0) + sum_q sum_k G_qk c_qk,
 /// however fast the fastest state.
 ///
@@ -26,20 +26,22 @@ class LinearMemory {
 public:
     /// One state or half of a pair of modes, dy/dt = [re im; -im re] y + ...
     struct Row {
-        double decay = 0.0, turn = 0.0;     ///< what it takes of itself and of the other half
-        std::array<double, 12> byMotion {};   ///< G: by the coefficients of i, x and v
-        double drop = 0.0, force = 0.0, forceByTime = 0.0;   ///< what is added to each per unit of it
+        double decay = 0.0, turn = 0.0;                     ///< what it takes of itself and of the other half
+        std::array<double, 12> byMotion {};                 ///< G: by the coefficients of i, x and v
+        double drop = 0.0, force = 0.0, forceByTime = 0.0;  ///< what is added to each per unit of it
     };
     /// One effect's memory.
     struct Block {
         std::vector<Row> pairs, singles;
-        std::array<double, 3> forceByTime {};   ///< what i, x and v add to it by themselves
+        std::array<double, 3> forceByTime {};  ///< what i, x and v add to it by themselves
         LinearRates rates;
     };
 
-    /// What the memory adds to the drop and to the force is all that is asked of it. Nothing where its modes are too nearly parallel.
+    /// What the memory adds to the drop and to the force is all that is asked of it. Nothing where its modes are too
+    /// nearly parallel.
     /// @param drop, force  per unit of each state of the memory
-    static std::optional<Block> summed(const LinearRates&, const std::vector<double>& drop, const std::vector<double>& force, double sampleRate);
+    static std::optional<Block> summed(const LinearRates&, const std::vector<double>& drop,
+                                       const std::vector<double>& force, double sampleRate);
     /// Its states are to be read one by one. Nothing where they move one another.
     static std::optional<Block> readable(const LinearRates&, double sampleRate);
 
@@ -49,9 +51,9 @@ public:
     void reset();
 
     struct Sums {
-        double drop = 0.0;          ///< V
-        double force = 0.0;         ///< N
-        double forceByTime = 0.0;   ///< N/s
+        double drop = 0.0;         ///< V
+        double force = 0.0;        ///< N
+        double forceByTime = 0.0;  ///< N/s
     };
     /// One step of 1/sampleRate.
     /// @returns what all of it adds at the end of the step
@@ -70,10 +72,10 @@ public:
 
 private:
     std::vector<Block> blocks_;
-    std::vector<std::size_t> places_;   ///< of each block's first single state
+    std::vector<std::size_t> places_;  ///< of each block's first single state
     std::vector<double> laid_, byCurrent_, value_, before_;
     std::array<double, 3> forceByTime_ {}, end_ {};
     Sums sumsByCurrent_;
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -7,13 +7,15 @@
 namespace excursion {
 namespace {
 
-constexpr double followTime = 0.2;   // s, until a cone that is told where to go is there
+constexpr double followTime = 0.2;  // s, until a cone that is told where to go is there
 constexpr int mostCorrections = 3;
 
-} // namespace
+}  // namespace
 
 Linearizer::Linearizer(const Model& model, double sampleRate)
-    : wish_ {Reference(model, sampleRate), Inverse(model, sampleRate)}, cone_(wish_), settling_(static_cast<int>(followTime * sampleRate))
+    : wish_ {Reference(model, sampleRate), Inverse(model, sampleRate)},
+      cone_(wish_),
+      settling_(static_cast<int>(followTime * sampleRate))
 {
 }
 
@@ -31,7 +33,8 @@ void Linearizer::reset()
 
 void Linearizer::Pair::step(double u) { made = inverse.step(reference.step(u)); }
 
-/// Secant steps; the first one takes the inverse for linear in the voltage, with the force factor as it is at this place.
+/// Secant steps; the first one takes the inverse for linear in the voltage, with the force factor as it is at this
+/// place.
 void Linearizer::Pair::moveTo(double voltage)
 {
     double byInput = inverse.ease();
@@ -66,4 +69,4 @@ double Linearizer::step(double u, double amount, double limit)
     return out;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,7 +10,10 @@
 namespace excursion {
 
 Memory::Memory(const Effect& effect, const Extent& extent, std::vector<double> coefficients, double sampleRate)
-    : effect_(&effect), extent_(extent), coefficients_(std::move(coefficients)), period_(1.0 / sampleRate),
+    : effect_(&effect),
+      extent_(extent),
+      coefficients_(std::move(coefficients)),
+      period_(1.0 / sampleRate),
       size_(static_cast<std::size_t>(effect.memorySize(extent)))
 {
     for (auto* place : {&value_, &rate_, &byCurrent_, &next_, &before_})
@@ -40,13 +43,14 @@ void Memory::prepareLinear(const LinearRates& linear, double sampleRate)
         decay_.assign(decay.data(), decay.data() + decay.size());
     }
     for (std::size_t k = 0; k < size_; ++k)
-        byCurrent_[k] = 0.5 * (drive_[2][k] + drive_[3][k]);   // what Cubic::past makes of its end
+        byCurrent_[k] = 0.5 * (drive_[2][k] + drive_[3][k]);  // what Cubic::past makes of its end
 }
 
-/// Whether r = -diag(p) m + N, with an N that memories of their usual size hardly change while one is carried on by a step.
+/// Whether r = -diag(p) m + N, with an N that memories of their usual size hardly change while one is carried on by a
+/// step.
 bool Memory::findDriven(double sampleRate)
 {
-    constexpr double hardly = 1e-4;   // so much later the memory acts on itself, of a step
+    constexpr double hardly = 1e-4;  // so much later the memory acts on itself, of a step
     const auto n = static_cast<Eigen::Index>(size_);
     Eigen::VectorXd m = Eigen::VectorXd::Zero(n), r(n), atRest(n);
     rates(0.0, 0.0, 0.0, m.data(), atRest.data());
@@ -60,11 +64,12 @@ bool Memory::findDriven(double sampleRate)
         return false;
     for (int trial = 1; trial <= 4; ++trial) {
         const auto visited = [trial](double most, double phase) { return most * std::sin(1.0 + 2.3 * trial + phase); };
-        const double i = visited(extent_.current, 0.0), x = visited(extent_.displacement, 1.7), v = visited(extent_.velocity, 3.4);
+        const double i = visited(extent_.current, 0.0), x = visited(extent_.displacement, 1.7),
+                     v = visited(extent_.velocity, 3.4);
         Eigen::VectorXd forgotten(n);
         m.setZero();
         rates(i, x, v, m.data(), forgotten.data());
-        m = -forgotten.cwiseQuotient(A.diagonal());   // as large as this motion makes it, in the end
+        m = -forgotten.cwiseQuotient(A.diagonal());  // as large as this motion makes it, in the end
         rates(i, x, v, m.data(), r.data());
         if (!(((r - A * m - forgotten) / sampleRate).array().abs() <= hardly * m.array().abs()).all())
             return false;
@@ -107,7 +112,7 @@ void Memory::step(const MotionCubic& motion)
 void Memory::stepBack()
 {
     std::copy(before_.begin(), before_.end(), value_.begin());
-    newest_ = (newest_ + 3) % 4;   // what it overwrote, three samples before, is not asked for
+    newest_ = (newest_ + 3) % 4;  // what it overwrote, three samples before, is not asked for
 }
 
 void Memory::stepLinear(const MotionCubic& motion)
@@ -173,4 +178,4 @@ void Memory::correct(double current)
         value_[k] += byCurrent_[k] * current;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,10 +11,11 @@
 
 namespace excursion {
 
-/// Carries the memory m of one effect along a given motion, dm/dt = r(m; i, x, v) with r as the effect states it, where LinearMemory does not
-/// do it. How it is stepped is found out by asking r:
+/// Carries the memory m of one effect along a given motion, dm/dt = r(m; i, x, v) with r as the effect states it, where
+/// LinearMemory does not do it. How it is stepped is found out by asking r:
 ///   - dm/dt = A m + b (i, x, v): exact for cubic motions;
-///   - dm/dt = -diag(p) m + N(i, x, v), in which m hardly changes N within a step (what is slow, like heat): exact in m, with N a
+///   - dm/dt = -diag(p) m + N(i, x, v), in which m hardly changes N within a step (what is slow, like heat): exact in
+///   m, with N a
 ///     cubic through its values at the latest four samples. It is asked once a step;
 ///   - anything else: the classical Runge-Kutta method.
 class Memory {
@@ -31,7 +32,7 @@ public:
     void stepBack();
 
     const double* value() const { return value_.data(); }
-    const double* findRate();   ///< dm/dt at the end of the latest step, 1/s
+    const double* findRate();  ///< dm/dt at the end of the latest step, 1/s
     /// d m(1) / d i(1) of a current that is a Cubic::past; 0 where the memory is not linear.
     const double* byCurrent() const { return byCurrent_.data(); }
 
@@ -54,15 +55,15 @@ private:
     double period_;
     std::size_t size_;
     Kind kind_ = Kind::any;
-    std::vector<double> value_, rate_, byCurrent_, next_, before_;   ///< before_: the value before the latest step
-    std::array<double, 3> end_ {};     ///< i, x, v at the end of the latest step
-    std::vector<double> decay_;        ///< exp(A T): by columns, or its diagonal when driven
-    std::array<std::vector<double>, 12> drive_;   ///< G: by the coefficients of i, x and v
-    std::vector<double> own_;          ///< -p
-    std::array<std::vector<double>, 4> weight_;   ///< of N at the latest four samples, the newest first
-    std::array<std::vector<double>, 4> N_;        ///< a ring
+    std::vector<double> value_, rate_, byCurrent_, next_, before_;  ///< before_: the value before the latest step
+    std::array<double, 3> end_ {};                                  ///< i, x, v at the end of the latest step
+    std::vector<double> decay_;                  ///< exp(A T): by columns, or its diagonal when driven
+    std::array<std::vector<double>, 12> drive_;  ///< G: by the coefficients of i, x and v
+    std::vector<double> own_;                    ///< -p
+    std::array<std::vector<double>, 4> weight_;  ///< of N at the latest four samples, the newest first
+    std::array<std::vector<double>, 4> N_;       ///< a ring
     std::size_t newest_ = 0;
-    std::array<std::vector<double>, 5> stages_;   ///< of the Runge-Kutta method
+    std::array<std::vector<double>, 5> stages_;  ///< of the Runge-Kutta method
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,7 @@ namespace excursion {
 Modes modesOf(const Eigen::MatrixXd& A)
 {
     constexpr double worstCondition = 1e6;
-    const auto units = stateUnits(A);   // so that the condition does not hang on units
+    const auto units = stateUnits(A);  // so that the condition does not hang on units
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(inUnits(A, units));
     const auto n = A.rows();
     Eigen::MatrixXd vectors(n, n);
@@ -40,4 +40,4 @@ Modes modesOf(const Eigen::MatrixXd& A)
     return modes;
 }
 
-} // namespace excursion
+}  // namespace excursion

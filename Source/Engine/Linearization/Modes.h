@@ -5,13 +5,14 @@
 
 namespace excursion {
 
-/// The real modes of dz/dt = A z: z = basis y, where y falls into pairs, dy/dt = [re im; -im re] y, first, and single states.
+/// The real modes of dz/dt = A z: z = basis y, where y falls into pairs, dy/dt = [re im; -im re] y, first, and single
+/// states.
 struct Modes {
-    Eigen::MatrixXd basis, inverse;   ///< inverse: of the basis
+    Eigen::MatrixXd basis, inverse;  ///< inverse: of the basis
     Eigen::Index pairs = 0;
-    bool apart = false;   ///< the change to them costs no more than six digits; else nothing of this is of use
+    bool apart = false;  ///< the change to them costs no more than six digits; else nothing of this is of use
 };
 
 Modes modesOf(const Eigen::MatrixXd& A);
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,7 +8,7 @@
 namespace excursion {
 namespace {
 
-constexpr double attenuation = 110.0;   // dB, below what 16 significant bits and the physics leave
+constexpr double attenuation = 110.0;  // dB, below what 16 significant bits and the physics leave
 
 /// Between 1 and 2: from 0.45 to 0.55 of the lower rate.
 const HalfBandTaps& narrow()
@@ -17,14 +17,15 @@ const HalfBandTaps& narrow()
     return taps;
 }
 
-/// Between 2 and 4: what the narrow one passes ends at 0.55 / 2 of its rate, and images begin at the same distance from the top.
+/// Between 2 and 4: what the narrow one passes ends at 0.55 / 2 of its rate, and images begin at the same distance from
+/// the top.
 const HalfBandTaps& wide()
 {
     static const HalfBandTaps taps(0.225, attenuation);
     return taps;
 }
 
-} // namespace
+}  // namespace
 
 Oversampling::Oversampling(int factor) : factor_(factor)
 {
@@ -80,4 +81,4 @@ void Oversampling::down(const double* in, std::size_t n, double* out)
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

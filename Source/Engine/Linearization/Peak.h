@@ -20,4 +20,4 @@ private:
     std::atomic<double> peak_ {0.0};
 };
 
-} // namespace excursion
+}  // namespace excursion

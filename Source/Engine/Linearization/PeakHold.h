@@ -11,7 +11,11 @@ class PeakHold {
 public:
     /// @param window  steps
     explicit PeakHold(int window) : window_(std::max(window, 1)) {}
-    void reset() { peaks_ = {}; at_ = 0; }
+    void reset()
+    {
+        peaks_ = {};
+        at_ = 0;
+    }
     double step(double next)
     {
         if (++at_ >= window_) {
@@ -25,7 +29,7 @@ public:
 
 private:
     int window_, at_ = 0;
-    std::array<double, 2> peaks_ {};   ///< of this window, of the one before
+    std::array<double, 2> peaks_ {};  ///< of this window, of the one before
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,7 +16,8 @@ namespace excursion {
 namespace {
 
 /// The last of so many periods of the acceleration, as a spectrum.
-std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, const std::vector<double>& period, int periods)
+std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, const std::vector<double>& period,
+                                          int periods)
 {
     std::vector<double> out(period.size());
     for (int k = 0; k < periods; ++k) {
@@ -28,9 +29,10 @@ std::vector<std::complex<double>> settled(Speaker& speaker, Predistorter* bend, 
     return fft(out);
 }
 
-} // namespace
+}  // namespace
 
-PredictedDistortion predictDistortion(const Model& model, const LinearizationControls& controls, double volts, const RealTimeOptions& options)
+PredictedDistortion predictDistortion(const Model& model, const LinearizationControls& controls, double volts,
+                                      const RealTimeOptions& options)
 {
     if (!(volts > 0.0))
         throw Error(Error::Kind::usage, "A prediction of distortion needs a voltage above zero.");
@@ -56,13 +58,16 @@ PredictedDistortion predictDistortion(const Model& model, const LinearizationCon
     PredictedDistortion result;
     result.displacement = plain.take().displacement;
     const double resolution = options.sampleRate / tones.period;
-    constexpr double fewest = 8.0;   // lines in a band: of fewer, all might be excited or all even
+    constexpr double fewest = 8.0;  // lines in a band: of fewer, all might be excited or all even
     double signalSum = 0.0, beforeSum = 0.0, afterSum = 0.0;
-    const auto db = [](double power, double reference) { return 10.0 * std::log10(std::max(power, 1e-30 * reference) / reference); };
+    const auto db = [](double power, double reference) {
+        return 10.0 * std::log10(std::max(power, 1e-30 * reference) / reference);
+    };
     for (double low = tones.bandLow, high; low < tones.bandHigh; low = high) {
         high = std::min(std::max(low * std::cbrt(2.0), low + fewest * resolution), tones.bandHigh);
         double signal = 0.0, first = 0.0, second = 0.0;
-        for (auto k = static_cast<std::size_t>(std::ceil(low / resolution)); k < static_cast<std::size_t>(std::ceil(high / resolution)); ++k)
+        for (auto k = static_cast<std::size_t>(std::ceil(low / resolution));
+             k < static_cast<std::size_t>(std::ceil(high / resolution)); ++k)
             if (std::binary_search(lines.begin(), lines.end(), static_cast<int>(k))) {
                 signal += std::norm(before[k]);
             } else {
@@ -83,4 +88,4 @@ PredictedDistortion predictDistortion(const Model& model, const LinearizationCon
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,22 +10,26 @@
 namespace excursion {
 namespace {
 
-constexpr double amountTime = 0.005, nearTime = 0.0005;   // s, see Glide
-constexpr double declickTime = 0.002;                     // s
-constexpr double restTime = 0.05, returnTime = 0.05;      // s, after a fault
-constexpr double nearFrom = 0.6, nearTo = 0.8;            // of the limit of the excursion
+constexpr double amountTime = 0.005, nearTime = 0.0005;  // s, see Glide
+constexpr double declickTime = 0.002;                    // s
+constexpr double restTime = 0.05, returnTime = 0.05;     // s, after a fault
+constexpr double nearFrom = 0.6, nearTo = 0.8;           // of the limit of the excursion
 
 double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
 
 double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(std::max(factor, 1e-5)) : 0.0; }
 
-} // namespace
+}  // namespace
 
 Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const LinearizationControls& controls)
-    : oversampling_((requireRunnable(model, options), options.oversampling)), protection_(undonePart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
-      linearizer_(undonePart(model), options.sampleRate * options.oversampling), plausible_(model),
+    : oversampling_((requireRunnable(model, options), options.oversampling)),
+      protection_(undonePart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
+      linearizer_(undonePart(model), options.sampleRate * options.oversampling),
+      plausible_(model),
       recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
-      ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0), amount_(amountTime, options.sampleRate), near_(nearTime, options.sampleRate),
+      ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0),
+      amount_(amountTime, options.sampleRate),
+      near_(nearTime, options.sampleRate),
       effort_(nearTime, options.sampleRate, 1.0),
       decay_(std::exp(-1.0 / (declickTime * options.sampleRate * options.oversampling)))
 {
@@ -67,10 +71,12 @@ void Predistorter::bend(double& sample, double amount)
 {
     const double asked = sample;
     outcome_.astray = outcome_.astray || amount < 1.0;
-    double out = linearizer_.step(asked, amount, on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity());
+    double out = linearizer_.step(asked, amount,
+                                  on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity());
     const auto& motion = linearizer_.cone().motion();
     const double x = std::abs(motion.x), i = linearizer_.current();
-    if (!(std::abs(out) < plausible_.input() && std::abs(linearizer_.wanted()) < plausible_.input() && plausible_.holds(i, x, motion.v))) {
+    if (!(std::abs(out) < plausible_.input() && std::abs(linearizer_.wanted()) < plausible_.input()
+          && plausible_.holds(i, x, motion.v))) {
         fault();
         out = 0.0;
     } else {
@@ -102,13 +108,14 @@ void Predistorter::begin(const double* in, std::size_t n)
         outcome_ = {};
         heats_ = 0.0;
         const auto& factors = protection_.factors();
-        least_ = {std::min(least_.displacement, factors.displacement), std::min(least_.voltage, factors.voltage), std::min(least_.power, factors.power)};
+        least_ = {std::min(least_.displacement, factors.displacement), std::min(least_.voltage, factors.voltage),
+                  std::min(least_.power, factors.power)};
         const double share = std::clamp((protection_.share() - nearFrom) / (nearTo - nearFrom), 0.0, 1.0);
         near_.aim(smooth(share));
         effort_.aim(protection_.effort());
     }
     for (std::size_t k = 0; k < n; ++k) {
-        const bool sound = std::abs(in[k]) < plausible_.input();   // not for NaN
+        const bool sound = std::abs(in[k]) < plausible_.input();  // not for NaN
         if (!sound)
             faults_.fetch_add(1, std::memory_order_relaxed);
         block_[k] = recovery_.step() * protection_.step(in[k], sound);
@@ -161,8 +168,13 @@ void Predistorter::publish()
 
 Predistorter::Meters Predistorter::take()
 {
-    return {displacement_.take(), voltage_.take(), power_.take(), displacementReduction_.take(), voltageReduction_.take(), powerReduction_.take(),
+    return {displacement_.take(),
+            voltage_.take(),
+            power_.take(),
+            displacementReduction_.take(),
+            voltageReduction_.take(),
+            powerReduction_.take(),
             faults_.load(std::memory_order_relaxed)};
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,15 +12,19 @@
 namespace excursion {
 namespace {
 
-constexpr double firstCorner = 2.5, secondCorner = 12.0;   // of the resonance: above the first one moves a cone little
-constexpr double swing = 0.75;                             // periods of the resonance: a cone left alone has gone farthest long before
+// of the resonance: above the first one moves a cone little
+constexpr double firstCorner = 2.5, secondCorner = 12.0;
+// periods of the resonance: a cone left alone has gone farthest long before
+constexpr double swing = 0.75;
 constexpr Eigen::Index coastingPoints = 32;
-constexpr double wishShare = 0.96, planShare = 0.992;      // of the limit; the rest is for points between those that are looked at
-constexpr double limitTime = 0.008, powerLimitTime = 0.05; // s, see Glide
-constexpr double patience = 0.08;                          // s, in which a signal follows a limit that falls before it is made to
-constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;   // s
-constexpr double settlingTime = 0.5;                       // s, in which a driver forgets
-constexpr double muteTime = 0.02, muteReleaseTime = 0.05;  // s
+// of the limit; the rest is for points between those that are looked at
+constexpr double wishShare = 0.96, planShare = 0.992;
+constexpr double limitTime = 0.008, powerLimitTime = 0.05;  // s, see Glide
+// s, in which a signal follows a limit that falls before it is made to
+constexpr double patience = 0.08;
+constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;  // s
+constexpr double settlingTime = 0.5;                         // s, in which a driver forgets
+constexpr double muteTime = 0.02, muteReleaseTime = 0.05;    // s
 
 double resonance(const Model& model) { return resonanceOf(model.base().parameters); }
 
@@ -51,7 +55,9 @@ double worstSensitivity(const Model& model)
     for (std::size_t f = 0; f < frequency.size(); ++f) {
         double sum = 0.0;
         for (std::size_t p = 0; p < parameters.size(); ++p)
-            sum += std::abs((response.gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(p)) * parameters[p]->value / response.value[f]).real());
+            sum += std::abs((response.gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(p))
+                             * parameters[p]->value / response.value[f])
+                                .real());
         worst = std::max(worst, sum);
     }
     return worst;
@@ -59,20 +65,32 @@ double worstSensitivity(const Model& model)
 
 int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
 
-} // namespace
+}  // namespace
 
 Protection::Protection(const Model& model, const RealTimeOptions& options, double delay)
-    : rate_(options.sampleRate), committed_(roundedUp(delay - 0.5, planStep)), settled_(ticks::in(settlingTime, rate_)),
+    : rate_(options.sampleRate),
+      committed_(roundedUp(delay - 0.5, planStep)),
+      settled_(ticks::in(settlingTime, rate_)),
       split_(firstCorner * resonance(model), secondCorner * resonance(model), rate_),
-      wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep)},
+      wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep),
+             Reference(model, rate_ / wishStep)},
       coast_(model, wish_.front(), coastingTimes(resonance(model)), 0, 1.0, 0.0),
-      ahead_(model, wish_.front(), planTimes(resonance(model), rate_, roundedUp(committed_ + latency, planStep), planStep),
-             roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_, (committed_ - delay + 0.5) / rate_),
-      uncertainty_(worstSensitivity(model)), sent_(static_cast<std::size_t>(committed_), 0.0), displacement_(limitTime, rate_ / tick),
-      voltage_(limitTime, rate_ / tick), power_(powerLimitTime, rate_ / tick), past_(static_cast<std::size_t>(ticks::in(patience, rate_))),
-      wishHold_ {PeakHold(ticks::in(wishHoldTime, rate_)), PeakHold(ticks::in(wishHoldTime, rate_)), PeakHold(ticks::in(wishHoldTime, rate_))},
-      reachHold_(ticks::in(wishHoldTime, rate_)), held_ {Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_)},
-      loud_(rate_), cool_(model, rate_), heated_(model.electrical())
+      ahead_(
+          model, wish_.front(), planTimes(resonance(model), rate_, roundedUp(committed_ + latency, planStep), planStep),
+          roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_, (committed_ - delay + 0.5) / rate_),
+      uncertainty_(worstSensitivity(model)),
+      sent_(static_cast<std::size_t>(committed_), 0.0),
+      displacement_(limitTime, rate_ / tick),
+      voltage_(limitTime, rate_ / tick),
+      power_(powerLimitTime, rate_ / tick),
+      past_(static_cast<std::size_t>(ticks::in(patience, rate_))),
+      wishHold_ {PeakHold(ticks::in(wishHoldTime, rate_)), PeakHold(ticks::in(wishHoldTime, rate_)),
+                 PeakHold(ticks::in(wishHoldTime, rate_))},
+      reachHold_(ticks::in(wishHoldTime, rate_)),
+      held_ {Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_)},
+      loud_(rate_),
+      cool_(model, rate_),
+      heated_(model.electrical())
 {
     static_assert(tick % wishStep == 0);
     std::array<double, window> weight {};
@@ -107,7 +125,7 @@ void Protection::reset()
     summed_ = place_ = muteFor_ = 0;
     share_ = reach_ = 0.0;
     undiminished_ = settled_;
-    for (auto& gain : gain_) {   // as after factors of 1
+    for (auto& gain : gain_) {  // as after factors of 1
         gain.fill(0.0);
         for (std::size_t k = 0; k < gain.size(); ++k)
             for (std::size_t later = k + tick; later < gain.size(); later += tick)
@@ -133,7 +151,8 @@ void Protection::set(const LinearizationControls& controls, bool on)
     on_ = on;
     displacement_.aim(on ? std::exp(uncertainty_ * controls.margin) * reciprocal(controls.displacementLimit) : 0.0);
     voltage_.aim(on ? reciprocal(controls.voltageLimit) : 0.0);
-    power_.aim(on && heated_ ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin)) : 0.0);
+    power_.aim(on && heated_ ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin))
+                             : 0.0);
     if (fresh) {
         for (auto* limit : {&displacement_, &voltage_, &power_})
             limit->jump();
@@ -203,7 +222,7 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
     future_.noalias() += ahead_.driven * drive_;
     share_ = future_.cwiseAbs().maxCoeff() * limit;
     if (share_ > planShare) {
-        for (Eigen::Index b = 0; b < parts_.cols(); ++b)   // a product of two matrices would allocate
+        for (Eigen::Index b = 0; b < parts_.cols(); ++b)  // a product of two matrices would allocate
             parts_.col(b).noalias() = ahead_.driven * partDrives_.col(b);
         factors = largestWithin(rest_, parts_, factors, planShare / limit);
     }
@@ -274,4 +293,4 @@ double Protection::step(double u, bool sound)
     return out;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -35,7 +35,8 @@ void requireRunnable(const Model& model, const RealTimeOptions& options)
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be run in real time: " + reason + ".");
     const auto refuse = [&model](const std::string& why) {
-        throw Error(Error::Kind::data, "The model" + (model.name.empty() ? "" : " '" + model.name + "'") + " cannot be run: " + why);
+        throw Error(Error::Kind::data,
+                    "The model" + (model.name.empty() ? "" : " '" + model.name + "'") + " cannot be run: " + why);
     };
     if (!(model.baseParameter("m").value > 0.0))
         refuse("its mass is not positive.");
@@ -56,4 +57,4 @@ double measuredDisplacement(const Model& model)
     return range > 0.0 ? range : std::numeric_limits<double>::infinity();
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -33,7 +33,7 @@ int versionOf(const JsonField& field)
     return version;
 }
 
-} // namespace
+}  // namespace
 
 std::string_view name(Mode mode) { return names[static_cast<std::size_t>(mode)].name; }
 std::string_view title(Mode mode) { return names[static_cast<std::size_t>(mode)].title; }
@@ -42,12 +42,13 @@ bool Recipe::isValid(std::string* reason) const
 {
     const auto check = [reason](bool holds, const char* sentence) { return holds || refuse(reason, sentence); };
     return check(fullScales.holds(fullScale), "the voltage of full scale must lie between 0.01 and 1000 V")
-        && check(amounts.holds(amount), "the amount must lie between 0 and 1")
-        && check(displacements.holds(displacementLimit), "the limit of the excursion must lie between 0.05 and 4 times what was measured")
-        && check(voltages.holds(voltageLimit), "the limit of the voltage must lie between 0.01 and 1000 V")
-        && check(powers.holds(powerLimit), "the limit of the power must lie between 0.01 and 10000 W")
-        && check(margins.holds(margin), "the margin must lie between 0 and 0.3")
-        && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB");
+           && check(amounts.holds(amount), "the amount must lie between 0 and 1")
+           && check(displacements.holds(displacementLimit),
+                    "the limit of the excursion must lie between 0.05 and 4 times what was measured")
+           && check(voltages.holds(voltageLimit), "the limit of the voltage must lie between 0.01 and 1000 V")
+           && check(powers.holds(powerLimit), "the limit of the power must lie between 0.01 and 10000 W")
+           && check(margins.holds(margin), "the margin must lie between 0 and 0.3")
+           && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB");
 }
 
 Model withoutOff(const Model& model, const Recipe& recipe)
@@ -78,16 +79,27 @@ LinearizationControls controlsOf(const Recipe& recipe, const Model& model)
 
 nlohmann::ordered_json toJson(const Recipe& recipe)
 {
-    return {{"format", formatName}, {"version", formatVersion}, {"title", recipe.title}, {"words", recipe.words},
-            {"mode", name(recipe.mode)}, {"fullScale", recipe.fullScale}, {"amount", recipe.amount},
-            {"displacementLimit", recipe.displacementLimit}, {"voltageLimit", recipe.voltageLimit}, {"powerLimit", recipe.powerLimit},
-            {"margin", recipe.margin}, {"trimDb", recipe.trimDb}, {"off", recipe.off}};
+    return {{"format", formatName},
+            {"version", formatVersion},
+            {"title", recipe.title},
+            {"words", recipe.words},
+            {"mode", name(recipe.mode)},
+            {"fullScale", recipe.fullScale},
+            {"amount", recipe.amount},
+            {"displacementLimit", recipe.displacementLimit},
+            {"voltageLimit", recipe.voltageLimit},
+            {"powerLimit", recipe.powerLimit},
+            {"margin", recipe.margin},
+            {"trimDb", recipe.trimDb},
+            {"off", recipe.off}};
 }
 
 Recipe recipeFromJson(const JsonField& field)
 {
     const int version = versionOf(field);
-    const auto within = [&field](const char* key, const Settings::Range& range) { return field.at(key).numberWithin(range.least, range.most); };
+    const auto within = [&field](const char* key, const Settings::Range& range) {
+        return field.at(key).numberWithin(range.least, range.most);
+    };
     Recipe recipe;
     recipe.title = field.at("title").text();
     recipe.words = field.at("words").text();
@@ -119,4 +131,4 @@ Recipe readRecipe(const std::filesystem::path& path)
     return recipeFromJson(JsonField(document, "", path.string()));
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,16 +16,16 @@ namespace excursion {
 
 /// What is done to a signal with a model.
 enum class Mode {
-    bypass,       ///< nothing
-    speaker,      ///< the driver plays it, with all its distortion
-    distortion,   ///< of that, what a linear driver would not add
-    linearize,    ///< predistorted, for the real loudspeaker
-    audition      ///< predistorted and then played by the modelled driver: what the loudspeaker will sound like
+    bypass,      ///< nothing
+    speaker,     ///< the driver plays it, with all its distortion
+    distortion,  ///< of that, what a linear driver would not add
+    linearize,   ///< predistorted, for the real loudspeaker
+    audition     ///< predistorted and then played by the modelled driver: what the loudspeaker will sound like
 };
 inline constexpr std::array modes {Mode::bypass, Mode::speaker, Mode::distortion, Mode::linearize, Mode::audition};
 
-std::string_view name(Mode);    ///< "bypass", as in the files
-std::string_view title(Mode);   ///< "Distortion alone", for a person
+std::string_view name(Mode);   ///< "bypass", as in the files
+std::string_view title(Mode);  ///< "Distortion alone", for a person
 
 /// The numbers of a recipe: no text, so an audio thread may have them.
 struct Settings {
@@ -42,16 +42,16 @@ struct Settings {
         double least, most;
         bool holds(double value) const { return value >= least && value <= most; }
     };
-    static constexpr Range fullScales {0.01, 1000.0}, amounts {0.0, 1.0}, displacements {0.05, 4.0}, voltages {0.01, 1000.0}, powers {0.01, 10000.0},
-        margins {0.0, 0.3}, trims {-60.0, 24.0};
+    static constexpr Range fullScales {0.01, 1000.0}, amounts {0.0, 1.0}, displacements {0.05, 4.0},
+        voltages {0.01, 1000.0}, powers {0.01, 10000.0}, margins {0.0, 0.3}, trims {-60.0, 24.0};
 };
 
 /// All that a person sets: how a model is used, whichever it is. As a document, format "excursion-recipe", version 2
 /// (Docs/Formats.md).
 struct Recipe : Settings {
     std::string title;
-    std::string words;               ///< what it is for
-    std::vector<std::string> off;    ///< ids of effects that are switched off
+    std::string words;             ///< what it is for
+    std::vector<std::string> off;  ///< ids of effects that are switched off
 
     bool isValid(std::string* reason) const;
 };
@@ -69,4 +69,4 @@ nlohmann::ordered_json toJson(const Recipe&);
 Recipe recipeFromJson(const JsonField&);
 Recipe readRecipe(const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -6,14 +6,18 @@
 
 namespace excursion {
 
-/// The weight of a computation that has had to be reset: 0 from the fault on for a while, until what is left of the time before has
-/// run through every filter, then smoothly up to 1.
+/// The weight of a computation that has had to be reset: 0 from the fault on for a while, until what is left of the
+/// time before has run through every filter, then smoothly up to 1.
 class Recovery {
 public:
     /// @param hold, rise  samples
     Recovery(int hold, int rise) : hold_(hold), rise_(std::max(rise, 1)) {}
 
-    void reset() { wait_ = place_ = 0; weight_ = 1.0; }
+    void reset()
+    {
+        wait_ = place_ = 0;
+        weight_ = 1.0;
+    }
     void fault()
     {
         wait_ = hold_;
@@ -40,4 +44,4 @@ private:
     double weight_ = 1.0;
 };
 
-} // namespace excursion
+}  // namespace excursion

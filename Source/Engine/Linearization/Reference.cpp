@@ -27,7 +27,7 @@ EXCURSION_DISPATCH void advance(std::size_t rows, const double* laid, const doub
     advanceLaid<4, 5>(rows, laid, past, state, motion);
 }
 
-} // namespace
+}  // namespace
 
 Reference::Reference(const Model& model, double sampleRate) : electrical_(model.electrical())
 {
@@ -78,7 +78,8 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
     laid_ = laidOut(laid);
     byNow_ = laid[2];
     const Eigen::VectorXd direct = outputs * inputs.col(0);
-    byInput_ = {direct[0], direct[1], direct[2] + accelerationInput_, electrical_ ? direct[3] + jerkInput_ : 0.0, direct[4]};
+    byInput_ = {direct[0], direct[1], direct[2] + accelerationInput_, electrical_ ? direct[3] + jerkInput_ : 0.0,
+                direct[4]};
     state_.assign(rows_, 0.0);
     next_.assign(rows_, 0.0);
 }
@@ -102,7 +103,8 @@ const MotionPoint& Reference::step(double u)
         state_.swap(next_);
     }
     advance(rows_, laid_.data(), past_.data(), state_.data(), motion.data());
-    point_ = {motion[0], motion[1], motion[2] + accelerationInput_ * u, electrical_ ? motion[3] + jerkInput_ * u : 0.0, motion[4]};
+    point_ = {motion[0], motion[1], motion[2] + accelerationInput_ * u, electrical_ ? motion[3] + jerkInput_ * u : 0.0,
+              motion[4]};
     return point_;
 }
 
@@ -120,4 +122,4 @@ const MotionPoint& Reference::correct(double difference)
     return point_;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,8 +9,11 @@
 namespace excursion {
 
 Speaker::Speaker(const Model& model, const RealTimeOptions& options)
-    : oversampling_((requireRunnable(model, options), options.oversampling)), cone_(model, options.sampleRate * options.oversampling), guard_ {Plausible(model).input()},
-      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate))
+    : oversampling_((requireRunnable(model, options), options.oversampling)),
+      cone_(model, options.sampleRate * options.oversampling),
+      guard_ {Plausible(model).input()},
+      recovery_(2 * oversampling_.latency() + static_cast<int>(0.02 * options.sampleRate),
+                static_cast<int>(0.05 * options.sampleRate))
 {
 }
 
@@ -58,7 +61,10 @@ void Speaker::process(const double* in, double* out, std::size_t n)
     peak_ = {};
 }
 
-Speaker::Meters Speaker::take() { return {displacement_.take(), current_.take(), faults_.load(std::memory_order_relaxed)}; }
+Speaker::Meters Speaker::take()
+{
+    return {displacement_.take(), current_.take(), faults_.load(std::memory_order_relaxed)};
+}
 
 double plateau(const Model& model)
 {
@@ -66,4 +72,4 @@ double plateau(const Model& model)
     return model.electrical() ? model.baseParameter("Bl").value / (model.baseParameter("Re").value * m) : 1.0 / m;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -14,17 +14,18 @@
 
 namespace excursion {
 
-/// The driver with its effects, in real time: from the voltage to the acceleration of the cone, which is what is heard in front of it.
+/// The driver with its effects, in real time: from the voltage to the acceleration of the cone, which is what is heard
+/// in front of it.
 ///     u -> up -> Cone -> down
-/// As for blocks and the audio thread see Predistorter. A sample that is not a finite number is played as silence; after it, and when the
-/// motion is not finite, the driver starts from rest and fades in from silence.
+/// As for blocks and the audio thread see Predistorter. A sample that is not a finite number is played as silence;
+/// after it, and when the motion is not finite, the driver starts from rest and fades in from silence.
 class Speaker {
 public:
     /// Throws Error, see requireRunnable.
     Speaker(const Model&, const RealTimeOptions&);
 
-    int latency() const { return oversampling_.latency(); }   ///< samples; fixed
-    int substeps() const { return cone_.substeps(); }          ///< steps a sample of the higher rate
+    int latency() const { return oversampling_.latency(); }  ///< samples; fixed
+    int substeps() const { return cone_.substeps(); }        ///< steps a sample of the higher rate
     void reset();
 
     /// @param share  how much of the linear driver's output is taken away, 0 to 1; followed smoothly
@@ -36,9 +37,9 @@ public:
 
     /// Since the last call of take(); may be read from another thread.
     struct Meters {
-        double displacement = 0.0;   ///< peak, m
-        double current = 0.0;        ///< peak, A
-        int faults = 0;              ///< since construction
+        double displacement = 0.0;  ///< peak, m
+        double current = 0.0;       ///< peak, A
+        int faults = 0;             ///< since construction
     };
     Meters take();
 
@@ -54,8 +55,8 @@ private:
     std::atomic<int> faults_ {0};
 };
 
-/// m/s^2 per V that a linear driver approaches well above resonance and below its inductance, Bl/(Re m) (1/m of a driver without a coil): what
-/// its output is divided by to be heard at the level of the input.
+/// m/s^2 per V that a linear driver approaches well above resonance and below its inductance, Bl/(Re m) (1/m of a
+/// driver without a coil): what its output is divided by to be heard at the level of the input.
 double plateau(const Model&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,12 +10,13 @@
 
 namespace excursion {
 
-/// While it lives, this thread's arithmetic takes and gives zeros for subnormal numbers, which would cost a hundred times the
-/// time as a filter rings out. (x86 and 64-bit ARM; elsewhere it does nothing.)
+/// While it lives, this thread's arithmetic takes and gives zeros for subnormal numbers, which would cost a hundred
+/// times the time as a filter rings out. (x86 and 64-bit ARM; elsewhere it does nothing.)
 class FlushSubnormals {
 public:
 #if defined(__SSE2__)
-    FlushSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }   // flush to zero, subnormals are zeros
+    // flush to zero, subnormals are zeros
+    FlushSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
     ~FlushSubnormals() { _mm_setcsr(static_cast<unsigned>(before_)); }
 #elif defined(__aarch64__)
     FlushSubnormals()
@@ -41,4 +42,4 @@ private:
 /// What is far below any converter becomes zero, also as a float.
 inline double withoutSubnormals(double q) { return std::abs(q) < 1e-30 ? 0.0 : q; }
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,13 +9,16 @@
 
 namespace excursion {
 
-/// By how much a signal is turned down so that, linearized, its peaks stay within a limit: peak x excess <= limit, with the peak of the last 100 to
-/// 200 ms and what linearizing has lately added to peaks.
+/// By how much a signal is turned down so that, linearized, its peaks stay within a limit: peak x excess <= limit, with
+/// the peak of the last 100 to 200 ms and what linearizing has lately added to peaks.
 class VoltageFactor {
 public:
     explicit VoltageFactor(double sampleRate)
-        : share_(ticks::share(forgetting, sampleRate)), peaks_(ticks::in(peakHold, sampleRate)), asked_(ticks::in(excessHold, sampleRate)),
-          wanted_(ticks::in(excessHold, sampleRate)), factor_(release, sampleRate)
+        : share_(ticks::share(forgetting, sampleRate)),
+          peaks_(ticks::in(peakHold, sampleRate)),
+          asked_(ticks::in(excessHold, sampleRate)),
+          wanted_(ticks::in(excessHold, sampleRate)),
+          factor_(release, sampleRate)
     {
     }
 
@@ -28,7 +31,7 @@ public:
         excess_ = 1.0;
     }
 
-    void add(double u) { peak_ = std::max(peak_, std::abs(u)); }   ///< a sample, V
+    void add(double u) { peak_ = std::max(peak_, std::abs(u)); }  ///< a sample, V
 
     /// At the end of a tick.
     /// @param limit   1/V; 0: none
@@ -48,10 +51,10 @@ public:
     }
 
     double factor() const { return factor_.value(); }
-    double peak() const { return peaks_.value() * factor(); }   ///< V, what is left of the latest peaks
+    double peak() const { return peaks_.value() * factor(); }  ///< V, what is left of the latest peaks
 
 private:
-    static constexpr double peakHold = 0.1, excessHold = 0.1, release = 0.5, forgetting = 1.0;   // s
+    static constexpr double peakHold = 0.1, excessHold = 0.1, release = 0.5, forgetting = 1.0;  // s
     static constexpr double near = 0.9, largestExcess = 4.0;
     double share_;
     PeakHold peaks_, asked_, wanted_;
@@ -59,4 +62,4 @@ private:
     double peak_ = 0.0, excess_ = 1.0;
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -21,7 +21,7 @@ const Channel& channelOf(const Measurement& take, Quantity quantity)
 
 /// The excited lines of the spectra of all periods of one realization.
 struct Realization {
-    std::vector<std::vector<Complex>> U, Y;   ///< [period][line number]
+    std::vector<std::vector<Complex>> U, Y;  ///< [period][line number]
     std::vector<Complex> meanU, meanY;
 };
 
@@ -38,7 +38,7 @@ void keepLines(std::vector<std::vector<Complex>>& spectra, const std::vector<int
     }
 }
 
-} // namespace
+}  // namespace
 
 BlaResult bla(const Measurement& take, Quantity outputQuantity, int level, std::optional<Quantity> inputQuantity)
 {
@@ -73,8 +73,8 @@ BlaResult bla(const Measurement& take, Quantity outputQuantity, int level, std::
         auto& Gm = G.emplace_back(F);
         for (std::size_t i = 0; i < F; ++i) {
             if (std::norm(r.meanU[i]) == 0.0)
-                throw Error(Error::Kind::data, "The " + std::string(name(input.quantity)) + " channel has nothing on line "
-                                                   + std::to_string(lines[i])
+                throw Error(Error::Kind::data, "The " + std::string(name(input.quantity))
+                                                   + " channel has nothing on line " + std::to_string(lines[i])
                                                    + ", which the excitation says is excited.");
             Gm[i] = r.meanY[i] / r.meanU[i];
             for (int p = 0; p < P; ++p) {
@@ -113,4 +113,4 @@ BlaResult bla(const Measurement& take, Quantity outputQuantity, int level, std::
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -49,4 +49,4 @@ struct BlaResult {
 /// @throws Error (data) when a channel, the periods or the lines are missing, or a line of the input is empty
 BlaResult bla(const Measurement&, Quantity output, int level, std::optional<Quantity> input = std::nullopt);
 
-} // namespace excursion
+}  // namespace excursion

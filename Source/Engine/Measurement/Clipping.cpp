@@ -10,8 +10,8 @@ namespace excursion {
 namespace {
 
 struct Resolution {
-    double finest = std::numeric_limits<double>::infinity();   ///< smallest step that occurs
-    double typical = 0.0;                                      ///< root mean square step
+    double finest = std::numeric_limits<double>::infinity();  ///< smallest step that occurs
+    double typical = 0.0;                                     ///< root mean square step
 };
 
 Resolution resolutionOf(const std::vector<double>& x)
@@ -53,7 +53,7 @@ long clippedAt(const std::vector<double>& x, double extreme, const Resolution& r
     return count;
 }
 
-} // namespace
+}  // namespace
 
 long clippedSamples(const Channel& channel)
 {
@@ -93,4 +93,4 @@ long longestStandstill(const Channel& channel)
     return static_cast<long>(longest);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -50,10 +50,7 @@ private:
     {
         return stacked(whitened_ * (std::complex<double>(0.0, -tau) * omega_).exp());
     }
-    Eigen::VectorXd residual(const Eigen::VectorXd& b) const
-    {
-        return b - orthogonal_ * (orthogonal_.transpose() * b);
-    }
+    Eigen::VectorXd residual(const Eigen::VectorXd& b) const { return b - orthogonal_ * (orthogonal_.transpose() * b); }
 
     Eigen::ArrayXd omega_, weight_;
     Eigen::ArrayXcd whitened_;
@@ -82,7 +79,7 @@ double minimumBetween(const Unexplained& unexplained, double low, double high)
     return 0.5 * (low + high);
 }
 
-} // namespace
+}  // namespace
 
 DelayFit fitDelay(const DelayFitProblem& problem, double longest)
 {
@@ -107,4 +104,4 @@ DelayFit fitDelay(const DelayFitProblem& problem, double longest)
     return fit;
 }
 
-} // namespace excursion
+}  // namespace excursion

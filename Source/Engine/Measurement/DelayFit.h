@@ -15,21 +15,21 @@ namespace excursion {
 /// Residuals are relative, with weights 1 / (|Q_k|^2 floor^2 + variance_k): the floor is what the model
 /// cannot promise anyway, so that a few very precise lines do not decide alone.
 struct DelayFitProblem {
-    Eigen::ArrayXd omega;        ///< rad/s
-    Eigen::ArrayXcd response;    ///< Q
-    Eigen::ArrayXd variance;     ///< of Q; zeros when unknown
-    Eigen::MatrixXcd basis;      ///< B, one column a function
+    Eigen::ArrayXd omega;      ///< rad/s
+    Eigen::ArrayXcd response;  ///< Q
+    Eigen::ArrayXd variance;   ///< of Q; zeros when unknown
+    Eigen::MatrixXcd basis;    ///< B, one column a function
     double floor = 0.01;
 };
 
 struct DelayFit {
-    double seconds = 0.0;          ///< tau
-    double standardError = 0.0;    ///< of tau, from the residuals
-    double misfit = 1.0;           ///< rms of |e|/|Q| weighted, with the delay
-    double misfitWithout = 1.0;    ///< the same with tau = 0
+    double seconds = 0.0;        ///< tau
+    double standardError = 0.0;  ///< of tau, from the residuals
+    double misfit = 1.0;         ///< rms of |e|/|Q| weighted, with the delay
+    double misfitWithout = 1.0;  ///< the same with tau = 0
 };
 
 /// The best delay in [-longest, longest] seconds. The lines must outnumber the columns.
 DelayFit fitDelay(const DelayFitProblem&, double longest);
 
-} // namespace excursion
+}  // namespace excursion

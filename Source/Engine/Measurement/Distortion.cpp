@@ -67,7 +67,7 @@ std::optional<DistortionTotal> totalOf(const DetectionLines& found, const std::v
     return total;
 }
 
-} // namespace
+}  // namespace
 
 DistortionResult distortion(const Measurement& take, Quantity outputQuantity, int level)
 {
@@ -75,9 +75,10 @@ DistortionResult distortion(const Measurement& take, Quantity outputQuantity, in
     const auto& excited = excitedLines(take);
     if (const auto even = std::find_if(excited.begin(), excited.end(), [](int k) { return k % 2 == 0; });
         even != excited.end())
-        throw Error(Error::Kind::data, "The excitation has even lines (the first is " + std::to_string(*even)
-                                           + "), so even and odd distortion cannot be told apart; play a multisine on an "
-                                             "odd or odd-random grid.");
+        throw Error(Error::Kind::data,
+                    "The excitation has even lines (the first is " + std::to_string(*even)
+                        + "), so even and odd distortion cannot be told apart; play a multisine on an "
+                          "odd or odd-random grid.");
     const auto linear = bla(take, outputQuantity, level).frf.value;
     const Channel& input = take.input();
     const Channel& output = *take.find(outputQuantity);
@@ -122,8 +123,9 @@ DistortionResult distortion(const Measurement& take, Quantity outputQuantity, in
     for (const double power : result.excitedPower)
         excitedPower += power;
     if (!(excitedPower > 0.0))
-        throw Error(Error::Kind::data, "The " + std::string(name(outputQuantity)) + " channel has nothing on the excited "
-                                                                                   "lines: it is dead.");
+        throw Error(Error::Kind::data, "The " + std::string(name(outputQuantity))
+                                           + " channel has nothing on the excited "
+                                             "lines: it is dead.");
     for (auto* found : {&result.odd, &result.even})
         for (const int k : found->lines)
             found->frequency.push_back(k * take.sampleRate / e.period);
@@ -135,4 +137,4 @@ DistortionResult distortion(const Measurement& take, Quantity outputQuantity, in
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

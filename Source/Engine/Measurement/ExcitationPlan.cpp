@@ -18,13 +18,16 @@ bool ExcitationPlanOptions::isValid(std::string* reason) const
     for (std::size_t i = 0; i < levels.size(); ++i)
         if (!(std::isfinite(levels[i]) && levels[i] > 0 && (i == 0 || levels[i] > levels[i - 1])))
             return refuse(reason, "The levels of an excitation must be positive numbers of V rms that ascend.");
-    if (settlePeriods < 0 || periods < 1 || realizations < 1 || settlePeriods > 1000 || periods > 10000 || realizations > 10000)
-        return refuse(reason, "An excitation has 0 to 1000 settling periods, 1 to 10000 periods and 1 to 10000 realizations.");
+    if (settlePeriods < 0 || periods < 1 || realizations < 1 || settlePeriods > 1000 || periods > 10000
+        || realizations > 10000)
+        return refuse(reason,
+                      "An excitation has 0 to 1000 settling periods, 1 to 10000 periods and 1 to 10000 realizations.");
     const double samples = static_cast<double>(multisine.period) * (settlePeriods + periods) * realizations
-                         * static_cast<double>(levels.size());
+                           * static_cast<double>(levels.size());
     if (samples > 500e6)
-        return refuse(reason, "An excitation must not be longer than 500 million samples; take a shorter period, fewer periods, "
-                  "realizations or levels.");
+        return refuse(
+            reason, "An excitation must not be longer than 500 million samples; take a shorter period, fewer periods, "
+                    "realizations or levels.");
     return true;
 }
 
@@ -78,4 +81,4 @@ double roundFullScale(const std::vector<double>& samples, double margin)
     return std::exp2(std::ceil(std::log2(peak * margin)));
 }
 
-} // namespace excursion
+}  // namespace excursion

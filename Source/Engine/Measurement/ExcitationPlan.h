@@ -10,10 +10,10 @@
 namespace excursion {
 
 struct ExcitationPlanOptions {
-    MultisineOptions multisine;               ///< its rms is not used
-    std::vector<double> levels {0.5, 1.5, 4.0};   ///< V rms, quiet to loud
+    MultisineOptions multisine;                  ///< its rms is not used
+    std::vector<double> levels {0.5, 1.5, 4.0};  ///< V rms, quiet to loud
     int settlePeriods = 1;
-    int periods = 3;                          ///< to be used, after the settling ones
+    int periods = 3;  ///< to be used, after the settling ones
     int realizations = 4;
 
     bool isValid(std::string* reason = nullptr) const;
@@ -29,4 +29,4 @@ Measurement planExcitation(const ExcitationPlanOptions&);
 /// The smallest power of two that is at least `margin` times the peak; 1 for silence.
 double roundFullScale(const std::vector<double>& samples, double margin = 1.0);
 
-} // namespace excursion
+}  // namespace excursion

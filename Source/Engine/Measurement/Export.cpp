@@ -34,7 +34,7 @@ void appendRow(std::string& text, std::initializer_list<double> values, char sep
 
 double degrees(std::complex<double> value) { return std::arg(value) * 180 / std::numbers::pi; }
 
-} // namespace
+}  // namespace
 
 void writeZma(const Frf& impedance, const std::filesystem::path& path)
 {
@@ -55,7 +55,8 @@ void writeFrd(const Frf& frf, const std::filesystem::path& path)
 void writeCsv(const Frf& frf, const std::filesystem::path& path)
 {
     const bool noise = !frf.noiseVariance.empty(), total = !frf.totalVariance.empty();
-    std::string text = std::string("frequency_hz,re,im") + (noise ? ",noise_variance" : "") + (total ? ",total_variance" : "") + "\n";
+    std::string text = std::string("frequency_hz,re,im") + (noise ? ",noise_variance" : "")
+                       + (total ? ",total_variance" : "") + "\n";
     for (std::size_t k = 0; k < frf.value.size(); ++k) {
         appendRow(text, {frf.frequency[k], frf.value[k].real(), frf.value[k].imag()}, ',');
         text.pop_back();
@@ -106,4 +107,4 @@ void writeCsv(const Spectra& spectra, const std::filesystem::path& path)
     publish(path, text);
 }
 
-} // namespace excursion
+}  // namespace excursion

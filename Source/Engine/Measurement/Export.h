@@ -27,7 +27,8 @@ void writeCsv(const Frf&, const std::filesystem::path&);
 /// time_s and one column a channel, "current [A]": importText reads it back.
 void writeCsv(const Measurement&, const std::filesystem::path&);
 
-/// frequency_hz, voltage_re_V, voltage_im_V, ...: importText reads it back, with the remarks, each a line above that begins with the mark.
+/// frequency_hz, voltage_re_V, voltage_im_V, ...: importText reads it back, with the remarks, each a line above that
+/// begins with the mark.
 void writeCsv(const Spectra&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,10 +11,11 @@
 namespace excursion {
 namespace {
 
-constexpr double excitedOverNoise = 10.0;       // 10 dB
-constexpr double excitedBelowShape = 0.025;     // -16 dB
-constexpr std::size_t noiseNeighbours = 12;     // lines to either side
-constexpr double steady = 0.02;                 // `difference` of the same period in noise; other phases or levels differ by more
+constexpr double excitedOverNoise = 10.0;    // 10 dB
+constexpr double excitedBelowShape = 0.025;  // -16 dB
+constexpr std::size_t noiseNeighbours = 12;  // lines to either side
+// `difference` of the same period in noise; other phases or levels differ by more
+constexpr double steady = 0.02;
 
 /// Powers of the lines of a period: of the average, and of its noise.
 struct LinePowers {
@@ -37,7 +38,7 @@ LinePowers linePowers(std::span<const double> input, const Excitation& e)
     const std::size_t blocks = static_cast<std::size_t>(e.totalSamples()) / block;
     for (std::size_t b = 0; b < blocks; ++b) {
         const auto used = input.subspan(b * block + N * static_cast<std::size_t>(e.settlePeriods), N * P);
-        const double scale = energy(used) / static_cast<double>(P);   // all levels count alike
+        const double scale = energy(used) / static_cast<double>(P);  // all levels count alike
         if (!(scale > 0))
             continue;
         std::vector<std::complex<double>> sum(N / 2 + 1);
@@ -53,7 +54,7 @@ LinePowers linePowers(std::span<const double> input, const Excitation& e)
         for (std::size_t k = 0; k < sum.size(); ++k) {
             const double average = std::norm(sum[k]) / (count * count);
             lines.power[k] += average / scale;
-            if (P > 1)   // variance of the average
+            if (P > 1)  // variance of the average
                 lines.noise[k] += std::max(0.0, squares[k] / count - average) / (count - 1) / scale;
         }
     }
@@ -131,8 +132,8 @@ std::size_t sharpened(std::span<const double> input, std::size_t lag)
 
 /// Realizations as they show in the record: each a run of periods, the first ones still settling.
 struct Runs {
-    std::size_t length = 0;     ///< periods of each; 0 where they are not all equal, or never settle
-    std::size_t settling = 0;   ///< most periods before one that is as the next
+    std::size_t length = 0;    ///< periods of each; 0 where they are not all equal, or never settle
+    std::size_t settling = 0;  ///< most periods before one that is as the next
 };
 
 Runs equalRuns(std::span<const double> input, std::size_t N)
@@ -172,16 +173,18 @@ std::vector<double> ascendingLevels(const std::vector<double>& rmsOfRun)
             levels.push_back(value);
             counts.push_back(1);
         }
-    const bool even = std::all_of(counts.begin(), counts.end(), [&](std::size_t count) { return count == counts.front(); });
+    const bool even = std::all_of(counts.begin(), counts.end(),
+                                  [&](std::size_t count) { return count == counts.front(); });
     return even && std::is_sorted(levels.begin(), levels.end()) && levels.front() > 0 ? levels : std::vector<double> {};
 }
 
-} // namespace
+}  // namespace
 
 std::vector<int> findLines(std::span<const double> input, const Excitation& e)
 {
     if (e.period < 4 || e.periods < 1 || e.totalSamples() <= 0 || e.totalSamples() > static_cast<long>(input.size()))
-        throw Error(Error::Kind::data, "The excited lines cannot be found: the record is shorter than its excitation says.");
+        throw Error(Error::Kind::data,
+                    "The excited lines cannot be found: the record is shorter than its excitation says.");
     const auto [power, raw] = linePowers(input, e);
     const auto noise = smoothed(raw);
     const auto last = static_cast<std::size_t>((e.period - 1) / 2);
@@ -221,7 +224,7 @@ int findPeriod(std::span<const double> input)
     for (auto& value : spectrum)
         value = std::norm(value);
     const auto correlation = inverseFft(spectrum, padded.size());
-    std::vector<double> head(L + 1);   // energy of the first n samples
+    std::vector<double> head(L + 1);  // energy of the first n samples
     for (std::size_t n = 0; n < L; ++n)
         head[n + 1] = head[n] + input[n] * input[n];
     const auto similarity = [&](std::size_t lag) {
@@ -229,12 +232,12 @@ int findPeriod(std::span<const double> input)
         return both > 0 ? correlation[lag] / std::sqrt(both) : 0.0;
     };
 
-    // A third of a record or more repeats after a period (settling, used, used); the whole of it may after several (the same
-    // phases at the next level), so that the highest peak is not always the one.
+    // A third of a record or more repeats after a period (settling, used, used); the whole of it may after several (the
+    // same phases at the next level), so that the highest peak is not always the one.
     constexpr double share = 0.3;
     constexpr std::size_t mostCandidates = 200;
     std::size_t first = 1;
-    while (first <= L / 2 && similarity(first) > 0)   // out of the main lobe
+    while (first <= L / 2 && similarity(first) > 0)  // out of the main lobe
         ++first;
     std::vector<std::pair<double, std::size_t>> candidates;
     for (std::size_t lag = std::max(first, shortest); lag <= L / 2; ++lag)
@@ -285,4 +288,4 @@ void completeExcitation(Measurement& measurement)
         measurement.excitation->lines = findLines(input, *measurement.excitation);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -23,9 +23,9 @@ std::vector<int> findLines(std::span<const double> input, const Excitation& exci
 /// What can be told of the excitation from the input alone, when nobody said it: the period and, where
 /// the record from its first sample on is a whole number of realizations of equal length (each a period
 /// that repeats at least once), their number, the levels and the lines. The periods that
-/// differ from the next, and the first of three or more at all events, are taken for settling. Grid is given as "full", shape as
-/// "white" and the band by the outer lines: they are not looked for.
-/// Absent where any of this does not come out cleanly: then the record is as good as aperiodic.
+/// differ from the next, and the first of three or more at all events, are taken for settling. Grid is given as "full",
+/// shape as "white" and the band by the outer lines: they are not looked for. Absent where any of this does not come
+/// out cleanly: then the record is as good as aperiodic.
 std::optional<Excitation> findExcitation(std::span<const double> input, double sampleRate);
 
 /// The shortest lag in samples, 16 or more, after which at least 30 % of a record comes again (what is loud
@@ -36,4 +36,4 @@ int findPeriod(std::span<const double> input);
 /// and can be told (see findExcitation). What is there is not touched.
 void completeExcitation(Measurement&);
 
-} // namespace excursion
+}  // namespace excursion

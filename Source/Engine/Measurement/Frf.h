@@ -10,10 +10,10 @@ namespace excursion {
 /// (seed 4.2.2 and appendix A). Variances are of the complex estimate: E|G - E G|^2. All vectors that
 /// are not empty have the same length.
 struct Frf {
-    std::vector<double> frequency;             ///< Hz, ascending, never 0
-    std::vector<std::complex<double>> value;   ///< output unit / input unit
-    std::vector<double> noiseVariance;         ///< of `value`, from the scatter over periods; empty if unknown
-    std::vector<double> totalVariance;         ///< of `value`, from the scatter over realizations; empty if unknown
+    std::vector<double> frequency;            ///< Hz, ascending, never 0
+    std::vector<std::complex<double>> value;  ///< output unit / input unit
+    std::vector<double> noiseVariance;        ///< of `value`, from the scatter over periods; empty if unknown
+    std::vector<double> totalVariance;        ///< of `value`, from the scatter over realizations; empty if unknown
 };
 
-} // namespace excursion
+}  // namespace excursion

@@ -31,7 +31,8 @@ std::vector<double> residualSpectrum(const Measurement& take, const Channel& cha
             }
             const auto spectrum = fft(residual);
             for (std::size_t k = 1; k < power.size(); ++k)
-                power[k] += 2.0 * std::norm(spectrum[k]) / (0.375 * static_cast<double>(length) * static_cast<double>(length)) / records;
+                power[k] += 2.0 * std::norm(spectrum[k])
+                            / (0.375 * static_cast<double>(length) * static_cast<double>(length)) / records;
         }
     return power;
 }
@@ -71,7 +72,7 @@ double medianOf(std::vector<double> values)
     return *middle;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
 {
@@ -99,7 +100,8 @@ std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
                 continue;
             double peak = 0.0, sum = 0.0;
             std::vector<double> beside;
-            for (auto k = static_cast<std::size_t>(centre - surroundings); static_cast<double>(k) <= centre + surroundings; ++k) {
+            for (auto k = static_cast<std::size_t>(centre - surroundings);
+                 static_cast<double>(k) <= centre + surroundings; ++k) {
                 const bool near = std::abs(static_cast<double>(k) - centre) <= reach;
                 if (near)
                     sum += power[k];
@@ -131,4 +133,4 @@ std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
     return found;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -55,7 +55,8 @@ public:
     explicit Reader(const std::filesystem::path& path) : source_(path.string())
     {
         size_ = sizeOfFile(path);
-        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);   // what is wrong is told in our own words, not by a stack of HDF5's
+        // what is wrong is told in our own words, not by a stack of HDF5's
+        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         file_.reset(Mat_Open(source_.c_str(), MAT_ACC_RDONLY));
         if (!file_)
             refuse(Kind::input, "is not a readable MATLAB MAT file.");
@@ -70,8 +71,8 @@ public:
 
     bool has(const std::string& name) const { return std::find(names_.begin(), names_.end(), name) != names_.end(); }
 
-    /// What a column of a mapping means: "V1" a vector, "data(2)" the second row or column of a matrix, whichever runs the shorter way;
-    /// "2" the same of the only matrix of the file.
+    /// What a column of a mapping means: "V1" a vector, "data(2)" the second row or column of a matrix, whichever runs
+    /// the shorter way; "2" the same of the only matrix of the file.
     std::vector<double> signal(const std::string& column)
     {
         if (has(column))
@@ -89,9 +90,11 @@ public:
         const auto matrix = read(name);
         const std::size_t rows = matrix.rows, columns = matrix.columns, shorter = std::min(rows, columns);
         if (rows == columns)
-            refuse(Kind::input, "has a square matrix '" + name + "', so it does not tell which way time runs; save its signals as vectors.");
+            refuse(Kind::input, "has a square matrix '" + name
+                                    + "', so it does not tell which way time runs; save its signals as vectors.");
         if (number > shorter)
-            refuse(Kind::usage, "has " + std::to_string(shorter) + " signals in '" + name + "', but number " + std::to_string(number) + " was mapped.");
+            refuse(Kind::usage, "has " + std::to_string(shorter) + " signals in '" + name + "', but number "
+                                    + std::to_string(number) + " was mapped.");
         std::vector<double> signal;
         for (std::size_t n = 0; n < std::max(rows, columns); ++n)
             signal.push_back(matrix.values[rows < columns ? n * rows + number - 1 : (number - 1) * rows + n]);
@@ -102,7 +105,8 @@ public:
     {
         auto matrix = read(name);
         if (matrix.rows != 1 && matrix.columns != 1)
-            refuse(Kind::usage, "has a variable '" + name + "' that is a matrix of " + std::to_string(matrix.rows) + " x " + std::to_string(matrix.columns)
+            refuse(Kind::usage, "has a variable '" + name + "' that is a matrix of " + std::to_string(matrix.rows)
+                                    + " x " + std::to_string(matrix.columns)
                                     + "; map its signals by number, for example --map '" + name + "(1)=voltage'.");
         return std::move(matrix.values);
     }
@@ -115,7 +119,8 @@ public:
             const Variable info(Mat_VarReadInfo(file_.get(), name.c_str()));
             all += (all.empty() ? "" : ", ") + name;
             if (info && info->rank == 2)
-                all += " (" + std::to_string(info->dims[0]) + " x " + std::to_string(info->dims[1]) + (info->class_type == MAT_C_STRUCT ? " struct)" : ")");
+                all += " (" + std::to_string(info->dims[0]) + " x " + std::to_string(info->dims[1])
+                       + (info->class_type == MAT_C_STRUCT ? " struct)" : ")");
         }
         return all.empty() ? "none" : all;
     }
@@ -125,7 +130,7 @@ private:
 
     struct Matrix {
         std::size_t rows = 0, columns = 0;
-        std::vector<double> values;   ///< column by column
+        std::vector<double> values;  ///< column by column
     };
 
     /// A number from 1; 0 when the text is none.
@@ -144,7 +149,8 @@ private:
             if (!info || info->rank != 2 || info->dims[0] < 2 || info->dims[1] < 2)
                 continue;
             if (!only.empty())
-                refuse(Kind::usage, "has more than one matrix; say which, for example --map '" + only + "(1)=voltage'.");
+                refuse(Kind::usage,
+                       "has more than one matrix; say which, for example --map '" + only + "(1)=voltage'.");
             only = name;
         }
         return only;
@@ -156,10 +162,12 @@ private:
             refuse(Kind::usage, "has no variable '" + name + "'; it has " + described() + ".");
         const Variable info(Mat_VarReadInfo(file_.get(), name.c_str()));
         if (info && info->class_type == MAT_C_STRUCT)
-            refuse(Kind::input, "has a variable '" + name + "' that is a struct; save its fields as variables of their own (save -struct).");
+            refuse(Kind::input, "has a variable '" + name
+                                    + "' that is a struct; save its fields as variables of their own (save -struct).");
         const auto count = info ? elements(*info) : 0;
         if (count == 0 || count > mostElements())
-            refuse(Kind::input, "does not hold the samples that its variable '" + name + "' claims; it is damaged or empty.");
+            refuse(Kind::input,
+                   "does not hold the samples that its variable '" + name + "' claims; it is damaged or empty.");
         const Variable variable(Mat_VarRead(file_.get(), name.c_str()));
         if (!variable || !variable->data || variable->isComplex || variable->rank != 2 || elements(*variable) != count)
             refuse(Kind::input, "has a variable '" + name + "' that is no real matrix of numbers, or is damaged.");
@@ -170,7 +178,8 @@ private:
             refuse(Kind::input, "has a variable '" + name + "' that is no real matrix of numbers, or is damaged.");
         for (std::size_t n = 0; n < count; ++n)
             if (!std::isfinite(matrix.values[n]))
-                refuse(Kind::input, "has a variable '" + name + "' whose sample " + std::to_string(n) + " is not a finite number.");
+                refuse(Kind::input,
+                       "has a variable '" + name + "' whose sample " + std::to_string(n) + " is not a finite number.");
         return matrix;
     }
 
@@ -193,21 +202,24 @@ private:
     std::vector<std::string> names_;
 };
 
-} // namespace
+}  // namespace
 
 namespace {
 
 /// From the variables that are usually called so; where several tell it they must agree.
-double sampleRateIn(Reader& file, const ImportOptions& options, const std::string& source, std::vector<std::string>& remarks)
+double sampleRateIn(Reader& file, const ImportOptions& options, const std::string& source,
+                    std::vector<std::string>& remarks)
 {
     double rate = 0.0;
     std::string toldBy;
     const auto tell = [&](double value, const std::string& name) {
         if (!(std::isfinite(value) && value > 0.0))
-            throw Error(Kind::input, "'" + source + "' has a variable '" + name + "' that gives no positive sample rate; give --rate.");
+            throw Error(Kind::input, "'" + source + "' has a variable '" + name
+                                         + "' that gives no positive sample rate; give --rate.");
         if (rate > 0.0 && std::abs(value / rate - 1.0) > 0.001)
-            throw Error(Kind::input, "'" + source + "' tells two sample rates, " + std::to_string(rate) + " Hz by '" + toldBy + "' and " + std::to_string(value)
-                                         + " Hz by '" + name + "'; give the right one with --rate.");
+            throw Error(Kind::input, "'" + source + "' tells two sample rates, " + std::to_string(rate) + " Hz by '"
+                                         + toldBy + "' and " + std::to_string(value) + " Hz by '" + name
+                                         + "'; give the right one with --rate.");
         if (rate == 0.0) {
             rate = value;
             toldBy = name;
@@ -215,7 +227,8 @@ double sampleRateIn(Reader& file, const ImportOptions& options, const std::strin
     };
     const auto tellSeconds = [&](double value, const std::string& name) {
         if (rate == 0.0)
-            remarks.push_back("The sample rate of '" + source + "' is that of its variable '" + name + "', taken as seconds.");
+            remarks.push_back("The sample rate of '" + source + "' is that of its variable '" + name
+                              + "', taken as seconds.");
         tell(value, name);
     };
     if (options.axis) {
@@ -223,9 +236,11 @@ double sampleRateIn(Reader& file, const ImportOptions& options, const std::strin
         return rate;
     }
     const auto isMapped = [&](const char* name) {
-        return std::any_of(options.columns.begin(), options.columns.end(), [name](const auto& c) { return c.column == name; });
+        return std::any_of(options.columns.begin(), options.columns.end(),
+                           [name](const auto& c) { return c.column == name; });
     };
-    for (const char* name : {"fs", "Fs", "FS", "fS", "f_s", "sampleRate", "SampleRate", "samplerate", "sample_rate", "sampling_rate", "SamplingRate", "sr", "SR"})
+    for (const char* name : {"fs", "Fs", "FS", "fS", "f_s", "sampleRate", "SampleRate", "samplerate", "sample_rate",
+                             "sampling_rate", "SamplingRate", "sr", "SR"})
         if (file.has(name) && !isMapped(name))
             tell(file.vector(name).front(), name);
     for (const char* name : {"dt", "Dt", "delta_t", "Ts", "T_s", "sampleTime", "SampleTime"})
@@ -238,13 +253,15 @@ double sampleRateIn(Reader& file, const ImportOptions& options, const std::strin
     return rate;
 }
 
-} // namespace
+}  // namespace
 
 Measurement importMat(const std::filesystem::path& path, const ImportOptions& options)
 {
     const auto source = path.string();
     if (!options.responses.empty() || options.as || options.minimumPhase || (options.axis && !options.axis->isTime))
-        throw Error(Kind::usage, "'" + source + "' is a MAT file, of which only time signals are read, no responses; save a response as a text file.");
+        throw Error(Kind::usage, "'" + source
+                                     + "' is a MAT file, of which only time signals are read, no responses; save a "
+                                       "response as a text file.");
     Reader file(path);
     auto columns = options.columns;
     if (columns.empty())
@@ -252,10 +269,14 @@ Measurement importMat(const std::filesystem::path& path, const ImportOptions& op
             if (const auto found = columnNamed(name))
                 columns.push_back(*found);
     if (columns.empty())
-        throw Error(Kind::input, "'" + source + "' has no variable whose name says its quantity; map them with --map of excursion import, for example --map V1=voltage or "
-                                     "--map 'data(2)=current'. It has " + file.described() + ".");
+        throw Error(Kind::input, "'" + source
+                                     + "' has no variable whose name says its quantity; map them with --map of "
+                                       "excursion import, for example --map V1=voltage or "
+                                       "--map 'data(2)=current'. It has "
+                                     + file.described() + ".");
     std::vector<std::string> remarks;
-    const double sampleRate = options.sampleRate > 0.0 ? options.sampleRate : sampleRateIn(file, options, source, remarks);
+    const double sampleRate = options.sampleRate > 0.0 ? options.sampleRate
+                                                       : sampleRateIn(file, options, source, remarks);
     std::vector<std::vector<double>> samples;
     for (const auto& mapped : columns)
         samples.push_back(file.signal(mapped.column));
@@ -264,4 +285,4 @@ Measurement importMat(const std::filesystem::path& path, const ImportOptions& op
     return measurement;
 }
 
-} // namespace excursion
+}  // namespace excursion

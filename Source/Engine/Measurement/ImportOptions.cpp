@@ -58,7 +58,7 @@ std::optional<ColumnQuantity> understood(std::string_view column, const std::str
     throw Error(Error::Kind::usage, "'" + std::string(text) + "' " + why);
 }
 
-} // namespace
+}  // namespace
 
 std::optional<ColumnQuantity> columnNamed(std::string_view column)
 {
@@ -66,7 +66,7 @@ std::optional<ColumnQuantity> columnNamed(std::string_view column)
     for (const auto& [open, close] : {std::pair {'[', ']'}, std::pair {'(', ')'}})
         if (const auto at = text.find(open); at != std::string::npos && text.back() == close)
             return understood(column, text.substr(0, at), trimmed(text.substr(at + 1, text.size() - at - 2)));
-    if (const auto read = columnTitle(text); !read.unit.empty())   // "U/V", "x / mm", "current mA"
+    if (const auto read = columnTitle(text); !read.unit.empty())  // "U/V", "x / mm", "current mA"
         if (auto found = understood(column, read.name, read.unit))
             return found;
     if (const auto at = text.rfind('_'); at != std::string::npos)
@@ -78,8 +78,9 @@ std::optional<ColumnQuantity> columnNamed(std::string_view column)
 ColumnQuantity parseColumnQuantity(std::string_view text)
 {
     const auto refuse = [&](const std::string& why) {
-        throw Error(Error::Kind::usage, "'" + std::string(text) + "' " + why + "; write COLUMN=QUANTITY or "
-                                        "COLUMN=QUANTITY:UNIT, for example V1=voltage or V2=displacement:mm.");
+        throw Error(Error::Kind::usage, "'" + std::string(text) + "' " + why
+                                            + "; write COLUMN=QUANTITY or "
+                                              "COLUMN=QUANTITY:UNIT, for example V1=voltage or V2=displacement:mm.");
     };
     const auto equals = text.rfind('=');
     if (equals == std::string_view::npos || equals == 0)
@@ -113,7 +114,10 @@ void addMapping(ImportOptions& options, std::string_view text)
         const bool isTime = name == "time";
         const auto factor = unit.empty() ? std::optional(1.0) : isTime ? timeUnit(unit) : frequencyUnit(unit);
         if (!factor || column.empty())
-            refuseMapping(text, isTime ? "is no mapping of a time; write COLUMN=time, with :s, :ms or :us behind it." : "is no mapping of a frequency; write COLUMN=frequency, with :Hz, :kHz or :rad/s behind it.");
+            refuseMapping(
+                text,
+                isTime ? "is no mapping of a time; write COLUMN=time, with :s, :ms or :us behind it."
+                       : "is no mapping of a frequency; write COLUMN=frequency, with :Hz, :kHz or :rad/s behind it.");
         options.axis = AxisColumn {column, *factor, isTime};
         return;
     }
@@ -124,66 +128,82 @@ void addMapping(ImportOptions& options, std::string_view text)
     }
     const auto part = responsePartNamed(dot == std::string_view::npos ? std::string_view() : name.substr(dot + 1));
     if (column.empty() || !response || !part)
-        refuseMapping(text, "maps no column to the part of a response; write COLUMN=RESPONSE.PART or COLUMN=RESPONSE.PART:UNIT, for example "
-                            "G_re=impedance.re or 2=displacement/voltage.magnitude:mm/V, with re, im, magnitude, dB or phase as the part.");
+        refuseMapping(text, "maps no column to the part of a response; write COLUMN=RESPONSE.PART or "
+                            "COLUMN=RESPONSE.PART:UNIT, for example "
+                            "G_re=impedance.re or 2=displacement/voltage.magnitude:mm/V, with re, im, magnitude, dB or "
+                            "phase as the part.");
     const ResponseColumn mapped {column, *response, part.value(), std::string(unit)};
     if (!responseScale(mapped.response, mapped.part, unit))
-        refuseMapping(text, "gives " + (unit.empty() ? std::string("no unit") : "the unit '" + mapped.unit + "'") + ", expected "
-                                + acceptedUnits(mapped.response, mapped.part) + ".");
+        refuseMapping(text, "gives " + (unit.empty() ? std::string("no unit") : "the unit '" + mapped.unit + "'")
+                                + ", expected " + acceptedUnits(mapped.response, mapped.part) + ".");
     options.responses.push_back(mapped);
 }
 
 double sampleRateOf(const std::vector<double>& times, double unit, const std::string& source)
 {
-    const auto refuse = [&source](const std::string& why) { throw Error(Error::Kind::data, "'" + source + "' " + why); };
+    const auto refuse = [&source](const std::string& why) {
+        throw Error(Error::Kind::data, "'" + source + "' " + why);
+    };
     if (times.size() < 3)
         refuse("has fewer than 3 times, too few to tell the sample rate.");
     const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-    for (std::size_t n = 0; n < times.size(); ++n)   // against the line, so that printed digits do not add up
-        if (!(step > 0) || std::abs(times[n] - times.front() - static_cast<double>(n) * step) > 0.01 * step + 1e-9 * std::abs(times.back()))
+    for (std::size_t n = 0; n < times.size(); ++n)  // against the line, so that printed digits do not add up
+        if (!(step > 0)
+            || std::abs(times[n] - times.front() - static_cast<double>(n) * step)
+                   > 0.01 * step + 1e-9 * std::abs(times.back()))
             refuse("is not evenly sampled: its times leave the even grid at row " + std::to_string(n)
                    + "; resample it, or leave the times out and give --rate.");
     return 1.0 / (step * unit);
 }
 
-Measurement measurementOfColumns(const std::vector<ColumnQuantity>& columns, const std::vector<std::vector<double>>& samples,
-                                 double sampleRate, const ImportOptions& options, const std::string& source)
+Measurement measurementOfColumns(const std::vector<ColumnQuantity>& columns,
+                                 const std::vector<std::vector<double>>& samples, double sampleRate,
+                                 const ImportOptions& options, const std::string& source)
 {
-    const auto refuse = [&source](Error::Kind kind, const std::string& why) { throw Error(kind, "'" + source + "' " + why); };
+    const auto refuse = [&source](Error::Kind kind, const std::string& why) {
+        throw Error(kind, "'" + source + "' " + why);
+    };
     if (columns.empty())
-        refuse(Error::Kind::input, "has no column that names a quantity; map its columns with --map, for example --map V1=voltage.");
+        refuse(Error::Kind::input,
+               "has no column that names a quantity; map its columns with --map, for example --map V1=voltage.");
     if (!(std::isfinite(sampleRate) && sampleRate > 0))
         refuse(Error::Kind::usage, "does not say its sample rate; give it with --rate.");
     const std::size_t length = samples.front().size(), to = options.to.value_or(length);
     if (to > length || options.from >= to)
         refuse(Error::Kind::usage, "has " + std::to_string(length) + " samples a channel, so samples "
-                                       + std::to_string(options.from) + " to " + std::to_string(to) + " cannot be taken.");
+                                       + std::to_string(options.from) + " to " + std::to_string(to)
+                                       + " cannot be taken.");
     Measurement measurement;
     measurement.sampleRate = sampleRate;
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const auto& [column, quantity, unit] = columns[c];
         const auto& x = samples[c];
         if (measurement.find(quantity))
-            refuse(Error::Kind::input, "has more than one column for the " + std::string(name(quantity)) + "; map the one that is meant with --map.");
+            refuse(Error::Kind::input, "has more than one column for the " + std::string(name(quantity))
+                                           + "; map the one that is meant with --map.");
         if (x.size() != length)
             refuse(Error::Kind::input, "has " + std::to_string(x.size()) + " samples in '" + column + "' and "
                                            + std::to_string(length) + " in '" + columns.front().column + "'.");
         const auto scale = unitNamed(quantity, unit.empty() ? siUnit(quantity) : std::string_view(unit));
         if (!scale)
-            refuse(Error::Kind::usage, "has '" + column + "' in '" + unit + "', expected " + acceptedUnits(quantity) + ".");
+            refuse(Error::Kind::usage,
+                   "has '" + column + "' in '" + unit + "', expected " + acceptedUnits(quantity) + ".");
         Channel channel;
         channel.quantity = quantity;
         channel.unit = scale->unit;
-        channel.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(options.from), x.begin() + static_cast<std::ptrdiff_t>(to));
+        channel.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(options.from),
+                               x.begin() + static_cast<std::ptrdiff_t>(to));
         const double mean = options.removeMean ? std::accumulate(channel.samples.begin(), channel.samples.end(), 0.0)
                                                      / static_cast<double>(channel.samples.size())
                                                : 0.0;
         for (double& value : channel.samples)
             value = (value - mean) * scale->factor;
-        constexpr double largest = 1e100, smallest = 1e-100;   // beyond them squares of samples would be
-        const auto peak = std::accumulate(channel.samples.begin(), channel.samples.end(), 0.0, [](double most, double value) { return std::max(most, std::abs(value)); });
+        constexpr double largest = 1e100, smallest = 1e-100;  // beyond them squares of samples would be
+        const auto peak = std::accumulate(channel.samples.begin(), channel.samples.end(), 0.0,
+                                          [](double most, double value) { return std::max(most, std::abs(value)); });
         if (!(peak < largest) || (peak > 0.0 && peak < smallest))
-            refuse(Error::Kind::input, "has samples in '" + column + "' that are beyond any measurement; it is damaged, or in another unit.");
+            refuse(Error::Kind::input, "has samples in '" + column
+                                           + "' that are beyond any measurement; it is damaged, or in another unit.");
         channel.fullScale = roundFullScale(channel.samples, 1.1);
         measurement.channels.push_back(std::move(channel));
     }
@@ -195,4 +215,4 @@ Measurement measurementOfColumns(const std::vector<ColumnQuantity>& columns, con
     return measurement;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -33,7 +33,7 @@ Answer answerOf(const Measurement& take, Quantity quantity)
     const int loudest = static_cast<int>(take.excitation->levels.size()) - 1;
     const auto frf = bla(take, quantity, loudest, Quantity::voltage).frf;
     Answer answer {frf.frequency, frf.value, {}};
-    constexpr double clear = 0.01;   // of the power
+    constexpr double clear = 0.01;  // of the power
     for (std::size_t k = 0; k < frf.value.size(); ++k)
         answer.seen.push_back(frf.noiseVariance.empty() || frf.noiseVariance[k] < clear * std::norm(frf.value[k]));
     return answer;
@@ -95,7 +95,8 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
     std::vector<double> ratio;
     const double f0 = current.frequency[resonance];
     for (std::size_t k = 0; k < current.value.size(); ++k) {
-        if (!current.seen[k] || !motion.seen[k] || current.frequency[k] > around * f0 || current.frequency[k] < f0 / around)
+        if (!current.seen[k] || !motion.seen[k] || current.frequency[k] > around * f0
+            || current.frequency[k] < f0 / around)
             continue;
         const auto mobility = velocity(k) / current.value[k];
         cone[0].push_back(omega(k) * mobility);
@@ -107,7 +108,7 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
     if (cone[0].size() < fewest)
         return bad;
     sum += misfitOf(cone, c);
-    if (!(c[0] * c[2] > 0.0))   // no resonance
+    if (!(c[0] * c[2] > 0.0))  // no resonance
         return bad;
     if (ratio.size() >= fewest) {
         double mean = 0.0, square = 0.0;
@@ -115,12 +116,12 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
             mean += r / static_cast<double>(ratio.size());
         for (const double r : ratio)
             square += (r - mean) * (r - mean) / static_cast<double>(ratio.size());
-        sum += 0.3 * std::sqrt(square);   // a room bends it by a few dB
+        sum += 0.3 * std::sqrt(square);  // a room bends it by a few dB
     }
     return std::min(bad, sum);
 }
 
-} // namespace
+}  // namespace
 
 bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::vector<Problem>& problems)
 {
@@ -137,7 +138,7 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
         motions += isMotion(quantity);
     }
     const bool judged = take.find(Quantity::voltage) && take.input().quantity == Quantity::voltage && motions == 1
-                     && std::count(labels.begin(), labels.end(), Quantity::current) == 1;
+                        && std::count(labels.begin(), labels.end(), Quantity::current) == 1;
     if (!judged)
         return true;
     for (const auto label : labels)
@@ -147,7 +148,9 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
         const Answer *current = nullptr, *motion = nullptr, *pressure = nullptr;
         Quantity kind = Quantity::displacement;
         for (std::size_t k = 0; k < named.size(); ++k) {
-            (named[k] == Quantity::current ? current : named[k] == Quantity::pressure ? pressure : motion) = &answers[k];
+            (named[k] == Quantity::current    ? current
+             : named[k] == Quantity::pressure ? pressure
+                                              : motion) = &answers[k];
             if (isMotion(named[k]))
                 kind = named[k];
         }
@@ -186,9 +189,11 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
     for (std::size_t k = 0; k < labels.size(); ++k)
         if (best[k] != labels[k])
             problems.push_back({"mislabelled", labels[k], 100.0 * asTold, "%", true,
-                                "The " + std::string(name(labels[k])) + " channel behaves like the " + std::string(name(best[k]))
-                                    + " of a loudspeaker: cables or columns are mixed up; map it as " + std::string(name(best[k])) + "."});
+                                "The " + std::string(name(labels[k])) + " channel behaves like the "
+                                    + std::string(name(best[k]))
+                                    + " of a loudspeaker: cables or columns are mixed up; map it as "
+                                    + std::string(name(best[k])) + "."});
     return false;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -29,7 +29,7 @@ auto findIn(const Channels& channels, Quantity quantity) -> decltype(&channels.f
     return found == channels.end() ? nullptr : &*found;
 }
 
-} // namespace
+}  // namespace
 
 std::string_view name(Quantity quantity) { return entries[static_cast<std::size_t>(quantity)].name; }
 
@@ -60,10 +60,11 @@ const Channel& Measurement::input() const
 const Spectra::Channel* Spectra::input() const
 {
     for (const auto& channel : channels)
-        if (!channel.values.empty() && std::all_of(channel.values.begin(), channel.values.end(), [](auto value) { return value == 1.0; }))
+        if (!channel.values.empty()
+            && std::all_of(channel.values.begin(), channel.values.end(), [](auto value) { return value == 1.0; }))
             return &channel;
     const auto* voltage = find(Quantity::voltage);
     return voltage ? voltage : find(Quantity::force);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,22 +19,22 @@ inline constexpr std::array quantities {Quantity::voltage,  Quantity::current,  
                                         Quantity::velocity, Quantity::acceleration, Quantity::pressure,
                                         Quantity::force};
 
-std::string_view name(Quantity);     ///< "voltage", as in the files
-std::string_view siUnit(Quantity);   ///< "V", "A", "m", "m/s", "m/s^2", "Pa", "N"
+std::string_view name(Quantity);    ///< "voltage", as in the files
+std::string_view siUnit(Quantity);  ///< "V", "A", "m", "m/s", "m/s^2", "Pa", "N"
 std::optional<Quantity> quantityNamed(std::string_view);
 
 /// How the record was excited. Time runs level by level (quiet to loud), in each level realization by
 /// realization, in each realization settlePeriods + periods periods of the same multisine.
 struct Excitation {
-    int period = 0;                ///< samples of one period
+    int period = 0;  ///< samples of one period
     int settlePeriods = 1;
-    int periods = 2;               ///< periods to be used, after the settling ones
+    int periods = 2;  ///< periods to be used, after the settling ones
     int realizations = 1;
-    std::vector<double> levels;    ///< V rms
-    std::string grid = "full";     ///< full, odd, odd-odd, odd-random, R10, R20, R40, R80
-    std::string shape = "white";   ///< white, pink, red
+    std::vector<double> levels;            ///< V rms
+    std::string grid = "full";             ///< full, odd, odd-odd, odd-random, R10, R20, R40, R80
+    std::string shape = "white";           ///< white, pink, red
     double bandLow = 0.0, bandHigh = 0.0;  ///< Hz
-    std::vector<int> lines;        ///< excited DFT lines of one period, ascending; empty: not known yet
+    std::vector<int> lines;                ///< excited DFT lines of one period, ascending; empty: not known yet
 
     int periodsPerRealization() const { return settlePeriods + periods; }
     long samplesPerRealization() const { return static_cast<long>(period) * periodsPerRealization(); }
@@ -44,29 +44,31 @@ struct Excitation {
 struct Channel {
     Quantity quantity = Quantity::voltage;
     std::string unit = "V";
-    double fullScale = 1.0;         ///< quantity at a WAV sample of 1.0; reaching it is clipping
-    std::vector<double> samples;    ///< in `unit`
-    bool assumed = false;           ///< not measured, but what was meant to be played
+    double fullScale = 1.0;       ///< quantity at a WAV sample of 1.0; reaching it is clipping
+    std::vector<double> samples;  ///< in `unit`
+    bool assumed = false;         ///< not measured, but what was meant to be played
 };
 
 struct DriverInfo {
     std::string name;
-    std::optional<double> coneArea;             ///< m^2
-    std::optional<double> microphoneDistance;   ///< m
+    std::optional<double> coneArea;            ///< m^2
+    std::optional<double> microphoneDistance;  ///< m
 };
 
 /// A take: what was played and what was measured, sampled at the same instants. All channels have
 /// the same length.
 struct Measurement {
-    double sampleRate = 0.0;   ///< Hz
+    double sampleRate = 0.0;  ///< Hz
     std::vector<Channel> channels;
-    std::optional<Excitation> excitation;   ///< absent: music, noise or someone else's record
+    std::optional<Excitation> excitation;  ///< absent: music, noise or someone else's record
     DriverInfo driver;
-    std::vector<std::string> remarks {};   ///< sentences: what the reader of a foreign file had to assume, or left out
+    /// sentences: what the reader of a foreign file had to assume, or left out
+    std::vector<std::string> remarks {};
 
     std::size_t length() const { return channels.empty() ? 0 : channels.front().samples.size(); }
-    const Channel* find(Quantity) const;      ///< nullptr when absent
-    const Channel& input() const;             ///< the voltage, or the force of a mechanical-only driver; throws Error (data)
+    const Channel* find(Quantity) const;  ///< nullptr when absent
+    /// the voltage, or the force of a mechanical-only driver; throws Error (data)
+    const Channel& input() const;
 };
 
 /// A take that is a frequency response only (ZMA, or spectra of voltage, current and velocity).
@@ -74,20 +76,20 @@ struct Spectra {
     struct Channel {
         Quantity quantity = Quantity::voltage;
         std::string unit = "V";
-        std::vector<std::complex<double>> values;   ///< one a frequency
+        std::vector<std::complex<double>> values;  ///< one a frequency
     };
-    std::vector<double> frequency;   ///< Hz, ascending
-    std::vector<Channel> channels;   ///< an impedance is voltage Z against current 1
+    std::vector<double> frequency;  ///< Hz, ascending
+    std::vector<Channel> channels;  ///< an impedance is voltage Z against current 1
     DriverInfo driver;
-    std::vector<std::string> remarks {};   ///< as of a Measurement
+    std::vector<std::string> remarks {};  ///< as of a Measurement
 
     const Channel* find(Quantity) const;
 
-    /// What the others are responses to: the channel that is 1 at every frequency (the current of an impedance, the voltage of
-    /// X/U), else the voltage, else the force; nullptr when there is none of these.
+    /// What the others are responses to: the channel that is 1 at every frequency (the current of an impedance, the
+    /// voltage of X/U), else the voltage, else the force; nullptr when there is none of these.
     const Channel* input() const;
 };
 
 using Take = std::variant<Measurement, Spectra>;
 
-} // namespace excursion
+}  // namespace excursion

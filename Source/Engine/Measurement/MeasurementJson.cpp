@@ -87,8 +87,8 @@ Excitation parseMultisine(const JsonField& field, double sampleRate)
         e.levels.push_back(value);
     }
     const double samples = static_cast<double>(e.period) * e.periodsPerRealization() * e.realizations
-                         * static_cast<double>(e.levels.size());
-    if (samples > static_cast<double>(mostSamples))   // before totalSamples() could overflow
+                           * static_cast<double>(e.levels.size());
+    if (samples > static_cast<double>(mostSamples))  // before totalSamples() could overflow
         field.at("period").refuse("a period that, times its repetitions, is a record of possible length");
     if (field.has("grid")) {
         constexpr auto grids = "full, odd, odd-odd, odd-random, R10, R20, R40 or R80";
@@ -114,7 +114,8 @@ Excitation parseMultisine(const JsonField& field, double sampleRate)
             field.at("band").refuse(expected);
     }
     if (field.has("lines"))
-        for (const auto& line : atLeastOne(field.at("lines"), "a list of DFT lines; leave it out when they are not known")) {
+        for (const auto& line :
+             atLeastOne(field.at("lines"), "a list of DFT lines; leave it out when they are not known")) {
             e.lines.push_back(line.count(1, (e.period - 1) / 2));
             if (e.lines.size() > 1 && e.lines.back() <= e.lines[e.lines.size() - 2])
                 line.refuse("more than the line before it");
@@ -131,7 +132,7 @@ std::optional<Excitation> parseExcitation(const JsonField& field, double sampleR
         return parseMultisine(field, sampleRate);
     if (kind != "sweep" && kind != "noise" && kind != "music" && kind != "other")
         kindField.refuse(kinds);
-    return std::nullopt;   // no periods to make use of
+    return std::nullopt;  // no periods to make use of
 }
 
 DriverInfo parseDriver(const JsonField& field)
@@ -146,7 +147,7 @@ DriverInfo parseDriver(const JsonField& field)
     return driver;
 }
 
-} // namespace
+}  // namespace
 
 Quantity quantityFromJson(const JsonField& field)
 {
@@ -162,7 +163,7 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
     Json document;
     try {
         document = Json::parse(text);
-    } catch (const Json::exception& e) {   // its text names line and column
+    } catch (const Json::exception& e) {  // its text names line and column
         throw Error(Error::Kind::input, "'" + source + "' is not a JSON document: " + e.what() + ".");
     }
     const JsonField root(document, "", source);
@@ -192,7 +193,8 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement, const std
                                      {"audio", audio},
                                      {"channels", nlohmann::ordered_json::array()}};
     for (const auto& channel : measurement.channels) {
-        document["channels"].push_back({{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"fullScale", channel.fullScale}});
+        document["channels"].push_back(
+            {{"quantity", name(channel.quantity)}, {"unit", channel.unit}, {"fullScale", channel.fullScale}});
         if (channel.assumed)
             document["channels"].back()["assumed"] = true;
     }
@@ -223,4 +225,4 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement, const std
     return document;
 }
 
-} // namespace excursion
+}  // namespace excursion

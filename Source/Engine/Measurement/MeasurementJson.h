@@ -14,8 +14,8 @@ namespace excursion {
 /// What measurement.json says: everything of a take but its samples. Channels come with full scales
 /// already in Channel::unit (SI, or "V" for an analogue).
 struct MeasurementHeader {
-    Measurement measurement;   ///< channels without samples
-    std::string audio;         ///< name of the WAV, relative to the folder
+    Measurement measurement;  ///< channels without samples
+    std::string audio;        ///< name of the WAV, relative to the folder
 };
 
 /// Reads the text of a measurement.json, format "excursion-measurement", version 1. Keys that are not
@@ -28,4 +28,4 @@ Quantity quantityFromJson(const JsonField&);
 
 nlohmann::ordered_json measurementJson(const Measurement&, const std::string& audio);
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,4 +11,4 @@ inline bool isMotion(Quantity quantity)
     return quantity == Quantity::displacement || quantity == Quantity::velocity || quantity == Quantity::acceleration;
 }
 
-} // namespace excursion
+}  // namespace excursion

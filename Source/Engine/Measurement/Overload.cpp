@@ -18,7 +18,7 @@ namespace excursion {
 namespace {
 
 constexpr int highestPower = 7;
-constexpr double clearlyAbove = 4.0;   // the noise's power
+constexpr double clearlyAbove = 4.0;  // the noise's power
 constexpr std::size_t fewestLines = 40;
 constexpr double fewestOctaves = 2.0, explainedFrom = 0.65, explainedEverywhere = 0.4, faintest = -60.0;
 constexpr std::size_t parts = 4;
@@ -32,8 +32,8 @@ struct Line {
 };
 
 /// The lines that the excitation leaves out, without what goes with the partner; `signal` receives the channel's power.
-std::vector<Line> leftOut(const Measurement& take, const Channel& channel, const Channel& partner, int level, int realization, double offset,
-                          double scale, double& signal)
+std::vector<Line> leftOut(const Measurement& take, const Channel& channel, const Channel& partner, int level,
+                          int realization, double offset, double scale, double& signal)
 {
     const auto& excited = excitedLines(take);
     const auto beside = averagedPeriod(take, partner, level, realization);
@@ -54,10 +54,14 @@ std::vector<Line> leftOut(const Measurement& take, const Channel& channel, const
             continue;
         }
         const auto above = std::lower_bound(excited.begin(), excited.end(), k);
-        const auto gainAt = [&](int line) { return averaged.mean[static_cast<std::size_t>(line)] / beside.mean[static_cast<std::size_t>(line)]; };
+        const auto gainAt = [&](int line) {
+            return averaged.mean[static_cast<std::size_t>(line)] / beside.mean[static_cast<std::size_t>(line)];
+        };
         const int from = *(above - 1), to = *above;
         const auto gain = gainAt(from) + (gainAt(to) - gainAt(from)) * (static_cast<double>(k - from) / (to - from));
-        const double noise = averaged.variance.empty() ? 0.0 : averaged.variance[place] + std::norm(gain) * beside.variance[place];
+        const double noise = averaged.variance.empty()
+                                 ? 0.0
+                                 : averaged.variance[place] + std::norm(gain) * beside.variance[place];
         Line line {k, averaged.mean[place] - gain * beside.mean[place], noise, {}};
         for (std::size_t n = 0; n < powers.size(); ++n)
             line.powers[n] = powers[n][place];
@@ -118,7 +122,8 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
     }
     if (used.size() < fewestLines || !(bent > 0.0))
         return std::nullopt;
-    const auto [low, high] = std::minmax_element(used.begin(), used.end(), [](const Line& a, const Line& b) { return a.k < b.k; });
+    const auto [low, high] = std::minmax_element(used.begin(), used.end(),
+                                                 [](const Line& a, const Line& b) { return a.k < b.k; });
     if (high->k < low->k * std::exp2(fewestOctaves))
         return std::nullopt;
 
@@ -140,8 +145,9 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
     const Eigen::VectorXd left = b - A * a;
     std::vector<Eigen::Index> byFrequency(used.size());
     std::iota(byFrequency.begin(), byFrequency.end(), Eigen::Index {0});
-    std::stable_sort(byFrequency.begin(), byFrequency.end(),
-                     [&](Eigen::Index i, Eigen::Index j) { return used[static_cast<std::size_t>(i)].k < used[static_cast<std::size_t>(j)].k; });
+    std::stable_sort(byFrequency.begin(), byFrequency.end(), [&](Eigen::Index i, Eigen::Index j) {
+        return used[static_cast<std::size_t>(i)].k < used[static_cast<std::size_t>(j)].k;
+    });
     const auto explainedOf = [&](std::size_t from, std::size_t to) {
         double before = 0.0, after = 0.0;
         for (std::size_t n = from; n < to; ++n) {
@@ -167,20 +173,21 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
         overload.compression = std::max(overload.compression, decibelsOf(std::pow(before * scale / extreme, 2)));
     }
     // What grows beyond its due was not held back: then it is the partner that bends.
-    constexpr double leastCompression = 0.02;   // dB
+    constexpr double leastCompression = 0.02;  // dB
     return overload.compression > leastCompression ? std::optional(overload) : std::nullopt;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<Overload> findOverload(const Measurement& take, const Channel& channel, const Channel& partner)
 {
     std::optional<Overload> worst;
     for (int level = 0; level < static_cast<int>(periodicExcitation(take).levels.size()); ++level)
-        if (const auto here = overloadAt(take, channel, partner, level); here && here->explained > explainedFrom && here->db > faintest)
+        if (const auto here = overloadAt(take, channel, partner, level);
+            here && here->explained > explainedFrom && here->db > faintest)
             if (!worst || here->db > worst->db)
                 worst = here;
     return worst;
 }
 
-} // namespace excursion
+}  // namespace excursion

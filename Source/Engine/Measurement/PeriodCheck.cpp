@@ -18,17 +18,16 @@ namespace {
 
 std::string rounded(double value, int decimals)
 {
-    std::array<char, 400> text {};   // a fixed 1e308 has 309 digits
-    const auto [end, error] =
-        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals);
+    std::array<char, 400> text {};  // a fixed 1e308 has 309 digits
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed,
+                                            decimals);
     return error == std::errc() ? std::string(text.data(), end) : std::string("?");
 }
 
-
 /// Powers of one period of one channel at one level, on each line.
 struct Powers {
-    std::vector<double> mean;    ///< |Ybar|^2 over realizations, all lines
-    std::vector<double> noise;   ///< of one period
+    std::vector<double> mean;   ///< |Ybar|^2 over realizations, all lines
+    std::vector<double> noise;  ///< of one period
 };
 
 Powers powersOf(const Measurement& take, const Channel& channel, int level)
@@ -59,7 +58,8 @@ SignalAndNoise between(const Powers& powers, const std::vector<int>& lines, int 
     SignalAndNoise result;
     for (const int k : lines)
         if (k >= low && k <= high)
-            result.signal += powers.mean[static_cast<std::size_t>(k)] - powers.noise[static_cast<std::size_t>(k)] / periods;
+            result.signal += powers.mean[static_cast<std::size_t>(k)]
+                             - powers.noise[static_cast<std::size_t>(k)] / periods;
     for (int k = low; k <= high; ++k)
         result.noise += powers.noise[static_cast<std::size_t>(k)];
     return result;
@@ -94,7 +94,7 @@ std::optional<double> settling(const Measurement& take, const Channel& channel, 
     return decibelsOf(excess / signal);
 }
 
-} // namespace
+}  // namespace
 
 std::optional<double> signalToNoise(const Measurement& take, const Channel& channel, int level)
 {
@@ -105,7 +105,8 @@ std::optional<double> signalToNoise(const Measurement& take, const Channel& chan
     return between(powersOf(take, channel, level), lines, e.periods, lines.front(), lines.back()).db();
 }
 
-bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigures& figures, std::vector<Problem>& problems)
+bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigures& figures,
+                  std::vector<Problem>& problems)
 {
     const Excitation& e = periodicExcitation(take);
     const auto& lines = excitedLines(take);
@@ -124,8 +125,9 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
     figures.snrDb = snr;
     // Noise alone gives mean = noise within a few percent.
     if (mean < 3.0 * noise) {
-        problems.push_back({"channel-dead", channel.quantity, snr, "dB", true,
-                            "The " + who + " channel holds nothing but noise: connect its sensor, or remove the channel."});
+        problems.push_back(
+            {"channel-dead", channel.quantity, snr, "dB", true,
+             "The " + who + " channel holds nothing but noise: connect its sensor, or remove the channel."});
         return false;
     }
     const double spacing = take.sampleRate / e.period;
@@ -158,12 +160,14 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
         problems.push_back({"not-settled", channel.quantity, *figures.settlingDb, "dB",
                             *figures.settlingDb > -20.0 && changedShare(take, channel, loudest) < changedFrom,
                             "The " + who + " channel has not settled in its first used period, by "
-                                + rounded(*figures.settlingDb, 0) + " dB of the signal; play one more settling period."});
+                                + rounded(*figures.settlingDb, 0)
+                                + " dB of the signal; play one more settling period."});
 
     if (const auto hum = findHum(take, channel))
         problems.push_back({"hum", channel.quantity, hum->db, "dB", hum->db > -40.0 && hum->aboveNoise > 6.0,
                             "The " + who + " channel hums at " + rounded(hum->mains, 0) + " Hz and harmonics, "
-                                + rounded(hum->db, 0) + " dB of its signal; break the ground loop or shield the cable."});
+                                + rounded(hum->db, 0)
+                                + " dB of its signal; break the ground loop or shield the cable."});
     return true;
 }
 
@@ -191,20 +195,21 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
             continue;
         const double ppm = shift->samples * 1e6 / e.period;
         figures[c].driftPpm = ppm;
-        judged.push_back({c, *shift,
-                          std::abs(ppm) > 0.5 && std::abs(shift->samples) > 6.0 * shift->standardError
-                              && shift->explained > 0.6});
+        judged.push_back(
+            {c, *shift,
+             std::abs(ppm) > 0.5 && std::abs(shift->samples) > 6.0 * shift->standardError && shift->explained > 0.6});
     }
 
     // A system that changes shows in every channel that answers; one channel by itself has changed its gain.
     const auto withoutCompany = [&](const std::pair<std::size_t, PeriodJump>& own) {
         return std::count(alive.begin(), alive.end(), true) > 2
-            && std::none_of(jumps.begin(), jumps.end(), [&own](const auto& other) {
-                   return other.first != own.first && other.second.change && other.second.level == own.second.level
-                       && other.second.realization == own.second.realization && std::abs(other.second.period - own.second.period) <= 1;
-               });
+               && std::none_of(jumps.begin(), jumps.end(), [&own](const auto& other) {
+                      return other.first != own.first && other.second.change && other.second.level == own.second.level
+                             && other.second.realization == own.second.realization
+                             && std::abs(other.second.period - own.second.period) <= 1;
+                  });
     };
-    std::map<std::size_t, PeriodJump> worstOf;   // of each channel
+    std::map<std::size_t, PeriodJump> worstOf;  // of each channel
     for (const auto& own : jumps)
         if (own.second.change && withoutCompany(own))
             if (const auto [known, isFirst] = worstOf.insert(own); !isFirst && own.second.db > known->second.db)
@@ -212,9 +217,11 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
     for (const auto& [c, jump] : worstOf) {
         const auto quantity = take.channels[c].quantity;
         problems.push_back({"gain-jump", quantity, jump.gainDb, "dB", jump.db > -30.0,
-                            "The gain of the " + std::string(name(quantity)) + " channel jumps by " + rounded(jump.gainDb, 2) + " dB at level "
-                                + std::to_string(jump.level) + ", realization " + std::to_string(jump.realization) + ", after used period "
-                                + std::to_string(jump.period) + ": look for a loose contact, an automatic gain or a switched range; record again."});
+                            "The gain of the " + std::string(name(quantity)) + " channel jumps by "
+                                + rounded(jump.gainDb, 2) + " dB at level " + std::to_string(jump.level)
+                                + ", realization " + std::to_string(jump.realization) + ", after used period "
+                                + std::to_string(jump.period)
+                                + ": look for a loose contact, an automatic gain or a switched range; record again."});
     }
     std::erase_if(jumps, [](const auto& jump) { return jump.second.change; });
 
@@ -256,8 +263,9 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
         }
     shared /= std::max(weights, 1e-300);
     const bool common = drifting > 1 && std::all_of(judged.begin(), judged.end(), [shared](const Drift& d) {
-        return std::abs(d.shift.samples - shared) < 6.0 * d.shift.standardError + 0.1 * std::abs(shared);
-    });
+                            return std::abs(d.shift.samples - shared)
+                                   < 6.0 * d.shift.standardError + 0.1 * std::abs(shared);
+                        });
     for (const auto& drift : judged) {
         if (!drift.drifts)
             continue;
@@ -266,8 +274,7 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
         const double turned = std::abs(drift.shift.samples) * e.periods * 2.0 * std::numbers::pi * top / e.period;
         problems.push_back(
             {"clock-drift", common ? std::nullopt : std::optional(quantity), ppm, "ppm", turned > 0.02,
-             (common ? std::string("All channels run")
-                     : "The " + std::string(name(quantity)) + " channel runs")
+             (common ? std::string("All channels run") : "The " + std::string(name(quantity)) + " channel runs")
                  + " against the excitation by " + rounded(ppm, 1)
                  + " ppm: player and recorder are on different clocks; use one device or lock their clocks."});
         if (common)
@@ -275,4 +282,4 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,4 +19,4 @@ bool checkPeriods(const Measurement&, const Channel&, ChannelFigures&, std::vect
 void checkClocks(const Measurement&, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
                  std::vector<Problem>&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -114,7 +114,8 @@ double gainOf(const Spectrum& earlier, const Spectrum& later)
     return decibelsOf(after / before);
 }
 
-/// The share of a difference that the earlier period explains, where the gain at a line is the mean over its neighbours, 0..1.
+/// The share of a difference that the earlier period explains, where the gain at a line is the mean over its
+/// neighbours, 0..1.
 double coherenceOf(const Spectrum& earlier, const Spectrum& later)
 {
     double explained = 0.0, whole = 0.0;
@@ -124,7 +125,7 @@ double coherenceOf(const Spectrum& earlier, const Spectrum& later)
         Complex cross = 0.0;
         double power = 0.0;
         for (std::size_t j = from; j < to; ++j)
-            if (j != i) {   // a line explains itself
+            if (j != i) {  // a line explains itself
                 cross += (later[j] - earlier[j]) * std::conj(earlier[j]);
                 power += std::norm(earlier[j]);
             }
@@ -146,7 +147,8 @@ double differenceOf(const Spectrum& earlier, const Spectrum& later)
     return power > 0.0 ? difference / power : 0.0;
 }
 
-/// PeriodJump::change, between period p and the next. What changes at once does so within a period, so those around it are compared, too.
+/// PeriodJump::change, between period p and the next. What changes at once does so within a period, so those around it
+/// are compared, too.
 bool isChange(const std::vector<Spectrum>& spectra, std::size_t p, const std::vector<int>& lines, int N)
 {
     const double pair = differenceOf(spectra[p], spectra[p + 1]);
@@ -156,7 +158,7 @@ bool isChange(const std::vector<Spectrum>& spectra, std::size_t p, const std::ve
             if (!(differenceOf(earlier, later) > 0.3 * pair && coherenceOf(earlier, later) > changedFrom))
                 continue;
             const auto shift = shiftOf(crossSpectrum(earlier, later), powerOf(earlier), lines, N);
-            const bool lost = shift.explained > 0.6 && std::abs(shift.samples) > 0.5;   // samples are lost whole
+            const bool lost = shift.explained > 0.6 && std::abs(shift.samples) > 0.5;  // samples are lost whole
             if (!lost)
                 return true;
         }
@@ -165,7 +167,8 @@ bool isChange(const std::vector<Spectrum>& spectra, std::size_t p, const std::ve
 
 /// A used period, cut a quarter earlier when there is a settling period: a channel that is early, or drifts, would
 /// else have a piece of the next realization in its last period.
-std::span<const double> earlyPeriod(const Measurement& take, const Channel& channel, int level, int realization, int period)
+std::span<const double> earlyPeriod(const Measurement& take, const Channel& channel, int level, int realization,
+                                    int period)
 {
     const auto inTime = onePeriod(take, channel, level, realization, period);
     const std::ptrdiff_t lead = take.excitation->settlePeriods > 0 ? take.excitation->period / 4 : 0;
@@ -196,7 +199,7 @@ double relativeDifference(std::span<const double> earlier, std::span<const doubl
     return power > 0.0 ? difference / power : 0.0;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<PeriodShift> periodShift(const Measurement& take, const Channel& channel, int level)
 {
@@ -229,7 +232,8 @@ std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& chan
         std::vector<double> differences;
         for (int m = 0; m < e.realizations; ++m)
             for (int p = 0; p + 1 < e.periods; ++p) {
-                differences.push_back(relativeDifference(earlyPeriod(take, channel, level, m, p), earlyPeriod(take, channel, level, m, p + 1)));
+                differences.push_back(relativeDifference(earlyPeriod(take, channel, level, m, p),
+                                                         earlyPeriod(take, channel, level, m, p + 1)));
                 pairs.push_back({level, m, p, 10.0 * std::log10(differences.back() + 1e-300), false, 0.0});
             }
         if (pairs.size() < 3)
@@ -245,7 +249,8 @@ std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& chan
             const auto spectra = earlySpectra(take, channel, level, jump.realization, lines);
             const auto p = static_cast<std::size_t>(jump.period);
             jump.change = isChange(spectra, p, lines, e.period);
-            jump.gainDb = gainOf(spectra[std::max<std::size_t>(p, 1) - 1], onLines(fft(onePeriod(take, channel, level, jump.realization, e.periods - 1)), lines));
+            jump.gainDb = gainOf(spectra[std::max<std::size_t>(p, 1) - 1],
+                                 onLines(fft(onePeriod(take, channel, level, jump.realization, e.periods - 1)), lines));
         }
     }
     return jumps;
@@ -262,4 +267,4 @@ double changedShare(const Measurement& take, const Channel& channel, int level)
     return sum / e.realizations;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,11 +12,11 @@ namespace {
 std::size_t startOf(const Excitation& e, int level, int realization)
 {
     return static_cast<std::size_t>(e.samplesPerRealization())
-         * (static_cast<std::size_t>(level) * static_cast<std::size_t>(e.realizations)
-            + static_cast<std::size_t>(realization));
+           * (static_cast<std::size_t>(level) * static_cast<std::size_t>(e.realizations)
+              + static_cast<std::size_t>(realization));
 }
 
-} // namespace
+}  // namespace
 
 const Excitation& periodicExcitation(const Measurement& take)
 {
@@ -28,8 +28,9 @@ const Excitation& periodicExcitation(const Measurement& take)
         throw Error(Error::Kind::data, "The take's excitation needs a period of at least 2 samples, one used period, "
                                        "one realization and one level.");
     if (static_cast<long>(take.length()) < e.totalSamples())
-        throw Error(Error::Kind::data, "The record has " + std::to_string(take.length()) + " samples but its excitation "
-                                           + std::to_string(e.totalSamples()) + ": the recording was cut short; "
+        throw Error(Error::Kind::data, "The record has " + std::to_string(take.length())
+                                           + " samples but its excitation " + std::to_string(e.totalSamples())
+                                           + ": the recording was cut short; "
                                              "record again or lower the number of realizations or levels.");
     return e;
 }
@@ -41,8 +42,8 @@ const std::vector<int>& excitedLines(const Measurement& take)
         throw Error(Error::Kind::data, "The take's excitation does not name its excited lines, and they were not "
                                        "found in the input channel.");
     if (e.lines.front() < 1 || e.lines.back() > e.period / 2)
-        throw Error(Error::Kind::data, "The take's excited lines must lie in 1 .. period/2 = "
-                                           + std::to_string(e.period / 2) + ".");
+        throw Error(Error::Kind::data,
+                    "The take's excited lines must lie in 1 .. period/2 = " + std::to_string(e.period / 2) + ".");
     return e.lines;
 }
 
@@ -123,4 +124,4 @@ PeriodNoise periodNoise(const Measurement& take, const Channel& channel, int lev
     return noise;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -36,16 +36,16 @@ std::vector<std::vector<std::complex<double>>> periodSpectra(const Measurement&,
 
 /// What the periods of one realization say about one channel.
 struct AveragedPeriod {
-    std::vector<std::complex<double>> mean;   ///< Ybar_k = 1/P sum_p Y_kp
-    std::vector<double> variance;             ///< of Ybar_k: 1/(P (P-1)) sum_p |Y_kp - Ybar_k|^2; empty when P = 1
+    std::vector<std::complex<double>> mean;  ///< Ybar_k = 1/P sum_p Y_kp
+    std::vector<double> variance;            ///< of Ybar_k: 1/(P (P-1)) sum_p |Y_kp - Ybar_k|^2; empty when P = 1
 };
 AveragedPeriod averagedPeriod(const Measurement&, const Channel&, int level, int realization);
 
 /// The noise of one channel at one level, pooled over the realizations.
 struct PeriodNoise {
-    std::vector<double> variance;   ///< of the averaged period Ybar_k; empty when P = 1: unknown
-    int degreesOfFreedom = 0;       ///< of each line, real: 2 M (P - 1); 0 when unknown
+    std::vector<double> variance;  ///< of the averaged period Ybar_k; empty when P = 1: unknown
+    int degreesOfFreedom = 0;      ///< of each line, real: 2 M (P - 1); 0 when unknown
 };
 PeriodNoise periodNoise(const Measurement&, const Channel&, int level);
 
-} // namespace excursion
+}  // namespace excursion

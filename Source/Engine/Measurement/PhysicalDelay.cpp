@@ -88,8 +88,8 @@ std::function<Complex(Complex)> power(double exponent)
 double decibels(double ratio) { return 20.0 * std::log10(ratio); }
 
 struct Thresholds {
-    double radians;    ///< phase that the delay turns at the top of the band
-    double fall;       ///< dB that the misfit falls
+    double radians;  ///< phase that the delay turns at the top of the band
+    double fall;     ///< dB that the misfit falls
 };
 
 /// The verdict over several models of the same lines: all that fit well must agree.
@@ -102,19 +102,21 @@ PhysicalDelay judge(const std::vector<DelayFit>& fits, double highestOmega, cons
     for (const auto& fit : fits) {
         without = std::min(without, fit.misfitWithout);
         if (fit.misfit < 2.0 * best.misfit)
-            agree = agree && std::abs(fit.seconds - best.seconds) < 0.15 * std::abs(best.seconds) + 5.0 * fit.standardError;
+            agree = agree
+                    && std::abs(fit.seconds - best.seconds) < 0.15 * std::abs(best.seconds) + 5.0 * fit.standardError;
     }
     PhysicalDelay verdict;
     verdict.seconds = best.seconds;
     verdict.standardError = best.standardError;
-    // A delay that turns phases all round leaves nothing in place without it, and next to nothing out of place with it; a mode of the cone or a
-    // part that swings on it is only bent to look like one.
-    constexpr double roundFrom = 2.0, roundFall = 10.0;   // rad, dB
-    const double turned = std::abs(best.seconds) * highestOmega, fall = std::max(thresholds.fall, turned > roundFrom ? roundFall : 0.0);
+    // A delay that turns phases all round leaves nothing in place without it, and next to nothing out of place with it;
+    // a mode of the cone or a part that swings on it is only bent to look like one.
+    constexpr double roundFrom = 2.0, roundFall = 10.0;  // rad, dB
+    const double turned = std::abs(best.seconds) * highestOmega,
+                 fall = std::max(thresholds.fall, turned > roundFrom ? roundFall : 0.0);
     verdict.conclusive = best.misfit < 0.3;
     verdict.clear = verdict.conclusive && agree && turned > thresholds.radians
-                 && std::abs(best.seconds) > 5.0 * best.standardError
-                 && decibels(without / std::max(best.misfit, 1e-300)) > fall;
+                    && std::abs(best.seconds) > 5.0 * best.standardError
+                    && decibels(without / std::max(best.misfit, 1e-300)) > fall;
     return verdict;
 }
 
@@ -157,7 +159,8 @@ double plateauEnd(const std::vector<Line>& lines, double resonance)
     }
     if (reference.size() < 3)
         return lines.back().omega;
-    std::nth_element(reference.begin(), reference.begin() + static_cast<std::ptrdiff_t>(reference.size() / 2), reference.end());
+    std::nth_element(reference.begin(), reference.begin() + static_cast<std::ptrdiff_t>(reference.size() / 2),
+                     reference.end());
     const double plateau = reference[reference.size() / 2];
     for (std::size_t i = 0; i + 2 < lines.size(); ++i) {
         if (lines[i].omega < 2.0 * resonance)
@@ -171,7 +174,7 @@ double plateauEnd(const std::vector<Line>& lines, double resonance)
     return lines.back().omega;
 }
 
-} // namespace
+}  // namespace
 
 PhysicalDelay currentDelay(const Frf& admittance)
 {
@@ -257,7 +260,7 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
     fits.push_back(fitLines(lines, basis));
     auto verdict = judge(fits, lines.back().omega,
                          drive == MotionReference::force ? Thresholds {.radians = 0.2, .fall = 4.5}
-                                               : Thresholds {.radians = 1.0, .fall = 6.0});
+                                                         : Thresholds {.radians = 1.0, .fall = 6.0});
     // A mode of the cone turns the phase at its own frequency, a delay everywhere.
     for (const double share : {0.5, 0.7}) {
         const auto lower = band(lines, 0.0, share * lines.back().omega);
@@ -265,21 +268,22 @@ PhysicalDelay motionDelay(const Frf& motion, Quantity quantity, MotionReference 
             continue;
         const auto fit = fitLines(lower, basis);
         verdict.clear = verdict.clear
-                     && std::abs(fit.seconds - verdict.seconds) < 0.25 * std::abs(verdict.seconds) + 3.0 * fit.standardError;
+                        && std::abs(fit.seconds - verdict.seconds)
+                               < 0.25 * std::abs(verdict.seconds) + 3.0 * fit.standardError;
     }
     const auto above = band(lines, 1.5 * resonance, end);
     verdict.inverted = verdict.conclusive && above.size() >= 4
-                    && mostlyNegative(above, verdict, [](Complex s, Complex Q) { return (Q / (s * s)).real(); });
+                       && mostlyNegative(above, verdict, [](Complex s, Complex Q) { return (Q / (s * s)).real(); });
     return verdict;
 }
 
 bool pressureIsInverted(const Frf& pressure, Quantity motion)
 {
     const int derivatives = motion == Quantity::acceleration ? 0 : motion == Quantity::velocity ? 1 : 2;
-    auto lines = reciprocalLines(pressure, derivatives);   // acceleration / pressure
+    auto lines = reciprocalLines(pressure, derivatives);  // acceleration / pressure
     if (lines.size() < 8)
         return false;
-    lines = band(lines, 0.0, 30.0 * lines.front().omega);   // the cone is rigid, if anywhere, down there
+    lines = band(lines, 0.0, 30.0 * lines.front().omega);  // the cone is rigid, if anywhere, down there
     const auto fit = fitLines(lines, {power(0)});
     PhysicalDelay flight;
     flight.seconds = fit.seconds;
@@ -287,4 +291,4 @@ bool pressureIsInverted(const Frf& pressure, Quantity motion)
     return fit.misfit < 0.3 && mostlyNegative(lines, flight, [](Complex, Complex Q) { return Q.real(); });
 }
 
-} // namespace excursion
+}  // namespace excursion

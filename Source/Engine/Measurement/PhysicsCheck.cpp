@@ -15,7 +15,7 @@
 namespace excursion {
 namespace {
 
-constexpr double smallestFault = 0.25;   ///< samples
+constexpr double smallestFault = 0.25;  ///< samples
 
 /// The response of one channel to another where the loudspeaker is the most linear, and at the loudest level.
 class Responses {
@@ -82,8 +82,8 @@ private:
             const auto loud = law(at(output, input, loudest()));
             verdict.inverted = verdict.inverted && loud.inverted;
             verdict.clear = verdict.clear
-                         && std::abs(loud.seconds - verdict.seconds)
-                                < 0.1 * std::abs(verdict.seconds) + smallestFault / take_.sampleRate;
+                            && std::abs(loud.seconds - verdict.seconds)
+                                   < 0.1 * std::abs(verdict.seconds) + smallestFault / take_.sampleRate;
         }
         verdict.clear = verdict.clear && std::abs(verdict.seconds) * take_.sampleRate > smallestFault;
         return verdict;
@@ -95,14 +95,18 @@ private:
 std::string hundredths(double value)
 {
     std::array<char, 400> text {};
-    const auto [end, error] =
-        std::to_chars(text.data(), text.data() + text.size(), std::abs(value), std::chars_format::fixed, 2);
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), std::abs(value),
+                                            std::chars_format::fixed, 2);
     return error == std::errc() ? std::string(text.data(), end) : std::string("?");
 }
 
 Problem delayProblem(Quantity channel, double samples)
 {
-    return {"channel-delay", channel, samples, "samples", true,
+    return {"channel-delay",
+            channel,
+            samples,
+            "samples",
+            true,
             "The " + std::string(name(channel)) + " channel is " + hundredths(samples) + " samples "
                 + (samples > 0.0 ? "late" : "early")
                 + " against what the physics allows; set its sensor's or converter's latency right."};
@@ -110,11 +114,15 @@ Problem delayProblem(Quantity channel, double samples)
 
 Problem polarityProblem(Quantity channel, bool fatal)
 {
-    return {"polarity", channel, -1.0, "", fatal,
+    return {"polarity",
+            channel,
+            -1.0,
+            "",
+            fatal,
             "The " + std::string(name(channel)) + " channel has its sign reversed; swap its wires or negate it."};
 }
 
-} // namespace
+}  // namespace
 
 void checkPhysics(const Measurement& take, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
                   std::vector<Problem>& problems)
@@ -161,7 +169,8 @@ void checkPhysics(const Measurement& take, const std::vector<bool>& alive, std::
     // The voltage alone is off when some motion agrees with the current, closely enough to exclude that the current is.
     const bool motionSidesWithCurrent = std::any_of(motions.begin(), motions.end(), [&](const Motion& m) {
         const double samples = m.delay.seconds * take.sampleRate, error = m.delay.standardError * take.sampleRate;
-        return m.delay.conclusive && 5.0 * error < std::abs(currentLate) && std::abs(samples) < 0.3 * std::abs(currentLate);
+        return m.delay.conclusive && 5.0 * error < std::abs(currentLate)
+               && std::abs(samples) < 0.3 * std::abs(currentLate);
     });
     if (current.clear)
         problems.push_back(motionSidesWithCurrent ? delayProblem(input, -currentLate)
@@ -176,9 +185,8 @@ void checkPhysics(const Measurement& take, const std::vector<bool>& alive, std::
             problems.push_back(delayProblem(motion.quantity, late));
     }
 
-    const bool motionSharesSign = std::any_of(motions.begin(), motions.end(), [](const Motion& m) {
-        return m.delay.conclusive && !m.delay.inverted;
-    });
+    const bool motionSharesSign = std::any_of(motions.begin(), motions.end(),
+                                              [](const Motion& m) { return m.delay.conclusive && !m.delay.inverted; });
     const bool inputInverted = current.inverted && motionSharesSign;
     const bool currentInverted = current.inverted && !inputInverted;
     if (inputInverted)
@@ -193,9 +201,10 @@ void checkPhysics(const Measurement& take, const std::vector<bool>& alive, std::
         const auto& motion = motions.front();
         const bool motionIsSound = motion.delay.inverted == currentInverted;
         if (motionIsSound
-            && pressureIsInverted(responses.at(Quantity::pressure, motion.quantity, responses.loudest()), motion.quantity))
+            && pressureIsInverted(responses.at(Quantity::pressure, motion.quantity, responses.loudest()),
+                                  motion.quantity))
             problems.push_back(polarityProblem(Quantity::pressure, false));
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

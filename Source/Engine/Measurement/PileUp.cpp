@@ -15,15 +15,15 @@ namespace {
 /// Samples of one level behind one another, and what their repetitions say of their noise.
 struct Strip {
     std::vector<double> values;
-    std::vector<double> variance;        ///< of each value; empty: unknown
-    std::vector<std::size_t> places;     ///< in time; realizations lie far apart
-    double resolution = 0.0;             ///< smallest step of the record
+    std::vector<double> variance;     ///< of each value; empty: unknown
+    std::vector<std::size_t> places;  ///< in time; realizations lie far apart
+    double resolution = 0.0;          ///< smallest step of the record
 };
 
 constexpr std::size_t apart = 1000;
-constexpr std::size_t sameTop = 4;       ///< noise makes holes of this many samples
-constexpr double reach = 0.35;           ///< of the way from the extreme to the median, that is looked at
-constexpr double finestScale = 1e-9;     ///< of that way
+constexpr std::size_t sameTop = 4;    ///< noise makes holes of this many samples
+constexpr double reach = 0.35;        ///< of the way from the extreme to the median, that is looked at
+constexpr double finestScale = 1e-9;  ///< of that way
 constexpr double scaleStep = 1.25;
 
 double smallestStep(const std::vector<double>& x)
@@ -88,9 +88,10 @@ public:
 
     std::size_t within(double distance) const
     {
-        return static_cast<std::size_t>(std::upper_bound(near_.begin(), near_.end(), distance,
-                                                         [](double d, const Near& sample) { return d < sample.distance; })
-                                        - near_.begin());
+        return static_cast<std::size_t>(
+            std::upper_bound(near_.begin(), near_.end(), distance,
+                             [](double d, const Near& sample) { return d < sample.distance; })
+            - near_.begin());
     }
 
     double distanceOf(std::size_t rank) const { return rank < near_.size() ? near_[rank].distance : way_; }
@@ -116,11 +117,11 @@ private:
 
 struct Bump {
     double mean = 0.0, variance = 0.0;
-    double noise = 0.0;              ///< variance by the scatter of the periods
-    double neighbours = 0.0;         ///< von Neumann's ratio
-    std::size_t pairs = 0;           ///< of neighbours
+    double noise = 0.0;       ///< variance by the scatter of the periods
+    double neighbours = 0.0;  ///< von Neumann's ratio
+    std::size_t pairs = 0;    ///< of neighbours
     std::size_t tops = 1;
-    std::size_t inStretches = 0;     ///< samples in stretches of three or more
+    std::size_t inStretches = 0;  ///< samples in stretches of three or more
 };
 
 Bump bumpOf(const Strip& strip, const std::vector<std::size_t>& members)
@@ -186,7 +187,8 @@ bool isSpreadBelow(const Edge& edge, double width)
             continue;
         const auto first = static_cast<double>(counts[0]), second = static_cast<double>(counts[1]);
         // Two intervals further out are steadier than one, where they are seen.
-        return outer <= reach * edge.way() ? second + static_cast<double>(counts[2]) > 4.5 * first : second > 1.5 * first;
+        return outer <= reach * edge.way() ? second + static_cast<double>(counts[2]) > 4.5 * first
+                                           : second > 1.5 * first;
     }
     return false;
 }
@@ -233,7 +235,7 @@ std::optional<PileUp> pileAt(const Strip& strip, bool high)
 /// @param cyclic  `values` are one period, else they are followed by silence
 bool repeatsWithin(std::vector<double> values, bool cyclic)
 {
-    constexpr double alike = 0.95;   // of a record: 20 repetitions
+    constexpr double alike = 0.95;  // of a record: 20 repetitions
     const std::size_t count = values.size();
     double mean = 0.0;
     for (const double value : values)
@@ -257,11 +259,12 @@ bool repeatsWithin(std::vector<double> values, bool cyclic)
 
 bool hasPeriods(const Measurement& take)
 {
-    return take.excitation && take.excitation->period > 1 && take.excitation->periods > 1 && !take.excitation->levels.empty()
-        && take.excitation->realizations > 0 && take.excitation->totalSamples() <= static_cast<long>(take.length());
+    return take.excitation && take.excitation->period > 1 && take.excitation->periods > 1
+           && !take.excitation->levels.empty() && take.excitation->realizations > 0
+           && take.excitation->totalSamples() <= static_cast<long>(take.length());
 }
 
-} // namespace
+}  // namespace
 
 std::vector<PileUp> pileUps(const Measurement& take, const Channel& channel)
 {
@@ -282,11 +285,11 @@ std::vector<PileUp> pileUps(const Measurement& take, const Channel& channel)
         if (ofLevel.empty())
             continue;
         if (repeated)
-            strip.values.resize(static_cast<std::size_t>(take.excitation->period));   // one realization tells
+            strip.values.resize(static_cast<std::size_t>(take.excitation->period));  // one realization tells
         if (!repeatsWithin(std::move(strip.values), repeated))
             found.insert(found.end(), ofLevel.begin(), ofLevel.end());
     }
     return found;
 }
 
-} // namespace excursion
+}  // namespace excursion

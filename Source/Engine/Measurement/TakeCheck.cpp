@@ -36,9 +36,10 @@ bool isCoherent(const Measurement& take, const Channel& channel, std::vector<Pro
     // Pure noise is coherent by 1/n with anything.
     if (!(all > 0.0) || coherent / all > 4.0 / spectra.effectiveAverages)
         return true;
-    problems.push_back({"channel-dead", channel.quantity, coherent / all, "", true,
-                        "The " + std::string(name(channel.quantity))
-                            + " channel has nothing in common with the input: connect its sensor, or remove the channel."});
+    problems.push_back(
+        {"channel-dead", channel.quantity, coherent / all, "", true,
+         "The " + std::string(name(channel.quantity))
+             + " channel has nothing in common with the input: connect its sensor, or remove the channel."});
     return false;
 }
 
@@ -50,8 +51,9 @@ void checkOverload(const Measurement& take, const std::vector<bool>& alive, std:
     constexpr double fatalFrom = -50.0;
     for (std::size_t c = 0; c < take.channels.size(); ++c) {
         const auto quantity = take.channels[c].quantity;
-        const bool clips = std::any_of(problems.begin(), problems.end(),
-                                       [quantity](const Problem& p) { return p.kind == "clipping" && p.channel == quantity; });
+        const bool clips = std::any_of(problems.begin(), problems.end(), [quantity](const Problem& p) {
+            return p.kind == "clipping" && p.channel == quantity;
+        });
         if (!alive[c] || clips || quantity == take.input().quantity)
             continue;
         std::optional<Overload> overload;
@@ -60,15 +62,17 @@ void checkOverload(const Measurement& take, const std::vector<bool>& alive, std:
                 overload = findOverload(take, take.channels[c], take.channels[other]);
         const bool mayBeTheMotor = !overload && quantity == Quantity::displacement;
         const bool inputLives = alive[static_cast<std::size_t>(&take.input() - take.channels.data())];
-        if (!overload && inputLives)   // the other channel may be too noisy to tell
+        if (!overload && inputLives)  // the other channel may be too noisy to tell
             overload = findOverload(take, take.channels[c], take.input());
         if (overload)
-            problems.push_back({"overload", quantity, overload->compression, "dB", overload->db > fatalFrom && !mayBeTheMotor,
-                                "The " + std::string(name(quantity)) + " channel bends at level " + std::to_string(overload->level)
-                                    + ": its largest values come out " + figure(overload->compression) + " dB too small, by "
-                                    + figure(overload->db, "%.0f")
-                                    + " dB of distortion that is a function of its own value alone; use a larger range or play more quietly."
-                                    + (mayBeTheMotor ? " A force factor that falls on one side looks much the same." : "")});
+            problems.push_back(
+                {"overload", quantity, overload->compression, "dB", overload->db > fatalFrom && !mayBeTheMotor,
+                 "The " + std::string(name(quantity)) + " channel bends at level " + std::to_string(overload->level)
+                     + ": its largest values come out " + figure(overload->compression) + " dB too small, by "
+                     + figure(overload->db, "%.0f")
+                     + " dB of distortion that is a function of its own value alone; use a larger range or play more "
+                       "quietly."
+                     + (mayBeTheMotor ? " A force factor that falls on one side looks much the same." : "")});
     }
 }
 
@@ -80,13 +84,14 @@ void dropConsequences(std::vector<Problem>& problems)
         if (p.kind != "not-settled" && p.kind != "poor-repeatability" && p.kind != "low-snr" && p.kind != "hum")
             return false;
         return std::any_of(causes.begin(), causes.end(), [&](const Problem& cause) {
-            return (cause.kind == "clock-drift" || cause.kind == "dropout" || cause.kind == "gain-jump" || (cause.kind == "hum" && p.kind != "hum"))
-                && cause.fatal && (!cause.channel || cause.channel == p.channel);
+            return (cause.kind == "clock-drift" || cause.kind == "dropout" || cause.kind == "gain-jump"
+                    || (cause.kind == "hum" && p.kind != "hum"))
+                   && cause.fatal && (!cause.channel || cause.channel == p.channel);
         });
     });
 }
 
-} // namespace
+}  // namespace
 
 bool CheckReport::fitForUse() const
 {
@@ -101,15 +106,16 @@ std::string CheckReport::verdict() const
     if (problems.empty())
         return "The take is fit for use.";
     return "The take is fit for use, with " + std::to_string(problems.size())
-         + (problems.size() == 1 ? " remark." : " remarks.");
+           + (problems.size() == 1 ? " remark." : " remarks.");
 }
 
 CheckReport check(const Measurement& take)
 {
-    take.input();   // throws when there is none
+    take.input();  // throws when there is none
     if (take.length() == 0)
         throw Error(Error::Kind::data, "The take has no samples.");
-    if (take.excitation && take.excitation->lines.empty() && take.excitation->totalSamples() <= static_cast<long>(take.length())) {
+    if (take.excitation && take.excitation->lines.empty()
+        && take.excitation->totalSamples() <= static_cast<long>(take.length())) {
         auto completed = take;
         completeExcitation(completed);
         if (!completed.excitation->lines.empty())
@@ -126,7 +132,8 @@ CheckReport check(const Measurement& take)
     if (take.input().assumed)
         problems.push_back({"assumed-input", take.input().quantity, 0.0, "", false,
                             "The " + std::string(name(take.input().quantity))
-                                + " was not measured but is what was meant to be played: what the amplifier adds will be taken for the loudspeaker's, and levels "
+                                + " was not measured but is what was meant to be played: what the amplifier adds will "
+                                  "be taken for the loudspeaker's, and levels "
                                   "are as right as the gain that was given."});
 
     const bool described = take.excitation && !take.excitation->lines.empty() && take.excitation->period > 1;
@@ -140,8 +147,8 @@ CheckReport check(const Measurement& take)
         for (std::size_t c = 0; c < take.channels.size(); ++c)
             if (alive[c])
                 alive[c] = described && take.excitation->periods > 1
-                             ? checkPeriods(take, take.channels[c], report.channels[c], problems)
-                             : isCoherent(take, take.channels[c], problems);
+                               ? checkPeriods(take, take.channels[c], report.channels[c], problems)
+                               : isCoherent(take, take.channels[c], problems);
         bool labelled = true;
         if (described) {
             checkClocks(take, alive, report.channels, problems);
@@ -161,8 +168,9 @@ CheckReport check(const Measurement& take)
         if (labelled)
             checkPhysics(take, judgeable, report.channels, problems);
     }
-    std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) { return a.fatal && !b.fatal; });
+    std::stable_sort(problems.begin(), problems.end(),
+                     [](const Problem& a, const Problem& b) { return a.fatal && !b.fatal; });
     return report;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -27,7 +27,8 @@ int wavRate(double sampleRate) { return std::max(1, static_cast<int>(std::lround
 /// The index of the first sample that is not finite; the length when there is none.
 std::size_t firstNotFinite(const std::vector<double>& x)
 {
-    return static_cast<std::size_t>(std::find_if_not(x.begin(), x.end(), [](double v) { return std::isfinite(v); }) - x.begin());
+    return static_cast<std::size_t>(std::find_if_not(x.begin(), x.end(), [](double v) { return std::isfinite(v); })
+                                    - x.begin());
 }
 
 fs::path audioPath(const MeasurementHeader& header, const fs::path& json)
@@ -47,7 +48,8 @@ Measurement readFolder(const fs::path& json)
     const auto audio = audioPath(header, json);
     auto wav = readWav(audio);
     const auto disagree = [&](const std::string& what) {
-        throw Error(Error::Kind::input, "'" + audio.string() + "' and '" + json.string() + "' do not belong together: " + what);
+        throw Error(Error::Kind::input,
+                    "'" + audio.string() + "' and '" + json.string() + "' do not belong together: " + what);
     };
     if (wav.channels.size() != measurement.channels.size())
         disagree("the WAV has " + std::to_string(wav.channels.size()) + " channels, the JSON describes "
@@ -81,13 +83,16 @@ Measurement readFolder(const fs::path& json)
 std::string lowerExtension(const fs::path& path)
 {
     auto text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
 }
 
 void requireWritable(const Measurement& measurement)
 {
-    const auto refuse = [](const std::string& why) { throw Error(Error::Kind::data, "The take cannot be written: " + why); };
+    const auto refuse = [](const std::string& why) {
+        throw Error(Error::Kind::data, "The take cannot be written: " + why);
+    };
     if (measurement.channels.empty() || measurement.length() == 0)
         refuse("it holds no samples.");
     if (!(std::isfinite(measurement.sampleRate) && measurement.sampleRate >= 1 && measurement.sampleRate <= 1e8))
@@ -119,12 +124,13 @@ double periodScatter(const std::vector<double>& x, const Excitation& e)
 
 SampleFormat sufficientFormat(const Measurement& measurement)
 {
-    constexpr double highest = 1e-13;   // -130 dB
+    constexpr double highest = 1e-13;  // -130 dB
     const auto& e = measurement.excitation;
     const bool known = e && e->periods >= 2 && e->totalSamples() <= static_cast<long>(measurement.length());
-    const bool noisy = known && std::all_of(measurement.channels.begin(), measurement.channels.end(), [&](const Channel& channel) {
-                           return periodScatter(channel.samples, *e) > highest;
-                       });
+    const bool noisy = known
+                       && std::all_of(
+                           measurement.channels.begin(), measurement.channels.end(),
+                           [&](const Channel& channel) { return periodScatter(channel.samples, *e) > highest; });
     return noisy ? SampleFormat::float32 : SampleFormat::float64;
 }
 
@@ -138,12 +144,13 @@ void write(const Measurement& measurement, const fs::path& json, const std::stri
     }
     DraftFile wav(json.parent_path() / audio), header(json);
     writeWav(wav.path(), wavRate(measurement.sampleRate), samples, format);
-    header.write(measurementJson(measurement, audio).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    header.write(measurementJson(measurement, audio).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                 + "\n");
     wav.publish();
     header.publish();
 }
 
-} // namespace
+}  // namespace
 
 Take readTake(const fs::path& given)
 {
@@ -157,10 +164,14 @@ Take readTake(const fs::path& given)
         return readFolder(given);
     if (extension == ".mat")
         return importMat(given, {});
-    sizeOfFile(given);   // a path that does not exist deserves to be told so first
-    if (extension == ".wav" || extension == ".flac" || extension == ".aif" || extension == ".aiff" || extension == ".caf")
-        throw Error(Error::Kind::input, "'" + given.string() + "' is a recording, not a take yet; make one of it and of the plan that was played: excursion import '"
-                                            + given.string() + "' --plan plan --map 1=voltage:16 --map 2=current:4 --out take.");
+    sizeOfFile(given);  // a path that does not exist deserves to be told so first
+    if (extension == ".wav" || extension == ".flac" || extension == ".aif" || extension == ".aiff"
+        || extension == ".caf")
+        throw Error(
+            Error::Kind::input,
+            "'" + given.string()
+                + "' is a recording, not a take yet; make one of it and of the plan that was played: excursion import '"
+                + given.string() + "' --plan plan --map 1=voltage:16 --map 2=current:4 --out take.");
     return importText(given);
 }
 
@@ -169,7 +180,9 @@ Measurement readMeasurement(const fs::path& path)
     auto take = readTake(path);
     if (auto* measurement = std::get_if<Measurement>(&take))
         return std::move(*measurement);
-    throw Error(Error::Kind::data, "'" + path.string() + "' is a frequency response, but this verb needs the samples of a take; identify, fit, compare, diagnose, add, improve and bla "
+    throw Error(Error::Kind::data, "'" + path.string()
+                                       + "' is a frequency response, but this verb needs the samples of a take; "
+                                         "identify, fit, compare, diagnose, add, improve and bla "
                                          "work on a response.");
 }
 
@@ -185,4 +198,4 @@ void writePlan(const Measurement& plan, const fs::path& folder)
     write(plan, folder / "plan.json", "excitation.wav", SampleFormat::float32);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,7 +11,7 @@ struct UnitEntry {
     Quantity quantity;
     std::string_view written, unit;
     double factor;
-    bool listed;   ///< named in sentences; the others are further spellings
+    bool listed;  ///< named in sentences; the others are further spellings
 };
 
 using enum Quantity;
@@ -23,8 +23,8 @@ constexpr UnitEntry entries[] {
     {displacement, "m", "m", 1, true},
     {displacement, "mm", "m", 1e-3, true},
     {displacement, "um", "m", 1e-6, true},
-    {displacement, "\u00b5m", "m", 1e-6, false},   // micro sign
-    {displacement, "\u03bcm", "m", 1e-6, false},   // Greek mu
+    {displacement, "\u00b5m", "m", 1e-6, false},  // micro sign
+    {displacement, "\u03bcm", "m", 1e-6, false},  // Greek mu
     {displacement, "cm", "m", 1e-2, false},
     {displacement, "V", "V", 1, true},
     {velocity, "m/s", "m/s", 1, true},
@@ -50,14 +50,15 @@ constexpr UnitEntry entries[] {
 /// A capital M is mega: "MV" is not "mV".
 bool sameButForCase(std::string_view a, std::string_view b)
 {
-    if (a.size() > 1 && b.size() > 1 && a.front() == 'm' && b.front() == 'M' && (a[1] == 'V' || a[1] == 'A' || a[1] == 'P' || a[1] == 'N'))
+    if (a.size() > 1 && b.size() > 1 && a.front() == 'm' && b.front() == 'M'
+        && (a[1] == 'V' || a[1] == 'A' || a[1] == 'P' || a[1] == 'N'))
         return false;
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-        return std::tolower(x) == std::tolower(y);   // ASCII letters; bytes beyond are left alone by the C locale
+        return std::tolower(x) == std::tolower(y);  // ASCII letters; bytes beyond are left alone by the C locale
     });
 }
 
-} // namespace
+}  // namespace
 
 std::optional<UnitScale> unitNamed(Quantity quantity, std::string_view text)
 {
@@ -80,4 +81,4 @@ std::string acceptedUnits(Quantity quantity)
     return text;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -24,4 +24,4 @@ std::optional<UnitScale> unitNamed(Quantity, std::string_view);
 /// "m, mm, um or V": for sentences that refuse a unit.
 std::string acceptedUnits(Quantity);
 
-} // namespace excursion
+}  // namespace excursion

@@ -47,7 +47,8 @@ std::vector<Band> bandsOf(const Measurement& take, const Channel& channel, int l
             begin = line;
             lines = 0;
         }
-        bands.back().scatter += std::max(0.0, noise.variance[k] - (input[k] > 0.0 ? output[k] / input[k] * inputNoise.variance[k] : 0.0));
+        bands.back().scatter += std::max(
+            0.0, noise.variance[k] - (input[k] > 0.0 ? output[k] / input[k] * inputNoise.variance[k] : 0.0));
         bands.back().power += output[k];
         ++lines;
         bands.back().lines = lines;
@@ -61,7 +62,8 @@ std::vector<Band> bandsOf(const Measurement& take, const Channel& channel, int l
     return bands;
 }
 
-/// Scatter as noise of the same size in every band and a share of the power: v = a + c p, neither negative, each band known to the same share of v.
+/// Scatter as noise of the same size in every band and a share of the power: v = a + c p, neither negative, each band
+/// known to the same share of v.
 struct Split {
     double noise = 0.0, share = 0.0;
 };
@@ -82,7 +84,7 @@ Split splitOf(const std::vector<Band>& bands)
             best = {a, c};
         }
     };
-    constexpr int rounds = 10;   // the weights follow what is expected
+    constexpr int rounds = 10;  // the weights follow what is expected
     for (int round = 0; round < rounds; ++round) {
         double aa = 0.0, ac = 0.0, cc = 0.0, va = 0.0, vc = 0.0;
         for (std::size_t b = 0; b < bands.size(); ++b) {
@@ -102,7 +104,7 @@ Split splitOf(const std::vector<Band>& bands)
     return best;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
 {
@@ -111,21 +113,23 @@ std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
         return std::nullopt;
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     const auto scatter = periodNoise(take, channel, loudest);
-    const auto loud = bandsOf(take, channel, loudest, scatter), quiet = bandsOf(take, channel, 0, periodNoise(take, channel, 0));
+    const auto loud = bandsOf(take, channel, loudest, scatter),
+               quiet = bandsOf(take, channel, 0, periodNoise(take, channel, 0));
     constexpr std::size_t fewest = 4;
-    if (loud.size() < fewest || quiet.size() != loud.size() || !std::all_of(loud.begin(), loud.end(), [](const Band& b) { return b.scatter > 0.0; }))
+    if (loud.size() < fewest || quiet.size() != loud.size()
+        || !std::all_of(loud.begin(), loud.end(), [](const Band& b) { return b.scatter > 0.0; }))
         return std::nullopt;
     const auto split = splitOf(loud);
-    Band loudly, quietly;   // where far more than noise is scattered
+    Band loudly, quietly;  // where far more than noise is scattered
     constexpr double farMore = 2.0;
     for (std::size_t b = 0; b < loud.size(); ++b)
         if (split.share * loud[b].power > farMore * split.noise) {
             loudly = {loudly.scatter + loud[b].scatter, loudly.power + loud[b].power, 0};
             quietly = {quietly.scatter + quiet[b].scatter, quietly.power + quiet[b].power, 0};
         }
-    constexpr double leastRise = 0.3, follows = 0.5;   // decades; a share of that
+    constexpr double leastRise = 0.3, follows = 0.5;  // decades; a share of that
     // A transient that has not quite died away is not worth a word, nor is what noise hides.
-    constexpr double worthAWord = 0.1;   // of all that is scattered within the band
+    constexpr double worthAWord = 0.1;  // of all that is scattered within the band
     double wander = 0.0, all = 0.0;
     for (const auto& band : loud)
         wander += band.lines * split.share * band.power;
@@ -134,9 +138,10 @@ std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
     if (wander < worthAWord * all)
         return std::nullopt;
     const double rise = std::log10(loudly.power / std::max(quietly.power, 1e-300));
-    if (!(loudly.scatter > 0.0) || rise < leastRise || std::log10(loudly.scatter / std::max(quietly.scatter, 1e-300)) < follows * rise)
+    if (!(loudly.scatter > 0.0) || rise < leastRise
+        || std::log10(loudly.scatter / std::max(quietly.scatter, 1e-300)) < follows * rise)
         return std::nullopt;
     return 10.0 * std::log10(split.share);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -79,7 +79,7 @@ std::uint64_t claimedEnd(const fs::path& path)
     } else
         return 0;
     const std::string samples = form == "FORM" ? "SSND" : "data";
-    std::uint64_t longDataSize = 0;   // RF64 keeps it in its ds64 chunk
+    std::uint64_t longDataSize = 0;  // RF64 keeps it in its ds64 chunk
     while (head.good()) {
         const auto chunk = head.text();
         const auto size = head.number(form == "caff" ? 8 : 4);
@@ -90,7 +90,7 @@ std::uint64_t claimedEnd(const fs::path& path)
             head.number(8);
             longDataSize = head.number(8);
         } else if (chunk == samples) {
-            if (form == "caff" && size == ~std::uint64_t(0))   // to the end of the file
+            if (form == "caff" && size == ~std::uint64_t(0))  // to the end of the file
                 return start;
             const auto whole = form == "RF64" && size == 0xFFFFFFFFu ? longDataSize : size;
             return start + std::min(whole, farAway);
@@ -116,7 +116,8 @@ std::uint64_t bytesOfSample(int format)
 
 enum class Container { wav, sound };
 
-constexpr std::uint64_t mostSamples = std::uint64_t(1) << 31;   // of all channels of a compressed file, which may claim any number
+// of all channels of a compressed file, which may claim any number
+constexpr std::uint64_t mostSamples = std::uint64_t(1) << 31;
 
 /// @param allowed  wav: nothing but that; sound: AIFF, CAF and FLAC, too
 Wav readSamples(const fs::path& path, Container allowed)
@@ -126,13 +127,15 @@ Wav readSamples(const fs::path& path, Container allowed)
     const SoundFile file(sf_open(path.string().c_str(), SFM_READ, &info));
     const int container = info.format & SF_FORMAT_TYPEMASK;
     const bool wav = container == SF_FORMAT_WAV || container == SF_FORMAT_WAVEX || container == SF_FORMAT_RF64;
-    const bool flac = container == SF_FORMAT_FLAC, other = flac || container == SF_FORMAT_AIFF || container == SF_FORMAT_CAF;
+    const bool flac = container == SF_FORMAT_FLAC,
+               other = flac || container == SF_FORMAT_AIFF || container == SF_FORMAT_CAF;
     const auto claimed = claimedEnd(path);
     if (claimed > size)
         refuse(path, "is truncated: its header claims " + std::to_string(claimed) + " bytes, but the file has only "
                          + std::to_string(size) + "; copy it again.");
     if (!file)
-        refuse(path, std::string(allowed == Container::wav ? "is not a readable WAV file (" : "is not a readable WAV, AIFF, CAF or FLAC file (")
+        refuse(path, std::string(allowed == Container::wav ? "is not a readable WAV file ("
+                                                           : "is not a readable WAV, AIFF, CAF or FLAC file (")
                          + sf_strerror(nullptr) + ").");
     const auto sampleBytes = bytesOfSample(info.format);
     if (allowed == Container::wav && (!wav || claimed == 0 || sampleBytes == 0))
@@ -142,16 +145,17 @@ Wav readSamples(const fs::path& path, Container allowed)
     if (info.frames <= 0 || info.channels <= 0 || info.samplerate <= 0)
         refuse(path, "holds no samples.");
     const auto frames = static_cast<std::uint64_t>(info.frames), channels = static_cast<std::uint64_t>(info.channels);
-    const bool unknown = flac && info.frames == SF_COUNT_MAX;   // a stream that was not told its length
+    const bool unknown = flac && info.frames == SF_COUNT_MAX;  // a stream that was not told its length
     if (!unknown && frames > (flac ? mostSamples : size / sampleBytes) / channels)
-        refuse(path, "is damaged: its header claims " + std::to_string(frames) + " samples a channel, more than the file can hold.");
+        refuse(path, "is damaged: its header claims " + std::to_string(frames)
+                         + " samples a channel, more than the file can hold.");
 
     Wav sound;
     sound.sampleRate = info.samplerate;
     sound.channels.assign(channels, {});
     if (!flac)
         for (auto& channel : sound.channels)
-            channel.reserve(frames);   // the file has as many bytes
+            channel.reserve(frames);  // the file has as many bytes
     std::vector<double> interleaved(static_cast<std::size_t>(framesAtOnce) * channels);
     std::size_t done = 0;
     while (unknown || done < frames) {
@@ -161,7 +165,8 @@ Wav readSamples(const fs::path& path, Container allowed)
         if (read <= 0)
             refuse(path, "is truncated: only " + std::to_string(done) + " of its " + std::to_string(frames)
                              + " samples a channel can be read; copy it again.");
-        const auto count = unknown ? static_cast<std::size_t>(read) : std::min(static_cast<std::size_t>(read), static_cast<std::size_t>(frames) - done);
+        const auto count = unknown ? static_cast<std::size_t>(read)
+                                   : std::min(static_cast<std::size_t>(read), static_cast<std::size_t>(frames) - done);
         if ((done + count) * channels > mostSamples && flac)
             refuse(path, "holds more than two thousand million samples; cut it into shorter recordings.");
         for (std::size_t c = 0; c < channels; ++c)
@@ -172,7 +177,7 @@ Wav readSamples(const fs::path& path, Container allowed)
     return sound;
 }
 
-} // namespace
+}  // namespace
 
 Wav readWav(const fs::path& path) { return readSamples(path, Container::wav); }
 
@@ -182,12 +187,12 @@ void writeWav(const fs::path& path, int sampleRate, std::span<const std::vector<
 {
     const std::size_t frames = channels.empty() ? 0 : channels.front().size();
     const std::size_t sampleBytes = format == SampleFormat::float64 ? 8 : 4;
-    const bool large = frames * channels.size() * sampleBytes > 4'000'000'000u;   // beyond what RIFF can count
+    const bool large = frames * channels.size() * sampleBytes > 4'000'000'000u;  // beyond what RIFF can count
     SF_INFO info {};
     info.samplerate = sampleRate;
     info.channels = static_cast<int>(channels.size());
     info.format = (large ? SF_FORMAT_RF64 : SF_FORMAT_WAV)
-                | (format == SampleFormat::float64 ? SF_FORMAT_DOUBLE : SF_FORMAT_FLOAT);
+                  | (format == SampleFormat::float64 ? SF_FORMAT_DOUBLE : SF_FORMAT_FLOAT);
     SoundFile file(sf_open(path.string().c_str(), SFM_WRITE, &info));
     if (!file)
         refuse(path, "cannot be written (" + std::string(sf_strerror(nullptr)) + ").");
@@ -201,7 +206,8 @@ void writeWav(const fs::path& path, int sampleRate, std::span<const std::vector<
         for (std::size_t n = 0; n < count; ++n)
             for (std::size_t c = 0; c < channels.size(); ++c)
                 interleaved[n * channels.size() + c] = channels[c][done + n];
-        if (sf_writef_double(file.get(), interleaved.data(), static_cast<sf_count_t>(count)) != static_cast<sf_count_t>(count))
+        if (sf_writef_double(file.get(), interleaved.data(), static_cast<sf_count_t>(count))
+            != static_cast<sf_count_t>(count))
             refuse(path, "cannot be written to its end (" + std::string(sf_strerror(file.get())) + ").");
         done += count;
     }
@@ -210,4 +216,4 @@ void writeWav(const fs::path& path, int sampleRate, std::span<const std::vector<
         refuse(path, "cannot be written to its end.");
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,9 +8,10 @@
 
 namespace excursion {
 
-/// What a WAV, or another file of uncompressed or losslessly compressed sound, holds: sample values, full scale 1.0, one vector a channel, all of the same length.
+/// What a WAV, or another file of uncompressed or losslessly compressed sound, holds: sample values, full scale 1.0,
+/// one vector a channel, all of the same length.
 struct Wav {
-    int sampleRate = 0;   ///< Hz; a WAV has whole ones only
+    int sampleRate = 0;  ///< Hz; a WAV has whole ones only
     std::vector<std::vector<double>> channels;
 };
 
@@ -25,6 +26,7 @@ Wav readSound(const std::filesystem::path&);
 enum class SampleFormat { float32, float64 };
 
 /// Writes a WAV at that very path (see DraftFile). Same samples, same bytes. Throws Error (input).
-void writeWav(const std::filesystem::path&, int sampleRate, std::span<const std::vector<double>> channels, SampleFormat);
+void writeWav(const std::filesystem::path&, int sampleRate, std::span<const std::vector<double>> channels,
+              SampleFormat);
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,7 +19,8 @@ double legalOffset(Quantity quantity)
 constexpr long longestLegalStandstill = 16;
 
 /// Behind the noise clipping leaves equal samples, ahead of it a bump. What shows both ways is told once.
-void checkClipping(const Measurement& take, const Channel& channel, ChannelFigures& figures, std::vector<Problem>& problems)
+void checkClipping(const Measurement& take, const Channel& channel, ChannelFigures& figures,
+                   std::vector<Problem>& problems)
 {
     const long equal = clippedSamples(channel);
     const auto piles = pileUps(take, channel);
@@ -32,17 +33,21 @@ void checkClipping(const Measurement& take, const Channel& channel, ChannelFigur
     figures.clipped = std::max(equal, piled);
     if (figures.clipped == 0)
         return;
-    const bool fatal = static_cast<double>(figures.clipped) > std::max(8.0, 1e-5 * static_cast<double>(channel.samples.size()));
+    const bool fatal = static_cast<double>(figures.clipped)
+                       > std::max(8.0, 1e-5 * static_cast<double>(channel.samples.size()));
     const std::string side = high && low ? "extremes" : high ? "highest values" : "lowest values";
     const std::string how = equal >= piled ? std::to_string(equal) + " samples stand flat at its extremes"
-                                           : "about " + std::to_string(piled) + " samples pile up at its " + side + ", within the noise";
-    problems.push_back({"clipping", channel.quantity, static_cast<double>(figures.clipped), "samples", fatal,
-                        "The " + std::string(name(channel.quantity)) + " channel clips: " + how + "; lower its gain or the level."});
+                                           : "about " + std::to_string(piled) + " samples pile up at its " + side
+                                                 + ", within the noise";
+    problems.push_back(
+        {"clipping", channel.quantity, static_cast<double>(figures.clipped), "samples", fatal,
+         "The " + std::string(name(channel.quantity)) + " channel clips: " + how + "; lower its gain or the level."});
 }
 
-} // namespace
+}  // namespace
 
-bool checkWaveform(const Measurement& take, const Channel& channel, ChannelFigures& figures, std::vector<Problem>& problems)
+bool checkWaveform(const Measurement& take, const Channel& channel, ChannelFigures& figures,
+                   std::vector<Problem>& problems)
 {
     const auto& x = channel.samples;
     const std::string who(name(channel.quantity));
@@ -75,4 +80,4 @@ bool checkWaveform(const Measurement& take, const Channel& channel, ChannelFigur
     return true;
 }
 
-} // namespace excursion
+}  // namespace excursion

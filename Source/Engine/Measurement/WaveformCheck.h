@@ -5,8 +5,9 @@
 
 namespace excursion {
 
-/// What the samples tell: dead (constant), clipping, offset, standstill. Of the excitation only its periods are used, where there
-/// are some, to tell noise from signal. Adds to the figures and to the problems; returns whether the channel is alive.
+/// What the samples tell: dead (constant), clipping, offset, standstill. Of the excitation only its periods are used,
+/// where there are some, to tell noise from signal. Adds to the figures and to the problems; returns whether the
+/// channel is alive.
 bool checkWaveform(const Measurement&, const Channel&, ChannelFigures&, std::vector<Problem>&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -50,7 +50,7 @@ double independentAverages(const std::vector<double>& window, std::size_t hop, i
     return segments / sum;
 }
 
-} // namespace
+}  // namespace
 
 int segmentFor(std::size_t length, int count, int longest, int shortest)
 {
@@ -70,7 +70,7 @@ bool WelchOptions::isValid(std::size_t length, std::string* reason) const
         return refuse(reason, "The overlap must lie in 0 .. 0.9.");
     if (length < 2 * static_cast<std::size_t>(N))
         return refuse(reason, "The record has " + std::to_string(length) + " samples, fewer than two segments of "
-                      + std::to_string(N) + "; choose a shorter segment.");
+                                  + std::to_string(N) + "; choose a shorter segment.");
     return true;
 }
 
@@ -85,7 +85,8 @@ WelchResult welch(std::span<const double> input, std::span<const double> output,
     options.segment = given.segmentOf(input.size());
 
     const auto N = static_cast<std::size_t>(options.segment);
-    const auto hop = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround((1.0 - options.overlap) * options.segment)));
+    const auto hop = std::max<std::size_t>(
+        1, static_cast<std::size_t>(std::lround((1.0 - options.overlap) * options.segment)));
     const auto window = windowOf(options);
     const std::size_t F = N / 2 - 1;
     std::vector<double> Suu(F, 0.0), Syy(F, 0.0);
@@ -130,4 +131,4 @@ WelchResult welch(const Measurement& take, Quantity output, const WelchOptions& 
     return welch(take.input().samples, channel->samples, take.sampleRate, options);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -18,7 +18,7 @@ namespace {
 
 Pnlss withoutTerms(const StateSpace& linear) { return withTerms(linear, Exponents(0, linear.order() + 1)); }
 
-} // namespace
+}  // namespace
 
 MatrixXd filtered(const StateSpace& G, const MatrixXd& columns)
 {
@@ -29,7 +29,10 @@ MatrixXd filtered(const StateSpace& G, const MatrixXd& columns)
 }
 
 BlockError::BlockError(const BlockModel& structure, const std::vector<PnlssRecord>& records)
-    : structure_(structure), recursion_(withoutTerms(structure.linear), true), records_(records), power_(judgedPower(records))
+    : structure_(structure),
+      recursion_(withoutTerms(structure.linear), true),
+      records_(records),
+      power_(judgedPower(records))
 {
 }
 
@@ -81,9 +84,9 @@ MatrixXd BlockError::factor(const VectorXd& values)
         if (model.hammerstein.size() + model.feedback.size() > 0)
             dG += derivatives(model, polynomial(model.hammerstein, u.array()) + polynomial(model.feedback, w.array()));
         MatrixXd rows(u.size(), values.size() + 1);
-        rows << dG, filtered(model.linear, powersOf(u, 2, model.hammerstein.size())), powersOf(w, 2, model.wiener.size()),
-            filtered(model.linear, powersOf(w, 2, model.feedback.size())), VectorXd::Ones(u.size()),
-            record.output - simulate(model, record.input);
+        rows << dG, filtered(model.linear, powersOf(u, 2, model.hammerstein.size())),
+            powersOf(w, 2, model.wiener.size()), filtered(model.linear, powersOf(w, 2, model.feedback.size())),
+            VectorXd::Ones(u.size()), record.output - simulate(model, record.input);
         MatrixXd judged = rows.bottomRows(rows.rows() - record.skip);
         qr.fold(judged);
     }
@@ -94,11 +97,12 @@ MatrixXd BlockError::derivatives(const BlockModel& model, const VectorXd& v) con
 {
     const auto linear = withoutTerms(model.linear);
     MatrixXd states, outputs, J(v.size(), recursion_.parameters());
-    recursion_.run(linear, v, VectorXd::Zero(model.linear.order()), std::numeric_limits<double>::max(), states, outputs);
+    recursion_.run(linear, v, VectorXd::Zero(model.linear.order()), std::numeric_limits<double>::max(), states,
+                   outputs);
     recursion_.differentiate(linear, v, states, [&](Index first, std::vector<MatrixXd>& d) {
         J.middleRows(first, d[0].rows()) = d[0].leftCols(J.cols());
     });
     return J;
 }
 
-} // namespace excursion
+}  // namespace excursion

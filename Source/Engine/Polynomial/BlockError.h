@@ -10,8 +10,8 @@
 
 namespace excursion {
 
-/// The simulation error of a block model, to be lowered in all its coefficients: A, B, C, D of G, then those of the polynomials, then the
-/// offset. With v = P_H(u) + P_F(w), dw = (dG)[u] the derivatives by those of G are
+/// The simulation error of a block model, to be lowered in all its coefficients: A, B, C, D of G, then those of the
+/// polynomials, then the offset. With v = P_H(u) + P_F(w), dw = (dG)[u] the derivatives by those of G are
 ///     dy = (1 + P_W'(w)) dw + G[P_F'(w) dw] + (dG)[v]
 /// A model whose G is not stable counts as one that runs away.
 class BlockError final : public SearchProblem {
@@ -26,7 +26,7 @@ public:
     Eigen::MatrixXd factor(const Eigen::VectorXd& values) override;
 
 private:
-    Eigen::MatrixXd derivatives(const BlockModel&, const Eigen::VectorXd& v) const;   // of G[v] by A, B, C, D
+    Eigen::MatrixXd derivatives(const BlockModel&, const Eigen::VectorXd& v) const;  // of G[v] by A, B, C, D
 
     BlockModel structure_;
     Recursion recursion_;
@@ -37,4 +37,4 @@ private:
 /// Each column through G, from rest.
 Eigen::MatrixXd filtered(const StateSpace& G, const Eigen::MatrixXd& columns);
 
-} // namespace excursion
+}  // namespace excursion

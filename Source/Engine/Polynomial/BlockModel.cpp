@@ -24,7 +24,10 @@ std::string_view name(BlockBranch branch)
     return "";
 }
 
-std::vector<BlockBranch> blockBranches() { return {BlockBranch::hammerstein, BlockBranch::wiener, BlockBranch::feedback}; }
+std::vector<BlockBranch> blockBranches()
+{
+    return {BlockBranch::hammerstein, BlockBranch::wiener, BlockBranch::feedback};
+}
 
 const VectorXd& BlockModel::of(BlockBranch branch) const
 {
@@ -41,14 +44,18 @@ const VectorXd& BlockOutputs::of(BlockBranch branch) const
     return branch == BlockBranch::hammerstein ? hammerstein : branch == BlockBranch::wiener ? wiener : feedback;
 }
 
-Index BlockModel::parameters() const { return 2 * linear.order() + 2 + hammerstein.size() + wiener.size() + feedback.size(); }
+Index BlockModel::parameters() const
+{
+    return 2 * linear.order() + 2 + hammerstein.size() + wiener.size() + feedback.size();
+}
 
 bool BlockModel::isValid(std::string* reason) const
 {
     if (!linear.isValid(reason))
         return false;
     if (linear.continuous() || linear.inputs() != 1 || linear.outputs() != 1)
-        return refuse(reason, "the linear part of a block model is one of discrete time, with one input and one output");
+        return refuse(reason,
+                      "the linear part of a block model is one of discrete time, with one input and one output");
     if (!hammerstein.allFinite() || !wiener.allFinite() || !feedback.allFinite() || !std::isfinite(offset))
         return refuse(reason, "a coefficient of a polynomial is not finite");
     if (std::max({hammerstein.size(), wiener.size(), feedback.size()}) > 19)
@@ -108,8 +115,11 @@ Pnlss written(const BlockModel& model, Index copies)
         throw Error(Error::Kind::usage, "The model cannot be written as PNLSS: " + reason + ".");
     const auto& G = model.linear;
     const auto n = G.order(), states = copies * n;
-    const auto highest = static_cast<int>(std::max({model.hammerstein.size(), model.wiener.size(), model.feedback.size()})) + 1;
-    const Exponents powers = highest > 1 ? monomials(static_cast<int>(n) + 1, 2, highest) : Exponents(0, n + 1);   // of (x, u)
+    const auto highest = static_cast<int>(
+                             std::max({model.hammerstein.size(), model.wiener.size(), model.feedback.size()}))
+                         + 1;
+    // of (x, u)
+    const Exponents powers = highest > 1 ? monomials(static_cast<int>(n) + 1, 2, highest) : Exponents(0, n + 1);
     const auto K = 1 + powers.rows();
     Pnlss result;
     result.linear.sampleRate = G.sampleRate;
@@ -134,7 +144,7 @@ Pnlss written(const BlockModel& model, Index copies)
         for (Index v = 0; v <= n; ++v)
             share *= std::pow(v < n ? G.C(0, v) : G.D(0, 0), row[v]) / std::tgamma(row[v] + 1.0);
         const double driving = coefficient(model.feedback, degree) * share
-                             + (row[n] == degree ? coefficient(model.hammerstein, degree) : 0.0);
+                               + (row[n] == degree ? coefficient(model.hammerstein, degree) : 0.0);
         result.E.col(k).tail(n) = G.B * driving;
         result.F(0, k) = G.D(0, 0) * driving + coefficient(model.wiener, degree) * share;
     }
@@ -143,10 +153,10 @@ Pnlss written(const BlockModel& model, Index copies)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 Pnlss pnlssOf(const BlockModel& model) { return written(model, 2); }
 
 Pnlss closedLoop(const BlockModel& model) { return written(model, 1); }
 
-} // namespace excursion
+}  // namespace excursion

@@ -45,6 +45,9 @@ Named<BlockModel> readBlockModel(const std::filesystem::path& path)
     return blockModelFromJson(JsonField(document, "", path.string()));
 }
 
-void writeBlockModel(const Named<BlockModel>& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
+void writeBlockModel(const Named<BlockModel>& named, const std::filesystem::path& path)
+{
+    writeJson(toJson(named), path);
+}
 
-} // namespace excursion
+}  // namespace excursion

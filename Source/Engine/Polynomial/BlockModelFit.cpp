@@ -24,7 +24,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What is linear in the unknowns: the outputs of [1, w], then of the powers of each branch in the order of blockBranches().
+/// What is linear in the unknowns: the outputs of [1, w], then of the powers of each branch in the order of
+/// blockBranches().
 MatrixXd regressorsOf(const StateSpace& G, const VectorXd& u, Index powers)
 {
     const VectorXd w = simulate(G, u);
@@ -43,7 +44,8 @@ std::vector<Index> columnsOf(const std::vector<BlockBranch>& branches, Index pow
     return columns;
 }
 
-/// From the coefficients of these columns. The gain c of w goes into G: w' = c w, and G[P(u)] = G'[P(u) / c], P(w) = P(w' / c).
+/// From the coefficients of these columns. The gain c of w goes into G: w' = c w, and G[P(u)] = G'[P(u) / c], P(w) =
+/// P(w' / c).
 BlockModel assembled(StateSpace G, const std::vector<BlockBranch>& branches, const VectorXd& coefficients, Index powers)
 {
     BlockModel model;
@@ -72,10 +74,11 @@ struct Candidate {
     SearchSummary summary;
 };
 
-Candidate refined(const BlockModel& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& judging,
-                  int iterations, const std::function<void()>& begun)
+Candidate refined(const BlockModel& start, const std::vector<PnlssRecord>& estimation,
+                  const std::vector<PnlssRecord>& judging, int iterations, const std::function<void()>& begun)
 {
-    Candidate result {start, start.isValid() ? simulationErrorDb(start, judging) : std::numeric_limits<double>::infinity(), {}};
+    Candidate result {
+        start, start.isValid() ? simulationErrorDb(start, judging) : std::numeric_limits<double>::infinity(), {}};
     if (iterations == 0 || !std::isfinite(result.errorDb))
         return result;
     BlockError problem(start, estimation);
@@ -121,7 +124,7 @@ std::map<BlockBranch, double> powersDb(const BlockModel& model, const std::vecto
     return powers;
 }
 
-} // namespace
+}  // namespace
 
 bool BlockModelFitOptions::isValid(std::string* reason) const
 {
@@ -133,7 +136,8 @@ bool BlockModelFitOptions::isValid(std::string* reason) const
 }
 
 BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRecord>& estimation,
-                            const std::vector<PnlssRecord>& validation, const BlockModelFitOptions& options, const Progress& progress)
+                            const std::vector<PnlssRecord>& validation, const BlockModelFitOptions& options,
+                            const Progress& progress)
 {
     std::string reason;
     BlockModel start;
@@ -141,7 +145,8 @@ BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRec
     if (!options.isValid(&reason) || !start.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
     if (!isStable(linear))
-        throw Error(Error::Kind::usage, "The model cannot be fitted: its linear part is not stable; stabilize it first.");
+        throw Error(Error::Kind::usage,
+                    "The model cannot be fitted: its linear part is not stable; stabilize it first.");
     requireFitting(estimation, validation, 1, 1);
     const Index powers = options.degree - 1;
     const auto solved = [&](const StateSpace& G, const MatrixXd& R, const std::vector<BlockBranch>& branches) {
@@ -150,7 +155,7 @@ BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRec
     };
     const auto& judging = validation.empty() ? estimation : validation;
     const int trialIterations = std::min(options.maximumIterations, 10);
-    constexpr double roundingDb = -250.0;   // nothing is left to explain
+    constexpr double roundingDb = -250.0;  // nothing is left to explain
     double fraction = 0.0;
     const auto tell = [&] { progress.at(fraction, "fitting block models"); };
     tell();
@@ -191,7 +196,8 @@ BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRec
     result.model = best.model;
     result.iterations = best.summary.iterations;
     result.converged = best.summary.converged;
-    result.reason = options.maximumIterations > 0 ? best.summary.reason : "the branches that are worthwhile, not refined";
+    result.reason = options.maximumIterations > 0 ? best.summary.reason
+                                                  : "the branches that are worthwhile, not refined";
     result.powerDb = powersDb(result.model, judging);
     result.estimationDb = simulationErrorDb(result.model, estimation);
     result.validationDb = simulationErrorDb(result.model, validation);
@@ -199,4 +205,4 @@ BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRec
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

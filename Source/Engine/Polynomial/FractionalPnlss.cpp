@@ -34,7 +34,8 @@ Eigen::MatrixXcd responseAt(const StateSpace& linear, const Eigen::VectorXcd& op
 }
 
 /// withTerms() of the form, which knows discrete time alone.
-FractionalPnlss withTermsOf(StateSpace form, double alpha, const Eigen::Array<bool, Eigen::Dynamic, 1>& fractional, int degree, TermMask mask, bool offset)
+FractionalPnlss withTermsOf(StateSpace form, double alpha, const Eigen::Array<bool, Eigen::Dynamic, 1>& fractional,
+                            int degree, TermMask mask, bool offset)
 {
     form.sampleRate = 1.0;
     FractionalPnlss model {alpha, fractional, withTerms(form, degree, mask, offset)};
@@ -49,7 +50,7 @@ FractionalGrid gridOf(double sampleRate, int substeps, double seconds)
     return {sampleRate, substeps, {std::min(0.25 / seconds, 0.01 * nyquist), nyquist, 3.0}};
 }
 
-} // namespace
+}  // namespace
 
 bool FractionalPnlss::isValid(std::string* reason) const
 {
@@ -66,8 +67,9 @@ bool FractionalPnlss::isValid(std::string* reason) const
 
 FractionalPnlss withTerms(const FractionalStateSpace& linear, int degree, TermMask mask, bool offset)
 {
-    return withTermsOf(linear.form, linear.alpha, Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(linear.form.order(), linear.alpha != 1.0), degree,
-                       mask, offset);
+    return withTermsOf(linear.form, linear.alpha,
+                       Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(linear.form.order(), linear.alpha != 1.0),
+                       degree, mask, offset);
 }
 
 FractionalPnlss withTerms(const MixedImpedance& driver, int degree, TermMask mask, bool offset)
@@ -77,7 +79,8 @@ FractionalPnlss withTerms(const MixedImpedance& driver, int degree, TermMask mas
                                            + ", not below 1: a model of integer order is the right one.");
     const double w0 = 2.0 * std::numbers::pi * driver.resonance, L = driver.semiInductance;
     StateSpace form;
-    form.A = MatrixXd {{0.0, 1.0, 0.0}, {-w0 * w0, -w0 / driver.quality, driver.motional}, {0.0, -1.0 / L, -driver.resistance / L}};
+    form.A = MatrixXd {
+        {0.0, 1.0, 0.0}, {-w0 * w0, -w0 / driver.quality, driver.motional}, {0.0, -1.0 / L, -driver.resistance / L}};
     form.B = MatrixXd {{0.0}, {0.0}, {1.0 / L}};
     form.C = MatrixXd {{0.0, 0.0, 1.0}};
     form.D = MatrixXd::Zero(1, 1);
@@ -98,7 +101,8 @@ std::vector<Eigen::MatrixXcd> respondLinear(const FractionalPnlss& model, const 
     return responses;
 }
 
-std::vector<FractionalIntegrator> integratorsOf(const Eigen::Array<bool, Eigen::Dynamic, 1>& fractional, double alpha, const FractionalGrid& grid)
+std::vector<FractionalIntegrator> integratorsOf(const Eigen::Array<bool, Eigen::Dynamic, 1>& fractional, double alpha,
+                                                const FractionalGrid& grid)
 {
     const auto whole = integratorFor(1.0, grid.step(), grid.band);
     const auto part = fractional.any() ? integratorFor(alpha, grid.step(), grid.band) : whole;
@@ -124,7 +128,8 @@ GridError errorOf(const FractionalPnlss& model, const FractionalGrid& grid, cons
     return {decibelsOf(error / power), isStable(model, grid)};
 }
 
-FractionalGrid gridFor(const FractionalPnlss& model, double sampleRate, const std::vector<double>& frequency, double seconds, double tolerance)
+FractionalGrid gridFor(const FractionalPnlss& model, double sampleRate, const std::vector<double>& frequency,
+                       double seconds, double tolerance)
 {
     requireValid(model);
     if (!(sampleRate > 0.0) || !(seconds > 0.0) || !(tolerance > 0.0))
@@ -148,7 +153,7 @@ StateSpace expandedLinear(const FractionalPnlss& model, const FractionalGrid& gr
     Index cells = 0;
     for (const auto& integrator : integrators)
         cells += integrator.cells();
-    const Index size = cells + 3 * n;   // cells, then v(t-1), v(t-2), v(t-3)
+    const Index size = cells + 3 * n;  // cells, then v(t-1), v(t-2), v(t-3)
     MatrixXd held = MatrixXd::Zero(n, size), own = MatrixXd::Zero(size, size), ofNew = MatrixXd::Zero(size, n);
     Eigen::VectorXd gain(n);
     Index at = 0;
@@ -190,9 +195,10 @@ MatrixXd simulate(const FractionalPnlss& model, const MatrixXd& input, const Fra
         throw Error(Error::Kind::usage, "The input does not fit the model.");
     FractionalRecursion::Trajectory run;
     run.output = MatrixXd::Zero(input.rows(), model.form.linear.outputs());
-    if (!FractionalRecursion(model, grid, false, false).run(model, fineInput(input, grid.substeps, false, 0), 1e100, run))
+    if (!FractionalRecursion(model, grid, false, false)
+             .run(model, fineInput(input, grid.substeps, false, 0), 1e100, run))
         run.output.setConstant(std::numeric_limits<double>::quiet_NaN());
     return run.output;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,12 +13,13 @@ using Json = nlohmann::ordered_json;
 constexpr auto fractionalFormat = "excursion-fractional-pnlss";
 constexpr int fractionalVersion = 1;
 
-} // namespace
+}  // namespace
 
 Json toJson(const NamedFractionalPnlss& named)
 {
     const auto& model = named.model;
-    Json document {{"format", fractionalFormat}, {"version", fractionalVersion}, {"name", named.name}, {"alpha", model.alpha}};
+    Json document {
+        {"format", fractionalFormat}, {"version", fractionalVersion}, {"name", named.name}, {"alpha", model.alpha}};
     document["fractional"] = std::vector<bool>(model.fractional.begin(), model.fractional.end());
     document["grid"] = {{"sampleRate", named.grid.sampleRate},
                         {"substeps", named.grid.substeps},
@@ -47,9 +48,10 @@ NamedFractionalPnlss fractionalPnlssFromJson(const JsonField& field)
     if (!model.isValid(&reason))
         field.refuse("a valid model, but " + reason);
     const auto grid = field.at("grid");
-    named.grid = {grid.at("sampleRate").number(),
-                  grid.at("substeps").count(1, 256),
-                  {grid.at("lowFrequency").number(), grid.at("highFrequency").number(), grid.at("cellsPerDecade").number()}};
+    named.grid = {
+        grid.at("sampleRate").number(),
+        grid.at("substeps").count(1, 256),
+        {grid.at("lowFrequency").number(), grid.at("highFrequency").number(), grid.at("cellsPerDecade").number()}};
     if (!(named.grid.sampleRate > 0.0))
         grid.at("sampleRate").refuse("a sample rate above 0 Hz");
     if (!named.grid.band.isValid(&reason))
@@ -63,6 +65,9 @@ NamedFractionalPnlss readFractionalPnlss(const std::filesystem::path& path)
     return fractionalPnlssFromJson(JsonField(document, "", path.string()));
 }
 
-void writeFractionalPnlss(const NamedFractionalPnlss& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
+void writeFractionalPnlss(const NamedFractionalPnlss& named, const std::filesystem::path& path)
+{
+    writeJson(toJson(named), path);
+}
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,10 +10,11 @@
 
 namespace excursion {
 
-/// A fractional PNLSS model with the names of what it connects, and the grid that it was fitted on: the document "excursion-fractional-pnlss" 1.
+/// A fractional PNLSS model with the names of what it connects, and the grid that it was fitted on: the document
+/// "excursion-fractional-pnlss" 1.
 struct NamedFractionalPnlss {
     std::string name;
-    std::vector<std::string> inputs, outputs;   ///< quantities, "voltage"
+    std::vector<std::string> inputs, outputs;  ///< quantities, "voltage"
     FractionalPnlss model;
     FractionalGrid grid;
 };
@@ -26,4 +27,4 @@ NamedFractionalPnlss fractionalPnlssFromJson(const JsonField&);
 NamedFractionalPnlss readFractionalPnlss(const std::filesystem::path&);
 void writeFractionalPnlss(const NamedFractionalPnlss&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,13 +19,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double far = 1e100;   // no state of a loudspeaker is
+constexpr double far = 1e100;  // no state of a loudspeaker is
 
 class FractionalSimulationError : public SearchProblem {
 public:
-    FractionalSimulationError(const FractionalPnlss& structure, const FractionalGrid& grid, const std::vector<PnlssRecord>& records,
-                              const FractionalPnlssOptions& options)
-        : structure_(structure), records_(records), recursion_(structure, grid, options.linearFree, options.alphaFree), power_(judgedPower(records)),
+    FractionalSimulationError(const FractionalPnlss& structure, const FractionalGrid& grid,
+                              const std::vector<PnlssRecord>& records, const FractionalPnlssOptions& options)
+        : structure_(structure),
+          records_(records),
+          recursion_(structure, grid, options.linearFree, options.alphaFree),
+          power_(judgedPower(records)),
           runs_(records.size())
     {
         for (const auto& record : records)
@@ -55,7 +58,7 @@ public:
 
     MatrixXd factor(const VectorXd& values) override
     {
-        cost(values);   // for the trajectories
+        cost(values);  // for the trajectories
         const auto model = modelAt(values);
         TallQr qr(recursion_.parameters() + 1);
         for (std::size_t k = 0; k < records_.size(); ++k) {
@@ -86,11 +89,13 @@ private:
     std::vector<FractionalRecursion::Trajectory> runs_;
 };
 
-/// The standard error of the last parameter from [J, rest]'s factor; directions that the data does not see, as a change of the states, left out.
+/// The standard error of the last parameter from [J, rest]'s factor; directions that the data does not see, as a change
+/// of the states, left out.
 double lastDeviation(const MatrixXd& R, Index samples, double tolerance)
 {
     const auto P = R.cols() - 1;
-    const VectorXd scale = R.leftCols(P).colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+    const VectorXd scale = R.leftCols(P).colwise().norm().transpose().unaryExpr(
+        [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
     const auto svd = thinSvd(R.topLeftCorner(P, P) * scale.asDiagonal());
     double sum = 0.0, rank = 0.0;
     for (Index k = 0; k < P; ++k)
@@ -102,15 +107,17 @@ double lastDeviation(const MatrixXd& R, Index samples, double tolerance)
     return scale[P - 1] * std::sqrt(variance * sum);
 }
 
-} // namespace
+}  // namespace
 
 bool FractionalPnlssOptions::isValid(std::string* reason) const
 {
-    const bool valid = maximumIterations >= 1 && costTolerance > 0.0 && costTolerance < 1.0 && rankTolerance > 0.0 && rankTolerance < 1.0;
+    const bool valid = maximumIterations >= 1 && costTolerance > 0.0 && costTolerance < 1.0 && rankTolerance > 0.0
+                       && rankTolerance < 1.0;
     return valid || refuse(reason, "a fit needs at least one iteration, and tolerances between 0 and 1");
 }
 
-double relativeErrorDb(const FractionalPnlss& model, const FractionalGrid& grid, const std::vector<PnlssRecord>& records)
+double relativeErrorDb(const FractionalPnlss& model, const FractionalGrid& grid,
+                       const std::vector<PnlssRecord>& records)
 {
     const FractionalRecursion recursion(model, grid, false, false);
     FractionalRecursion::Trajectory run;
@@ -123,8 +130,10 @@ double relativeErrorDb(const FractionalPnlss& model, const FractionalGrid& grid,
     return outputErrorDb(outputs, records);
 }
 
-FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const FractionalGrid& grid, const std::vector<PnlssRecord>& estimation,
-                                      const std::vector<PnlssRecord>& validation, const FractionalPnlssOptions& options, const Progress& progress)
+FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const FractionalGrid& grid,
+                                      const std::vector<PnlssRecord>& estimation,
+                                      const std::vector<PnlssRecord>& validation, const FractionalPnlssOptions& options,
+                                      const Progress& progress)
 {
     std::string reason;
     if (!start.isValid(&reason) || !options.isValid(&reason))
@@ -143,12 +152,14 @@ FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const Fracti
     searching.costTolerance = options.costTolerance;
     searching.rankTolerance = options.rankTolerance;
     searching.begun = [&] {
-        progress.at(static_cast<double>(result.iterations++) / options.maximumIterations, "fitting the fractional polynomial model");
+        progress.at(static_cast<double>(result.iterations++) / options.maximumIterations,
+                    "fitting the fractional polynomial model");
     };
     searching.accepted = [&](const VectorXd& values, double cost) {
         result.history.push_back(decibelsOf(cost));
         const auto model = problem.modelAt(values);
-        const double validationDb = validation.empty() ? std::numeric_limits<double>::quiet_NaN() : relativeErrorDb(model, grid, validation);
+        const double validationDb = validation.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                       : relativeErrorDb(model, grid, validation);
         const double verdict = validation.empty() ? cost : validationDb;
         if (verdict < bestJudged) {
             bestJudged = verdict;
@@ -173,4 +184,4 @@ FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const Fracti
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

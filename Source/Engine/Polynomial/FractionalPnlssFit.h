@@ -8,10 +8,10 @@ namespace excursion {
 
 struct FractionalPnlssOptions {
     int maximumIterations = 50;
-    double costTolerance = 1e-5;     ///< as PnlssFitOptions; an iteration takes longer here
+    double costTolerance = 1e-5;  ///< as PnlssFitOptions; an iteration takes longer here
     double rankTolerance = 1e-13;
-    bool linearFree = true;          ///< A, B, C, D move too
-    bool alphaFree = true;           ///< alpha moves too
+    bool linearFree = true;  ///< A, B, C, D move too
+    bool alphaFree = true;   ///< alpha moves too
 
     bool isValid(std::string* reason = nullptr) const;
 };
@@ -19,23 +19,28 @@ struct FractionalPnlssOptions {
 /// What became of a fit; the default is failure.
 struct FractionalPnlssFit {
     FractionalPnlss model;
-    double alphaDeviation = 0.0;   ///< standard error of alpha, what is left taken for white noise; 0 where alpha was given
-    double estimationDb = 0.0, validationDb = 0.0;   ///< relative rms error (seed 4.26) of the model that is returned; validation NaN without records
+    /// standard error of alpha, what is left taken for white noise; 0 where alpha was given
+    double alphaDeviation = 0.0;
+    /// relative rms error (seed 4.26) of the model that is returned; validation NaN without records
+    double estimationDb = 0.0, validationDb = 0.0;
     int iterations = 0;
     bool converged = false;
-    bool stable = false;           ///< the linear part on the grid is stable, and no record made the model run away
+    bool stable = false;  ///< the linear part on the grid is stable, and no record made the model run away
     std::string reason = "the fit was not run";
-    std::vector<double> history;   ///< relative rms error in dB on the estimation records after each accepted step
+    std::vector<double> history;  ///< relative rms error in dB on the estimation records after each accepted step
 };
 
 /// As relativeErrorDb() of a PNLSS model, on a grid.
 double relativeErrorDb(const FractionalPnlss&, const FractionalGrid&, const std::vector<PnlssRecord>&);
 
-/// Identification of the fractional polynomial model in the time domain, which the seed leaves to the future (7.2): the simulation error of the ladder
-/// realization is lowered as that of a PNLSS model is (see fitPnlss), with the exact Jacobian, by alpha too. Records start from rest; `skip` lets the
-/// transient die. Where there are validation records the model with the least error on them is returned.
-/// Throws Error (usage, data) for options, a model or records that do not fit.
-FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const FractionalGrid&, const std::vector<PnlssRecord>& estimation,
-                                      const std::vector<PnlssRecord>& validation, const FractionalPnlssOptions& = {}, const Progress& = {});
+/// Identification of the fractional polynomial model in the time domain, which the seed leaves to the future (7.2): the
+/// simulation error of the ladder realization is lowered as that of a PNLSS model is (see fitPnlss), with the exact
+/// Jacobian, by alpha too. Records start from rest; `skip` lets the transient die. Where there are validation records
+/// the model with the least error on them is returned. Throws Error (usage, data) for options, a model or records that
+/// do not fit.
+FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const FractionalGrid&,
+                                      const std::vector<PnlssRecord>& estimation,
+                                      const std::vector<PnlssRecord>& validation, const FractionalPnlssOptions& = {},
+                                      const Progress& = {});
 
-} // namespace excursion
+}  // namespace excursion

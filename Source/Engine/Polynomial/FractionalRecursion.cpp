@@ -20,7 +20,11 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// What the equations are at one point: v, and its slopes by the states.
 struct Equations {
     Equations(const Pnlss& wanted, const MonomialProducts& compiled)
-        : form(wanted), monomials(compiled), nodes(compiled.nodes()), terms(wanted.terms()), slopes(wanted.linear.order(), wanted.linear.order()),
+        : form(wanted),
+          monomials(compiled),
+          nodes(compiled.nodes()),
+          terms(wanted.terms()),
+          slopes(wanted.linear.order(), wanted.linear.order()),
           outputSlopes(wanted.linear.outputs(), wanted.linear.order())
     {
     }
@@ -64,13 +68,14 @@ struct Equations {
     const Pnlss& form;
     const MonomialProducts& monomials;
     VectorXd nodes, terms;
-    MatrixXd slopes, outputSlopes;   // A + E dp/dzeta, C + F dp/dzeta
+    MatrixXd slopes, outputSlopes;  // A + E dp/dzeta, C + F dp/dzeta
 };
 
 /// The past of one trajectory: cells of all states and the last four derivatives, the newest first.
 class Past {
 public:
-    Past(const std::vector<FractionalIntegrator>& integrators) : integrators_(integrators), history_(static_cast<Index>(integrators.size()), 4)
+    Past(const std::vector<FractionalIntegrator>& integrators)
+        : integrators_(integrators), history_(static_cast<Index>(integrators.size()), 4)
     {
         history_.setZero();
         for (const auto& f : integrators) {
@@ -84,7 +89,8 @@ public:
     {
         for (Index i = 0; i < h.size(); ++i) {
             const auto k = static_cast<std::size_t>(i);
-            h[i] = kept_[k].dot(cells_[k]) + history_.row(i).head<3>().dot(integrators_[k].direct.tail<3>().transpose());
+            h[i] = kept_[k].dot(cells_[k])
+                   + history_.row(i).head<3>().dot(integrators_[k].direct.tail<3>().transpose());
         }
     }
 
@@ -107,15 +113,21 @@ public:
 
 private:
     const std::vector<FractionalIntegrator>& integrators_;
-    std::vector<VectorXd> cells_, kept_;   // z_k, R_k e_k
-    MatrixXd history_;                     // n x 4
+    std::vector<VectorXd> cells_, kept_;  // z_k, R_k e_k
+    MatrixXd history_;                    // n x 4
 };
 
-} // namespace
+}  // namespace
 
-FractionalRecursion::FractionalRecursion(const FractionalPnlss& structure, const FractionalGrid& grid, bool linearFree, bool alphaFree)
-    : grid_(grid), n_(structure.form.linear.order()), m_(structure.form.linear.inputs()), p_(structure.form.linear.outputs()),
-      fractional_(structure.fractional), alphaFree_(alphaFree && structure.fractional.any()), linear_(structure.form, linearFree),
+FractionalRecursion::FractionalRecursion(const FractionalPnlss& structure, const FractionalGrid& grid, bool linearFree,
+                                         bool alphaFree)
+    : grid_(grid),
+      n_(structure.form.linear.order()),
+      m_(structure.form.linear.inputs()),
+      p_(structure.form.linear.outputs()),
+      fractional_(structure.fractional),
+      alphaFree_(alphaFree && structure.fractional.any()),
+      linear_(structure.form, linearFree),
       monomials_(structure.form.exponents, n_ + m_, n_)
 {
 }
@@ -188,7 +200,8 @@ bool FractionalRecursion::run(const FractionalPnlss& model, const MatrixXd& inpu
     return true;
 }
 
-void FractionalRecursion::differentiate(const FractionalPnlss& model, const MatrixXd& input, const Trajectory& run, const Recursion::Taker& take) const
+void FractionalRecursion::differentiate(const FractionalPnlss& model, const MatrixXd& input, const Trajectory& run,
+                                        const Recursion::Taker& take) const
 {
     const auto cut = integratorsOf(fractional_, model.alpha, grid_);
     FractionalIntegrator slope;
@@ -200,7 +213,7 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
     for (Index i = 0; i < n_; ++i)
         gain[i] = cut[static_cast<std::size_t>(i)].direct[0];
     Equations equations(model.form, monomials_);
-    Past past(cut);   // for the slope of alpha
+    Past past(cut);  // for the slope of alpha
     std::vector<RowMajor> cells, history(4, RowMajor::Zero(n_, P));
     for (const auto& f : cut)
         cells.push_back(RowMajor::Zero(f.cells(), P));
@@ -214,7 +227,9 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
         const VectorXd zeta = run.states.col(t);
         equations.at(zeta, input.row(t));
         equations.slope(sampled);
-        const auto regressor = [&](Index r) { return equations.nodes[r < n_ + m_ ? 1 + r : monomials_.termNode(r - n_ - m_)]; };
+        const auto regressor = [&](Index r) {
+            return equations.nodes[r < n_ + m_ ? 1 + r : monomials_.termNode(r - n_ - m_)];
+        };
         // d zeta = (I - diag(d_0) S)^-1 (held + diag(d_0) dv/dtheta [+ slope of alpha])
         states = held;
         source.setZero();
@@ -228,13 +243,15 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
                 if (fractional_[i]) {
                     const auto& f = cut[static_cast<std::size_t>(i)];
                     const auto& z = past.cells(i).array();
-                    states(i, P - 1) += ((slope.readout.array() * f.decay.array() + f.readout.array() * slope.decay.array()) * z).sum()
-                                      + slope.direct[0] * v[i] + past.history().row(i).head<3>().dot(slope.direct.tail<3>().transpose());
+                    states(i, P - 1) +=
+                        ((slope.readout.array() * f.decay.array() + f.readout.array() * slope.decay.array()) * z).sum()
+                        + slope.direct[0] * v[i]
+                        + past.history().row(i).head<3>().dot(slope.direct.tail<3>().transpose());
                 }
         }
         const MatrixXd inverse = (MatrixXd::Identity(n_, n_) - gain.asDiagonal() * equations.slopes).inverse();
         states = (inverse * states).eval();
-        source.noalias() += equations.slopes * states;   // dv
+        source.noalias() += equations.slopes * states;  // dv
         if (sampled) {
             output.noalias() = equations.outputSlopes * states;
             for (std::size_t c = 0; c < columns.size(); ++c)
@@ -257,12 +274,15 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
         for (Index i = 0; i < n_; ++i) {
             const auto& f = cut[static_cast<std::size_t>(i)];
             auto& z = cells[static_cast<std::size_t>(i)];
-            lanes::advance(z.data(), f.cells(), P, f.decay.data(), f.weight.data(), {history[0].row(i).data(), history[1].row(i).data(),
-                           history[2].row(i).data(), history[3].row(i).data()}, f.readout.data(), f.direct.data(), held.row(i).data());
-            if (alphaFree_ && fractional_[i]) {   // z and v of the step that ends here
+            lanes::advance(z.data(), f.cells(), P, f.decay.data(), f.weight.data(),
+                           {history[0].row(i).data(), history[1].row(i).data(), history[2].row(i).data(),
+                            history[3].row(i).data()},
+                           f.readout.data(), f.direct.data(), held.row(i).data());
+            if (alphaFree_ && fractional_[i]) {  // z and v of the step that ends here
                 Eigen::RowVector4d v;
                 v << run.derivatives(i, t), past.history().row(i).head<3>();
-                const VectorXd moved = (slope.decay.array() * past.cells(i).array()).matrix() + slope.weight * v.transpose();
+                const VectorXd moved = (slope.decay.array() * past.cells(i).array()).matrix()
+                                       + slope.weight * v.transpose();
                 z.col(P - 1) += moved;
                 held(i, P - 1) += (f.readout.array() * f.decay.array() * moved.array()).sum();
             }
@@ -288,4 +308,4 @@ MatrixXd fineInput(const MatrixXd& input, int substeps, bool periodic, Index ski
     return fine;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -37,8 +37,8 @@ MatrixXd orthonormalPolynomials(const std::vector<PnlssRecord>& records, int deg
     }
     const VectorXd diagonal = qr.R().diagonal().cwiseAbs();
     if (diagonal.minCoeff() < 1e-12 * diagonal.maxCoeff())
-        throw Error(Error::Kind::data,
-                    "The model cannot be fitted: the input takes too few values for degree " + std::to_string(degree) + ".");
+        throw Error(Error::Kind::data, "The model cannot be fitted: the input takes too few values for degree "
+                                           + std::to_string(degree) + ".");
     MatrixXd T = std::sqrt(samples) * qr.R().triangularView<Eigen::Upper>().solve(MatrixXd::Identity(degree, degree));
     for (int n = 0; n < degree; ++n)
         T.row(n) *= std::pow(size, -(n + 1));
@@ -57,17 +57,20 @@ struct NormalEquations {
     void add(const MatrixXd& P, const VectorXd& y, Index skip, Index K)
     {
         const auto N = P.cols(), length = P.rows(), judged = length - skip;
-        const auto at = [&](Index t) { return t >= 0 ? Eigen::RowVectorXd(P.row(t)) : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(N)); };
+        const auto at = [&](Index t) {
+            return t >= 0 ? Eigen::RowVectorXd(P.row(t)) : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(N));
+        };
         const auto place = [N](Index k) { return 1 + N * k; };
         samples += static_cast<double>(judged);
         gram(0, 0) += static_cast<double>(judged);
         right[0] += y.tail(judged).sum();
         for (Index k = 0; k < std::min(K, length); ++k) {
-            const Index from = std::max(skip, k), rows = length - from;   // before its first sample the input is 0
+            const Index from = std::max(skip, k), rows = length - from;  // before its first sample the input is 0
             const auto late = P.middleRows(from - k, rows);
             gram.block(place(k), 0, N, 1) += late.colwise().sum().transpose();
             right.segment(place(k), N) += late.transpose() * y.tail(rows);
-            // Tap k with tap 0, then along the diagonal, where sums differ by what comes in at one end and leaves at the other
+            // Tap k with tap 0, then along the diagonal, where sums differ by what comes in at one end and leaves at
+            // the other
             MatrixXd sum = late.transpose() * P.bottomRows(rows);
             gram.block(place(k), place(0), N, N) += sum;
             for (Index j = 1; k + j < K; ++j) {
@@ -93,18 +96,21 @@ std::vector<Index> lengthsUpTo(Index longest, bool choose)
     return lengths;
 }
 
-constexpr Index mostDense = 4096;   // unknowns: their matrix of normal equations takes 134 MB
+constexpr Index mostDense = 4096;  // unknowns: their matrix of normal equations takes 134 MB
 
-HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
-                                 const MatrixXd& T, Index K, const HammersteinFitOptions& options, const Progress& progress)
+HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecord>& estimation,
+                                 const std::vector<PnlssRecord>& validation, const MatrixXd& T, Index K,
+                                 const HammersteinFitOptions& options, const Progress& progress)
 {
-    constexpr int most = 400, every = 10, patience = 5;   // iterations, between looks at the validation records, looks without a better one
+    // iterations, between looks at the validation records, looks without a better one
+    constexpr int most = 400, every = 10, patience = 5;
     HammersteinFit best;
     best.regularization = options.regularization > 0.0 ? options.regularization : 1e-8;
     double least = std::numeric_limits<double>::infinity();
     int waited = 0;
     const auto modelOf = [&](const VectorXd& unknowns) {
-        return ParallelHammerstein {sampleRate, Eigen::Map<const MatrixXd>(unknowns.data() + 1, K, T.cols()) * T.transpose(), unknowns[0]};
+        return ParallelHammerstein {
+            sampleRate, Eigen::Map<const MatrixXd>(unknowns.data() + 1, K, T.cols()) * T.transpose(), unknowns[0]};
     };
     const LongHammerstein problem(estimation, T, K);
     const auto last = problem.solve(best.regularization, most, every, [&](const VectorXd& unknowns, int k) {
@@ -124,11 +130,12 @@ HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecor
         best.model = modelOf(last);
     best.estimationDb = simulationErrorDb(best.model, estimation);
     best.validationDb = simulationErrorDb(best.model, validation);
-    best.reason = validation.empty() ? "as many iterations as are worthwhile" : "the iteration with the least validation error";
+    best.reason = validation.empty() ? "as many iterations as are worthwhile"
+                                     : "the iteration with the least validation error";
     return best;
 }
 
-} // namespace
+}  // namespace
 
 bool HammersteinFitOptions::isValid(std::string* reason) const
 {
@@ -141,8 +148,9 @@ bool HammersteinFitOptions::isValid(std::string* reason) const
     return true;
 }
 
-HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
-                              const HammersteinFitOptions& options, const Progress& progress)
+HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>& estimation,
+                              const std::vector<PnlssRecord>& validation, const HammersteinFitOptions& options,
+                              const Progress& progress)
 {
     requireFitting(options, sampleRate, estimation, validation);
     const Index N = options.degree;
@@ -156,7 +164,8 @@ HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>&
         return fittedByIteration(sampleRate, estimation, validation, T, K, options, progress);
     NormalEquations equations(N, K);
     for (std::size_t r = 0; r < estimation.size(); ++r) {
-        progress.at(0.3 * static_cast<double>(r) / static_cast<double>(estimation.size()), "correlating powers of the input");
+        progress.at(0.3 * static_cast<double>(r) / static_cast<double>(estimation.size()),
+                    "correlating powers of the input");
         const auto& record = estimation[r];
         equations.add(powersOf(record.input.col(0), 1, N) * T, record.output.col(0), record.skip, K);
     }
@@ -166,10 +175,11 @@ HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>&
     const bool choose = !validation.empty();
     const auto candidates = regularizations(options, choose);
     for (std::size_t c = 0; c < candidates.size(); ++c) {
-        progress.at(0.3 + 0.7 * static_cast<double>(c) / static_cast<double>(candidates.size()), "solving for the branch filters");
+        progress.at(0.3 + 0.7 * static_cast<double>(c) / static_cast<double>(candidates.size()),
+                    "solving for the branch filters");
         MatrixXd damped = equations.gram;
         damped.diagonal().tail(N * K).array() += candidates[c] * equations.samples;
-        const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(damped);   // in place
+        const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(damped);  // in place
         if (factor.info() != Eigen::Success)
             continue;
         const auto L = damped.triangularView<Eigen::Lower>();
@@ -194,10 +204,12 @@ HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>&
         }
     }
     if (best.model.filters.size() == 0)
-        throw Error(Error::Kind::numerical, "The branch filters cannot be solved for; a larger regularization or fewer taps may help.");
+        throw Error(Error::Kind::numerical,
+                    "The branch filters cannot be solved for; a larger regularization or fewer taps may help.");
     best.estimationDb = simulationErrorDb(best.model, estimation);
-    best.reason = choose ? "the length and the regularization with the least validation error" : "as long and as regularized as asked for";
+    best.reason = choose ? "the length and the regularization with the least validation error"
+                         : "as long and as regularized as asked for";
     return best;
 }
 
-} // namespace excursion
+}  // namespace excursion

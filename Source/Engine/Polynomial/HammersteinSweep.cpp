@@ -32,7 +32,11 @@ Complex multipleAngle(int n, int m)
 double window(std::size_t at, std::size_t length, std::size_t edge)
 {
     const auto inside = std::min(at, length - 1 - at);
-    return inside >= edge ? 1.0 : 0.5 - 0.5 * std::cos(std::numbers::pi * (static_cast<double>(inside) + 0.5) / static_cast<double>(edge));
+    return inside >= edge ? 1.0
+                          : 0.5
+                                - 0.5
+                                      * std::cos(std::numbers::pi * (static_cast<double>(inside) + 0.5)
+                                                 / static_cast<double>(edge));
 }
 
 /// x of T x = b, T_ij = r_|i-j| positive definite, by Levinson's recursion (Golub & Van Loan 2013, 4.7.3).
@@ -62,8 +66,10 @@ std::vector<double> solvedToeplitz(const std::vector<double>& r, const std::vect
     return x;
 }
 
-/// The taps of least squares on lines where `known`, of an even grid of 0 .. fs/2: normal equations that are Toeplitz and made by DFT.
-Eigen::VectorXd fittedTaps(const Eigen::VectorXcd& response, const std::vector<bool>& known, Index length, double regularization)
+/// The taps of least squares on lines where `known`, of an even grid of 0 .. fs/2: normal equations that are Toeplitz
+/// and made by DFT.
+Eigen::VectorXd fittedTaps(const Eigen::VectorXcd& response, const std::vector<bool>& known, Index length,
+                           double regularization)
 {
     std::vector<Complex> mask(known.size()), masked(known.size());
     for (std::size_t k = 0; k < known.size(); ++k)
@@ -78,7 +84,7 @@ Eigen::VectorXd fittedTaps(const Eigen::VectorXcd& response, const std::vector<b
     return Eigen::Map<const Eigen::VectorXd>(taps.data(), length);
 }
 
-} // namespace
+}  // namespace
 
 bool HammersteinSweepOptions::isValid(std::string* reason) const
 {
@@ -93,7 +99,8 @@ bool HammersteinSweepOptions::isValid(std::string* reason) const
     return true;
 }
 
-HarmonicResponses harmonicResponses(const ExponentialSweep& sweep, std::span<const double> output, const HammersteinSweepOptions& options)
+HarmonicResponses harmonicResponses(const ExponentialSweep& sweep, std::span<const double> output,
+                                    const HammersteinSweepOptions& options)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -101,8 +108,8 @@ HarmonicResponses harmonicResponses(const ExponentialSweep& sweep, std::span<con
     const double rate = sweep.options().sampleRate;
     const auto played = static_cast<std::size_t>(std::ceil(sweep.seconds() * rate));
     if (output.size() < played)
-        throw Error(Error::Kind::data, "The answer to the sweep has " + std::to_string(output.size()) + " samples, fewer than the "
-                                           + std::to_string(played) + " of the sweep.");
+        throw Error(Error::Kind::data, "The answer to the sweep has " + std::to_string(output.size())
+                                           + " samples, fewer than the " + std::to_string(played) + " of the sweep.");
     for (const double y : output)
         if (!std::isfinite(y))
             throw Error(Error::Kind::data, "The answer to the sweep holds a sample that is not finite.");
@@ -113,9 +120,10 @@ HarmonicResponses harmonicResponses(const ExponentialSweep& sweep, std::span<con
     const auto edge = static_cast<std::size_t>(std::ceil(options.edge * rate));
     const auto kept = static_cast<std::size_t>(options.length) + 2 * edge;
     if (static_cast<double>(kept) > result.separation * rate)
-        throw Error(Error::Kind::data, "The harmonics overlap: they come " + std::to_string(result.separation)
-                                           + " s apart, less than their responses are to last; let the sweep last longer, "
-                                             "or ask for fewer taps.");
+        throw Error(Error::Kind::data,
+                    "The harmonics overlap: they come " + std::to_string(result.separation)
+                        + " s apart, less than their responses are to last; let the sweep last longer, "
+                          "or ask for fewer taps.");
 
     // Long enough that what comes ahead of time, by up to the length of the sweep, does not meet what comes late.
     const auto length = std::bit_ceil(output.size() + played + kept);
@@ -143,8 +151,9 @@ HarmonicResponses harmonicResponses(const ExponentialSweep& sweep, std::span<con
             h[n] *= n < kept ? window(n, kept, edge) : 0.0;
         const auto spectrum = fft(h);
         for (std::size_t k = 0; k < spectrum.size(); ++k)
-            result.value(static_cast<Index>(k), m - 1)
-                = spectrum[k] * std::polar(1.0, turn * static_cast<double>(k * edge % grid) / static_cast<double>(grid));
+            result.value(static_cast<Index>(k), m - 1) = spectrum[k]
+                                                         * std::polar(1.0, turn * static_cast<double>(k * edge % grid)
+                                                                               / static_cast<double>(grid));
     }
     return result;
 }
@@ -171,8 +180,9 @@ HammersteinSweepFit identifyHammerstein(const ExponentialSweep& sweep, std::span
     const double lasted = band.fadeOut + 2.0 * options.edge + static_cast<double>(options.length) / band.sampleRate;
     const double high = band.bandHigh * std::exp(-lasted / sweep.rate());
     if (N * unfaded + 2.0 * resolution >= high)
-        throw Error(Error::Kind::usage, "The sweep is too narrow for its degree, or too short: where it and its harmonics are all known "
-                                        "there is no band left.");
+        throw Error(Error::Kind::usage,
+                    "The sweep is too narrow for its degree, or too short: where it and its harmonics are all known "
+                    "there is no band left.");
     const auto G = branchResponses(harmonics, band.peak);
     HammersteinSweepFit result;
     result.model.sampleRate = harmonics.sampleRate;
@@ -185,11 +195,14 @@ HammersteinSweepFit identifyHammerstein(const ExponentialSweep& sweep, std::span
         result.model.filters.col(n - 1) = fittedTaps(G.col(n - 1), known, options.length, options.regularization);
     }
     if (!result.model.filters.allFinite())
-        throw Error(Error::Kind::numerical, "The branch filters left the finite numbers; a larger regularization may help.");
+        throw Error(Error::Kind::numerical,
+                    "The branch filters left the finite numbers; a larger regularization may help.");
 
     const auto x = sweep.samples();
     const auto samples = static_cast<Index>(x.size());
-    const auto timeOf = [&](double f) { return static_cast<Index>(sweep.rate() * std::log(f / band.bandLow) * harmonics.sampleRate); };
+    const auto timeOf = [&](double f) {
+        return static_cast<Index>(sweep.rate() * std::log(f / band.bandLow) * harmonics.sampleRate);
+    };
     const Index from = timeOf(N * unfaded + resolution), to = timeOf(high - resolution);
     const auto centred = [&](const Eigen::MatrixXd& v) -> Eigen::MatrixXd {
         const Eigen::MatrixXd part = v.middleRows(from, to - from);
@@ -197,9 +210,10 @@ HammersteinSweepFit identifyHammerstein(const ExponentialSweep& sweep, std::span
     };
     PnlssRecord record;
     record.output = centred(Eigen::Map<const Eigen::VectorXd>(output.data(), samples));
-    result.estimationDb = outputErrorDb({centred(simulate(result.model, Eigen::Map<const Eigen::VectorXd>(x.data(), samples)))}, {record});
+    result.estimationDb = outputErrorDb(
+        {centred(simulate(result.model, Eigen::Map<const Eigen::VectorXd>(x.data(), samples)))}, {record});
     result.reason = "all branches were solved for";
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,8 +13,8 @@ namespace {
 
 /// One step for 8 parameters: J = G X, X <- M X + g r. M, G are laid out [entry][time], r and J [time][parameter].
 template <int N, bool general>
-[[gnu::always_inline]] inline void eightColumns(const double* M, const double* G, Index p, const double* r, const double* g, Index row, double* X,
-                                                double* J, Index sizeJ, Index T)
+[[gnu::always_inline]] inline void eightColumns(const double* M, const double* G, Index p, const double* r,
+                                                const double* g, Index row, double* X, double* J, Index sizeJ, Index T)
 {
     Four a[N], b[N];
     for (int i = 0; i < N; ++i) {
@@ -33,9 +33,11 @@ template <int N, bool general>
             *reinterpret_cast<Four*>(target) = ya;
             *reinterpret_cast<Four*>(target + 4) = yb;
         }
-        const Four ra = *reinterpret_cast<const Four*>(r + t * abreast), rb = *reinterpret_cast<const Four*>(r + t * abreast + 4);
+        const Four ra = *reinterpret_cast<const Four*>(r + t * abreast),
+                   rb = *reinterpret_cast<const Four*>(r + t * abreast + 4);
         Four na[N], nb[N];
-        for (int i = 0; i < N; ++i) {   // what does not wait for the last step comes first: the chain from step to step is the limit
+        // what does not wait for the last step comes first: the chain from step to step is the limit
+        for (int i = 0; i < N; ++i) {
             const double gain = general ? g[i] : i == row ? 1.0 : 0.0;
             na[i] = gain * ra;
             nb[i] = gain * rb;
@@ -57,8 +59,9 @@ template <int N, bool general>
 }
 
 /// The same for any number of states, X in memory.
-[[gnu::always_inline]] inline void eightColumnsOfMany(Index N, const double* M, const double* G, Index p, const double* r,
-                                                      const double* g, double* X, double* next, double* J, Index sizeJ, Index T)
+[[gnu::always_inline]] inline void eightColumnsOfMany(Index N, const double* M, const double* G, Index p,
+                                                      const double* r, const double* g, double* X, double* next,
+                                                      double* J, Index sizeJ, Index T)
 {
     for (Index t = 0; t < T; ++t) {
         for (Index o = 0; o < p; ++o) {
@@ -72,7 +75,8 @@ template <int N, bool general>
             *reinterpret_cast<Four*>(target) = ya;
             *reinterpret_cast<Four*>(target + 4) = yb;
         }
-        const Four ra = *reinterpret_cast<const Four*>(r + t * abreast), rb = *reinterpret_cast<const Four*>(r + t * abreast + 4);
+        const Four ra = *reinterpret_cast<const Four*>(r + t * abreast),
+                   rb = *reinterpret_cast<const Four*>(r + t * abreast + 4);
         for (Index i = 0; i < N; ++i) {
             Four na = g[i] * ra, nb = g[i] * rb;
             for (Index j = 0; j < N; ++j) {
@@ -87,11 +91,11 @@ template <int N, bool general>
     }
 }
 
-} // namespace
+}  // namespace
 
 EXCURSION_DISPATCH
-void columnsThroughBlock(Index N, const double* M, const double* G, Index p, const double* r, const double* g, Index row, double* X, double* next,
-                         double* J, Index sizeJ, Index T)
+void columnsThroughBlock(Index N, const double* M, const double* G, Index p, const double* r, const double* g,
+                         Index row, double* X, double* next, double* J, Index sizeJ, Index T)
 {
     const bool one = row >= 0;
     switch (N) {
@@ -150,15 +154,19 @@ void toColumns(double* columns, Index columnStride, const double* rows, Index co
 {
     const Index whole = T & ~Index {3};
     Index c = 0;
-    for (; c + 4 <= count; c += 4) {   // four by four
+    for (; c + 4 <= count; c += 4) {  // four by four
         double* target[4];
         for (Index k = 0; k < 4; ++k)
             target[k] = columns + (c + k) * columnStride;
         for (Index t = 0; t < whole; t += 4) {
             const double* from = rows + t * abreast + c;
-            const auto row = [from](Index k) -> const Four& { return *reinterpret_cast<const Four*>(from + k * abreast); };
-            const Four a = __builtin_shufflevector(row(0), row(1), 0, 4, 2, 6), b = __builtin_shufflevector(row(0), row(1), 1, 5, 3, 7);
-            const Four d = __builtin_shufflevector(row(2), row(3), 0, 4, 2, 6), e = __builtin_shufflevector(row(2), row(3), 1, 5, 3, 7);
+            const auto row = [from](Index k) -> const Four& {
+                return *reinterpret_cast<const Four*>(from + k * abreast);
+            };
+            const Four a = __builtin_shufflevector(row(0), row(1), 0, 4, 2, 6),
+                       b = __builtin_shufflevector(row(0), row(1), 1, 5, 3, 7);
+            const Four d = __builtin_shufflevector(row(2), row(3), 0, 4, 2, 6),
+                       e = __builtin_shufflevector(row(2), row(3), 1, 5, 3, 7);
             *reinterpret_cast<Four*>(target[0] + t) = __builtin_shufflevector(a, d, 0, 1, 4, 5);
             *reinterpret_cast<Four*>(target[1] + t) = __builtin_shufflevector(b, e, 0, 1, 4, 5);
             *reinterpret_cast<Four*>(target[2] + t) = __builtin_shufflevector(a, d, 2, 3, 6, 7);
@@ -174,14 +182,15 @@ void toColumns(double* columns, Index columnStride, const double* rows, Index co
 }
 
 EXCURSION_DISPATCH
-void advance(double* z, Index cells, Index P, const double* decay, const double* weight, const std::array<const double*, 4>& v, const double* readout,
-             const double* direct, double* held)
+void advance(double* z, Index cells, Index P, const double* decay, const double* weight,
+             const std::array<const double*, 4>& v, const double* readout, const double* direct, double* held)
 {
     const double *v0 = v[0], *v1 = v[1], *v2 = v[2], *v3 = v[3];
     for (Index c = 0; c < P; ++c)
         held[c] = direct[1] * v0[c] + direct[2] * v1[c] + direct[3] * v2[c];
     for (Index k = 0; k < cells; ++k, z += P) {
-        const double e = decay[k], b0 = weight[k], b1 = weight[k + cells], b2 = weight[k + 2 * cells], b3 = weight[k + 3 * cells];
+        const double e = decay[k], b0 = weight[k], b1 = weight[k + cells], b2 = weight[k + 2 * cells],
+                     b3 = weight[k + 3 * cells];
         const double out = readout[k] * e;
         for (Index c = 0; c < P; ++c) {
             z[c] = e * z[c] + b0 * v0[c] + b1 * v1[c] + b2 * v2[c] + b3 * v3[c];
@@ -190,4 +199,4 @@ void advance(double* z, Index cells, Index P, const double* decay, const double*
     }
 }
 
-} // namespace excursion::lanes
+}  // namespace excursion::lanes

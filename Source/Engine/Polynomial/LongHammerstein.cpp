@@ -73,7 +73,7 @@ VectorXd LongHammerstein::solve(double regularization, int iterations, int every
         rest.push_back(stretch.output);
     const auto gradient = [&] {
         VectorXd s = -ridge * x;
-        s[0] = 0.0;   // the offset is free
+        s[0] = 0.0;  // the offset is free
         for (std::size_t r = 0; r < rest.size(); ++r)
             addBackward(stretches_[r], rest[r], s);
         return s;
@@ -102,4 +102,4 @@ VectorXd LongHammerstein::solve(double regularization, int iterations, int every
     return x;
 }
 
-} // namespace excursion
+}  // namespace excursion

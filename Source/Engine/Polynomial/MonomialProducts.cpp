@@ -38,4 +38,4 @@ Index MonomialProducts::node(const Eigen::RowVectorXi& exponents)
     return static_cast<Index>(nodes_.size()) - 1;
 }
 
-} // namespace excursion
+}  // namespace excursion

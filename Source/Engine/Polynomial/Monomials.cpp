@@ -19,7 +19,8 @@ void spread(std::vector<int>& exponents, std::size_t from, int degree, std::vect
         exponents[from] = degree;
         rows.push_back(exponents);
         if (rows.size() > most)
-            throw Error(Error::Kind::usage, "More than a million monomials; lower the degree or the order of the model.");
+            throw Error(Error::Kind::usage,
+                        "More than a million monomials; lower the degree or the order of the model.");
         return;
     }
     for (int power = degree; power >= 0; --power) {
@@ -29,12 +30,13 @@ void spread(std::vector<int>& exponents, std::size_t from, int degree, std::vect
     exponents[from] = 0;
 }
 
-} // namespace
+}  // namespace
 
 Exponents monomials(int variables, int lowest, int highest)
 {
     if (variables < 1 || lowest < 1 || highest < lowest || highest > 20)
-        throw Error(Error::Kind::usage, "Monomials need at least one variable and degrees that ascend from 1 to at most 20.");
+        throw Error(Error::Kind::usage,
+                    "Monomials need at least one variable and degrees that ascend from 1 to at most 20.");
     std::vector<std::vector<int>> rows;
     std::vector<int> exponents(static_cast<std::size_t>(variables), 0);
     for (int degree = lowest; degree <= highest; ++degree)
@@ -53,7 +55,7 @@ void addFactor(std::string_view factor, int states, int inputs, Eigen::Ref<Eigen
     const auto refuse = [&](const char* why) {
         throw Error(Error::Kind::usage, "The monomials cannot be read: \"" + std::string(factor) + "\" " + why + ".");
     };
-    const auto number = [](std::string_view text) {   // 0 where there is none
+    const auto number = [](std::string_view text) {  // 0 where there is none
         int value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         return error == std::errc() && end == text.data() + text.size() ? value : 0;
@@ -89,7 +91,7 @@ std::vector<std::string_view> parts(std::string_view text, char separator)
     return result;
 }
 
-} // namespace
+}  // namespace
 
 Exponents monomialsNamed(std::string_view list, int states, int inputs)
 {
@@ -115,9 +117,13 @@ std::string_view name(TermMask mask)
     return "";
 }
 
-std::vector<TermMask> termMasks() { return {TermMask::full, TermMask::statesOnly, TermMask::noCrossProducts, TermMask::diagonal}; }
+std::vector<TermMask> termMasks()
+{
+    return {TermMask::full, TermMask::statesOnly, TermMask::noCrossProducts, TermMask::diagonal};
+}
 
-Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> allowed(TermMask mask, const Exponents& exponents, int states, int outputs)
+Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> allowed(TermMask mask, const Exponents& exponents, int states,
+                                                           int outputs)
 {
     Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> result(states + outputs, exponents.rows());
     for (Eigen::Index k = 0; k < exponents.rows(); ++k) {
@@ -128,10 +134,12 @@ Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> allowed(TermMask mask, const 
             case TermMask::full: result(row, k) = true; break;
             case TermMask::statesOnly: result(row, k) = !withInput; break;
             case TermMask::noCrossProducts: result(row, k) = pure; break;
-            case TermMask::diagonal: result(row, k) = pure && !withInput && (row >= states || exponents(k, row) > 0); break;
+            case TermMask::diagonal:
+                result(row, k) = pure && !withInput && (row >= states || exponents(k, row) > 0);
+                break;
             }
     }
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,22 +16,23 @@ using Exponents = Eigen::MatrixXi;
 /// Throws Error (usage) for degrees below 1 or in the wrong order, or more than a million monomials.
 Exponents monomials(int variables, int lowest, int highest);
 
-/// A list of monomials in words, "x1^3,x1*u2,1": factors x1 .. xn and u1 .. um (u alone is u1), each with a power or none, joined by *; 1 is the
-/// monomial of degree 0. Throws Error (usage) for what cannot be read, and variables that are not there.
+/// A list of monomials in words, "x1^3,x1*u2,1": factors x1 .. xn and u1 .. um (u alone is u1), each with a power or
+/// none, joined by *; 1 is the monomial of degree 0. Throws Error (usage) for what cannot be read, and variables that
+/// are not there.
 Exponents monomialsNamed(std::string_view list, int states, int inputs);
 
 /// Which monomials a row of E or F may use.
 enum class TermMask {
-    full,              ///< all
-    statesOnly,        ///< those without an input
-    noCrossProducts,   ///< powers of one variable
-    diagonal           ///< state row i: powers of x_i; output rows: powers of one state
+    full,             ///< all
+    statesOnly,       ///< those without an input
+    noCrossProducts,  ///< powers of one variable
+    diagonal          ///< state row i: powers of x_i; output rows: powers of one state
 };
 
-std::string_view name(TermMask);   ///< "full", "states-only", "no-cross-products", "diagonal"
+std::string_view name(TermMask);  ///< "full", "states-only", "no-cross-products", "diagonal"
 std::vector<TermMask> termMasks();
 
 /// True where a row may use a monomial: rows x monomials. @param rows  the n states, then the p outputs
 Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> allowed(TermMask, const Exponents&, int states, int outputs);
 
-} // namespace excursion
+}  // namespace excursion

@@ -14,7 +14,7 @@ namespace excursion {
 template <class Model>
 struct Named {
     std::string name;
-    std::string input, output;   ///< quantities, "voltage"
+    std::string input, output;  ///< quantities, "voltage"
     Model model;
 };
 
@@ -22,8 +22,8 @@ struct Named {
 nlohmann::ordered_json modelHeader(std::string_view format, int version, const std::string& name, double sampleRate,
                                    const std::string& input, const std::string& output);
 
-/// Reads that of a document. Throws Error (input) naming the field when the document is not of this format and version, or the rate not
-/// above 0.
+/// Reads that of a document. Throws Error (input) naming the field when the document is not of this format and version,
+/// or the rate not above 0.
 template <class Model>
 Named<Model> namedFromHeader(const JsonField& field, std::string_view format, int version)
 {
@@ -35,4 +35,4 @@ Named<Model> namedFromHeader(const JsonField& field, std::string_view format, in
     return named;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,7 +19,8 @@ bool Narx::isValid(std::string* reason) const
     if (outputLags < 0 || inputLags < 0)
         return refuse(reason, "the lags of a NARX model must be at least 0");
     if (exponents.cols() != outputLags + inputLags + 1 || exponents.rows() != coefficients.size())
-        return refuse(reason, "a NARX model needs one coefficient a term, and one exponent a lag and for the input itself");
+        return refuse(reason,
+                      "a NARX model needs one coefficient a term, and one exponent a lag and for the input itself");
     if (exponents.size() > 0 && exponents.minCoeff() < 0)
         return refuse(reason, "the exponents of a NARX model must be at least 0");
     if (!coefficients.allFinite())
@@ -35,7 +36,8 @@ Eigen::MatrixXd simulate(const Narx& model, const Eigen::MatrixXd& input)
     if (input.cols() != 1)
         throw Error(Error::Kind::usage, "A NARX model has one input, but the record has another number.");
     Eigen::VectorXd output;
-    const auto lasted = NarxRecursion(model).run(model.coefficients, input.col(0), std::numeric_limits<double>::max(), output);
+    const auto lasted = NarxRecursion(model).run(model.coefficients, input.col(0), std::numeric_limits<double>::max(),
+                                                 output);
     output.tail(output.size() - lasted).setConstant(std::numeric_limits<double>::quiet_NaN());
     return output;
 }
@@ -82,4 +84,4 @@ Pnlss pnlssOf(const Narx& model)
 
 bool isStable(const Narx& model) { return isStable(pnlssOf(model).linear); }
 
-} // namespace excursion
+}  // namespace excursion

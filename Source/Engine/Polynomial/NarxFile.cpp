@@ -50,4 +50,4 @@ Named<Narx> readNarx(const std::filesystem::path& path)
 
 void writeNarx(const Named<Narx>& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
 
-} // namespace excursion
+}  // namespace excursion

@@ -17,4 +17,4 @@ Named<Narx> narxFromJson(const JsonField&);
 Named<Narx> readNarx(const std::filesystem::path&);
 void writeNarx(const Named<Narx>&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -31,8 +31,9 @@ Narx allTerms(double sampleRate, const NarxFitOptions& options)
             kept.push_back(k);
     const Index constant = options.constant ? 1 : 0, K = constant + static_cast<Index>(kept.size());
     if (K > 1000)
-        throw Error(Error::Kind::usage, "The model cannot be fitted: there are " + std::to_string(K)
-                                            + " monomials to choose from, more than 1000; lower the degree or the lags.");
+        throw Error(Error::Kind::usage,
+                    "The model cannot be fitted: there are " + std::to_string(K)
+                        + " monomials to choose from, more than 1000; lower the degree or the lags.");
     Narx model {sampleRate, options.outputLags, options.inputLags, Exponents::Zero(K, variables), VectorXd::Zero(K)};
     model.exponents.bottomRows(K - constant) = all(kept, Eigen::all);
     return model;
@@ -47,7 +48,8 @@ MatrixXd predictionFactor(const Narx& model, const std::vector<PnlssRecord>& rec
     for (const auto& record : records) {
         const VectorXd u = record.input.col(0), y = record.output.col(0);
         constexpr Index stretch = 1024;
-        for (Index first = std::max<Index>(record.skip, std::max(model.outputLags, model.inputLags)); first < y.size(); first += stretch) {
+        for (Index first = std::max<Index>(record.skip, std::max(model.outputLags, model.inputLags)); first < y.size();
+             first += stretch) {
             const Index rows = std::min(stretch, y.size() - first);
             MatrixXd block(rows, K + 1);
             block << recursion.regressors(u, y, first, rows), y.segment(first, rows);
@@ -66,7 +68,7 @@ struct Choice {
 Choice chosenForward(const MatrixXd& R, int most)
 {
     const auto K = R.cols() - 1;
-    MatrixXd Q = R.leftCols(K);   // what is left of each column, orthogonal to those chosen
+    MatrixXd Q = R.leftCols(K);  // what is left of each column, orthogonal to those chosen
     VectorXd rest = R.col(K);
     const VectorXd whole = Q.colwise().squaredNorm();
     const double power = rest.squaredNorm();
@@ -76,7 +78,7 @@ Choice chosenForward(const MatrixXd& R, int most)
         double largest = 0.0;
         for (Index k = 0; k < K; ++k) {
             const double size = Q.col(k).squaredNorm();
-            if (size <= 1e-12 * whole[k])   // a combination of those chosen, or chosen itself
+            if (size <= 1e-12 * whole[k])  // a combination of those chosen, or chosen itself
                 continue;
             const double along = Q.col(k).dot(rest);
             if (const double reduction = along * along / (size * power); reduction > largest) {
@@ -123,8 +125,9 @@ public:
         for (std::size_t k = 0; k < records_.size(); ++k) {
             const auto& record = records_[k];
             const VectorXd error = judgedError(record, outputs_[k]);
-            recursion_.differentiate(values, record.input.col(0), outputs_[k],
-                                     [&](Index first, const MatrixXd& derivatives) { foldJudged(qr, record, first, derivatives, error); });
+            recursion_.differentiate(
+                values, record.input.col(0), outputs_[k],
+                [&](Index first, const MatrixXd& derivatives) { foldJudged(qr, record, first, derivatives, error); });
         }
         return qr.R() / std::sqrt(power_);
     }
@@ -136,7 +139,8 @@ private:
     double power_, bound_ = 0.0;
 };
 
-/// How many terms are worth a refinement: those that simulate best as they are, and, where records tell which is best, some others.
+/// How many terms are worth a refinement: those that simulate best as they are, and, where records tell which is best,
+/// some others.
 std::vector<std::size_t> sizesToRefine(std::size_t most, std::size_t best, bool several)
 {
     std::vector<std::size_t> sizes {best};
@@ -146,9 +150,10 @@ std::vector<std::size_t> sizesToRefine(std::size_t most, std::size_t best, bool 
     return sizes;
 }
 
-/// Refines one model. @param judged  the least error so far, of the model that `result` holds; both follow when a better one comes by
-void refine(const Narx& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, int iterations,
-            const Progress& progress, double& judged, NarxFit& result)
+/// Refines one model. @param judged  the least error so far, of the model that `result` holds; both follow when a
+/// better one comes by
+void refine(const Narx& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+            int iterations, const Progress& progress, double& judged, NarxFit& result)
 {
     NarxError problem(start, estimation);
     bool better = false;
@@ -174,7 +179,7 @@ void refine(const Narx& start, const std::vector<PnlssRecord>& estimation, const
     result.reason = summary.reason;
 }
 
-} // namespace
+}  // namespace
 
 bool NarxFitOptions::isValid(std::string* reason) const
 {
@@ -189,8 +194,8 @@ bool NarxFitOptions::isValid(std::string* reason) const
     return true;
 }
 
-NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
-                const NarxFitOptions& options, const Progress& progress)
+NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation,
+                const std::vector<PnlssRecord>& validation, const NarxFitOptions& options, const Progress& progress)
 {
     requireFitting(options, sampleRate, estimation, validation);
     progress.at(0.0, "choosing terms");
@@ -206,8 +211,10 @@ NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation, c
     std::size_t best = 0;
     double least = nowhere;
     for (std::size_t k = 0; k < choice.columns.size(); ++k) {
-        progress.at(0.1 + 0.2 * static_cast<double>(k) / static_cast<double>(choice.columns.size()), "simulating with more terms");
-        const std::vector<Index> columns(choice.columns.begin(), choice.columns.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+        progress.at(0.1 + 0.2 * static_cast<double>(k) / static_cast<double>(choice.columns.size()),
+                    "simulating with more terms");
+        const std::vector<Index> columns(choice.columns.begin(),
+                                         choice.columns.begin() + static_cast<std::ptrdiff_t>(k) + 1);
         auto& model = path.emplace_back(all);
         model.exponents = all.exponents(columns, Eigen::all);
         model.coefficients = truncatedSolve(R(Eigen::all, columns), R.col(R.cols() - 1));
@@ -219,8 +226,9 @@ NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation, c
         }
     }
     if (!std::isfinite(least))
-        throw Error(Error::Kind::numerical, "The model cannot be fitted: with any number of terms its simulation runs away; other lags or "
-                                            "a lower sample rate may help.");
+        throw Error(Error::Kind::numerical,
+                    "The model cannot be fitted: with any number of terms its simulation runs away; other lags or "
+                    "a lower sample rate may help.");
     result.model = path[best];
     result.reason = "the number of terms with the least simulation error, not refined";
     if (options.maximumIterations > 0) {
@@ -234,9 +242,8 @@ NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation, c
     }
     result.estimationDb = simulationErrorDb(result.model, estimation);
     result.validationDb = simulationErrorDb(result.model, validation);
-    result.stable = isStable(result.model) && std::isfinite(result.estimationDb)
-                 && result.validationDb != nowhere;
+    result.stable = isStable(result.model) && std::isfinite(result.estimationDb) && result.validationDb != nowhere;
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

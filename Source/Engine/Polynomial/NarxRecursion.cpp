@@ -11,9 +11,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 NarxRecursion::NarxRecursion(const Narx& structure)
-    : na_(structure.outputLags), nb_(structure.inputLags), terms_(structure.exponents.rows()),
+    : na_(structure.outputLags),
+      nb_(structure.inputLags),
+      terms_(structure.exponents.rows()),
       products_(structure.exponents, na_ + nb_ + 1, na_)
-{}
+{
+}
 
 void NarxRecursion::place(const VectorXd& input, const VectorXd& output, Index t, VectorXd& nodes) const
 {
@@ -59,10 +62,11 @@ MatrixXd NarxRecursion::regressors(const VectorXd& input, const VectorXd& output
     return r;
 }
 
-void NarxRecursion::differentiate(const VectorXd& coefficients, const VectorXd& input, const VectorXd& output, const Taker& take) const
+void NarxRecursion::differentiate(const VectorXd& coefficients, const VectorXd& input, const VectorXd& output,
+                                  const Taker& take) const
 {
     constexpr Index stretch = 256;
-    MatrixXd S = MatrixXd::Zero(terms_, na_ + stretch);   // the last na derivatives, then those of the stretch
+    MatrixXd S = MatrixXd::Zero(terms_, na_ + stretch);  // the last na derivatives, then those of the stretch
     VectorXd slopes(na_), values(products_.nodes());
     for (Index first = 0; first < input.size(); first += stretch) {
         const Index T = std::min(stretch, input.size() - first);
@@ -82,4 +86,4 @@ void NarxRecursion::differentiate(const VectorXd& coefficients, const VectorXd& 
     }
 }
 
-} // namespace excursion
+}  // namespace excursion

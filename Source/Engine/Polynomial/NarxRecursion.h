@@ -16,11 +16,14 @@ class NarxRecursion {
 public:
     explicit NarxRecursion(const Narx& structure);
 
-    /// @param output  becomes N long @return how many samples it took to leave `bound` or the finite numbers; N where it did not
-    Eigen::Index run(const Eigen::VectorXd& coefficients, const Eigen::VectorXd& input, double bound, Eigen::VectorXd& output) const;
+    /// @param output  becomes N long @return how many samples it took to leave `bound` or the finite numbers; N where
+    /// it did not
+    Eigen::Index run(const Eigen::VectorXd& coefficients, const Eigen::VectorXd& input, double bound,
+                     Eigen::VectorXd& output) const;
 
     /// The values of the monomials, N x K, on a given output, whose past is measured: for one step ahead.
-    Eigen::MatrixXd regressors(const Eigen::VectorXd& input, const Eigen::VectorXd& output, Eigen::Index first, Eigen::Index rows) const;
+    Eigen::MatrixXd regressors(const Eigen::VectorXd& input, const Eigen::VectorXd& output, Eigen::Index first,
+                               Eigen::Index rows) const;
 
     /// Takes dy/dc of a stretch of T samples along a run, T x K, in ascending time.
     using Taker = std::function<void(Eigen::Index first, const Eigen::MatrixXd& derivatives)>;
@@ -29,11 +32,12 @@ public:
 
 private:
     /// The nodes of time t from the past of input and output.
-    void place(const Eigen::VectorXd& input, const Eigen::VectorXd& output, Eigen::Index t, Eigen::VectorXd& nodes) const;
-    Eigen::VectorXd weights(const Eigen::VectorXd& coefficients) const;   // one a node
+    void place(const Eigen::VectorXd& input, const Eigen::VectorXd& output, Eigen::Index t,
+               Eigen::VectorXd& nodes) const;
+    Eigen::VectorXd weights(const Eigen::VectorXd& coefficients) const;  // one a node
 
     Eigen::Index na_, nb_, terms_;
     MonomialProducts products_;
 };
 
-} // namespace excursion
+}  // namespace excursion

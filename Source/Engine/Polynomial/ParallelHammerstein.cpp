@@ -31,8 +31,10 @@ Eigen::MatrixXd simulate(const ParallelHammerstein& model, const Eigen::MatrixXd
     if (!model.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be simulated: " + reason + ".");
     if (input.cols() != 1)
-        throw Error(Error::Kind::usage, "A parallel Hammerstein model has one input, but the record has another number.");
-    Eigen::VectorXd power = Eigen::VectorXd::Ones(input.rows()), y = Eigen::VectorXd::Constant(input.rows(), model.offset);
+        throw Error(Error::Kind::usage,
+                    "A parallel Hammerstein model has one input, but the record has another number.");
+    Eigen::VectorXd power = Eigen::VectorXd::Ones(input.rows()),
+                    y = Eigen::VectorXd::Constant(input.rows(), model.offset);
     for (Index n = 0; n < model.degree(); ++n) {
         power.array() *= input.col(0).array();
         const Eigen::VectorXd taps = model.filters.col(n);
@@ -47,13 +49,14 @@ Eigen::MatrixXcd responses(const ParallelHammerstein& model, const std::vector<d
 {
     Eigen::MatrixXcd result(static_cast<Index>(frequency.size()), model.degree());
     for (Index f = 0; f < result.rows(); ++f) {
-        const auto step = std::polar(1.0, -2.0 * std::numbers::pi * frequency[static_cast<std::size_t>(f)] / model.sampleRate);
+        const auto step = std::polar(1.0, -2.0 * std::numbers::pi * frequency[static_cast<std::size_t>(f)]
+                                              / model.sampleRate);
         Eigen::RowVectorXcd sum = Eigen::RowVectorXcd::Zero(model.degree());
-        for (Index k = model.length(); k-- > 0;)   // Horner
+        for (Index k = model.length(); k-- > 0;)  // Horner
             sum = (sum * step + model.filters.row(k)).eval();
         result.row(f) = sum;
     }
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,7 +8,8 @@ namespace excursion {
 
 nlohmann::ordered_json toJson(const Named<ParallelHammerstein>& named)
 {
-    auto document = modelHeader("excursion-parallel-hammerstein", 1, named.name, named.model.sampleRate, named.input, named.output);
+    auto document = modelHeader("excursion-parallel-hammerstein", 1, named.name, named.model.sampleRate, named.input,
+                                named.output);
     document["offset"] = named.model.offset;
     document["branches"] = matrixJson(named.model.filters.transpose());
     return document;
@@ -21,7 +22,8 @@ Named<ParallelHammerstein> parallelHammersteinFromJson(const JsonField& field)
     const auto branches = field.at("branches").items();
     if (branches.empty() || branches[0].items().empty())
         field.at("branches").refuse("a list of taps for each power of the input, at least one");
-    const auto degree = static_cast<Eigen::Index>(branches.size()), length = static_cast<Eigen::Index>(branches[0].items().size());
+    const auto degree = static_cast<Eigen::Index>(branches.size()),
+               length = static_cast<Eigen::Index>(branches[0].items().size());
     named.model.filters = matrixFrom(field.at("branches"), degree, length).transpose();
     return named;
 }
@@ -37,4 +39,4 @@ void writeParallelHammerstein(const Named<ParallelHammerstein>& named, const std
     writeJson(toJson(named), path);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -17,4 +17,4 @@ Named<ParallelHammerstein> parallelHammersteinFromJson(const JsonField&);
 Named<ParallelHammerstein> readParallelHammerstein(const std::filesystem::path&);
 void writeParallelHammerstein(const Named<ParallelHammerstein>&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

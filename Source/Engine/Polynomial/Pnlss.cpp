@@ -37,10 +37,11 @@ Polynomial product(const Polynomial& a, const Polynomial& b)
 void requireDiscrete(const StateSpace& linear)
 {
     if (linear.continuous())
-        throw Error(Error::Kind::usage, "A polynomial state-space model is built on a linear model of discrete time; transform it first.");
+        throw Error(Error::Kind::usage,
+                    "A polynomial state-space model is built on a linear model of discrete time; transform it first.");
 }
 
-} // namespace
+}  // namespace
 
 bool Pnlss::isValid(std::string* reason) const
 {
@@ -57,7 +58,9 @@ bool Pnlss::fits(std::string* reason) const
     if (K > 0 && exponents.cols() != n + m)
         return refuse(reason, "the exponents of a monomial must be as many as states and inputs");
     if (K > 0 && (exponents.minCoeff() < 0 || (exponents.rowwise().sum().array() == 1).any()))
-        return refuse(reason, "a monomial needs exponents of at least 0 and a degree that is not 1, as A, B, C and D are of degree 1");
+        return refuse(
+            reason,
+            "a monomial needs exponents of at least 0 and a degree that is not 1, as A, B, C and D are of degree 1");
     if (E.rows() != n || E.cols() != K || F.rows() != p || F.cols() != K || free.rows() != n + p || free.cols() != K)
         return refuse(reason, "E, F and what is free must have one column a monomial, and rows as A and C");
     if (!E.allFinite() || !F.allFinite())
@@ -80,7 +83,8 @@ Pnlss withTerms(const StateSpace& linear, const Exponents& chosen)
     std::set<std::vector<int>> seen;
     for (Index k = 0; k < chosen.rows(); ++k)
         if (const Eigen::RowVectorXi row = chosen.row(k); !seen.emplace(row.begin(), row.end()).second)
-            throw Error(Error::Kind::usage, "These monomials make no model: number " + std::to_string(k + 1) + " of the list occurs twice.");
+            throw Error(Error::Kind::usage, "These monomials make no model: number " + std::to_string(k + 1)
+                                                + " of the list occurs twice.");
     return model;
 }
 
@@ -186,4 +190,4 @@ Pnlss transformed(const Pnlss& model, const MatrixXd& T)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

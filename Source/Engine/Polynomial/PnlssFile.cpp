@@ -30,7 +30,7 @@ Json termJson(const Pnlss& model, Index k)
     return {{"exponents", exponents}, {"E", E}, {"F", F}, {"free", free}};
 }
 
-} // namespace
+}  // namespace
 
 Json termsJson(const Pnlss& model)
 {
@@ -106,4 +106,4 @@ NamedPnlss readPnlss(const std::filesystem::path& path)
 
 void writePnlss(const NamedPnlss& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
 
-} // namespace excursion
+}  // namespace excursion

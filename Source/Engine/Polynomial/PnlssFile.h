@@ -13,11 +13,12 @@ namespace excursion {
 /// A PNLSS model with the names of what it connects, as the document "excursion-pnlss" 1 keeps it.
 struct NamedPnlss {
     std::string name;
-    std::vector<std::string> inputs, outputs;   ///< quantities, "voltage"
+    std::vector<std::string> inputs, outputs;  ///< quantities, "voltage"
     Pnlss model;
 };
 
-/// The field "terms": exponents, coefficients and what is free, an object a monomial. Reading takes the shapes from model.linear.
+/// The field "terms": exponents, coefficients and what is free, an object a monomial. Reading takes the shapes from
+/// model.linear.
 nlohmann::ordered_json termsJson(const Pnlss&);
 void readTerms(const JsonField&, Pnlss& model);
 
@@ -29,4 +30,4 @@ NamedPnlss pnlssFromJson(const JsonField&);
 NamedPnlss readPnlss(const std::filesystem::path&);
 void writePnlss(const NamedPnlss&, const std::filesystem::path&);
 
-} // namespace excursion
+}  // namespace excursion

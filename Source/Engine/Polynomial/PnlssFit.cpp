@@ -24,25 +24,32 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Way {
     VectorXd values;
     double damping = 1.0, judgedDb = infinity;
-    int iterations = 0;   // by simulation of the whole records
+    int iterations = 0;  // by simulation of the whole records
     PnlssFit fit;
 };
 
 /// The ways of one fit.
 class Fitting {
 public:
-    Fitting(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options,
-            const Progress& progress)
-        : start_(start), estimation_(estimation), validation_(validation), options_(options), problem_(estimation, options, start)
+    Fitting(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+            const PnlssFitOptions& options, const Progress& progress)
+        : start_(start),
+          estimation_(estimation),
+          validation_(validation),
+          options_(options),
+          problem_(estimation, options, start)
     {
-        const double all = options.maximumIterations, guided = static_cast<double>(guidedIterations() * static_cast<int>(options.guideGains.size()));
+        const double all = options.maximumIterations,
+                     guided = static_cast<double>(guidedIterations() * static_cast<int>(options.guideGains.size()));
         const double most = options.search == PnlssSearch::plain    ? all
-                          : options.search == PnlssSearch::guided ? all + guided
-                          : options.search == PnlssSearch::grown  ? 2.0 * all
-                                                                  : 2.5 * all + guided;
+                            : options.search == PnlssSearch::guided ? all + guided
+                            : options.search == PnlssSearch::grown  ? 2.0 * all
+                                                                    : 2.5 * all + guided;
         searching_.costTolerance = options.costTolerance;
         searching_.rankTolerance = options.rankTolerance;
-        searching_.begun = [this, most, &progress] { progress.at(std::min(iterations_++ / most, 1.0), "fitting the polynomial model"); };
+        searching_.begun = [this, most, &progress] {
+            progress.at(std::min(iterations_++ / most, 1.0), "fitting the polynomial model");
+        };
     }
 
     bool isFree() const { return problem_.parameters() > 0; }
@@ -73,7 +80,7 @@ public:
         problem_.guide(0.0, way.values);
         if (problem_.holdBack(way.values)) {
             if (!way.fit.history.empty())
-                way.fit.history.pop_back();   // the search tells of its start
+                way.fit.history.pop_back();  // the search tells of its start
             searching_.accepted = [&](const VectorXd& values, double cost) { judge(way, values, cost); };
             const auto summary = go(problem_, way, iterations - way.iterations);
             way.iterations += summary.iterations;
@@ -128,7 +135,8 @@ private:
         auto& fit = way.fit;
         const auto model = problem_.modelAt(values);
         fit.history.push_back(decibelsOf(cost));
-        const double validationDb = validation_.empty() ? std::numeric_limits<double>::quiet_NaN() : relativeErrorDb(model, validation_);
+        const double validationDb = validation_.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                        : relativeErrorDb(model, validation_);
         const double judgedDb = validation_.empty() ? decibelsOf(cost) : validationDb;
         if (judgedDb < way.judgedDb) {
             way.judgedDb = judgedDb;
@@ -147,7 +155,7 @@ private:
     int iterations_ = 0;
 };
 
-} // namespace
+}  // namespace
 
 bool PnlssFitOptions::isValid(std::string* reason) const
 {
@@ -162,12 +170,14 @@ bool PnlssFitOptions::isValid(std::string* reason) const
     for (const double g : guideGains)
         if (!(g > 0.0 && g <= 1.0))
             return refuse(reason, "the gains of a guided search must lie above 0 and not above 1");
-    if (lineWeights.size() != 0 && (!lineWeights.allFinite() || lineWeights.minCoeff() < 0.0 || lineWeights.maxCoeff() == 0.0))
+    if (lineWeights.size() != 0
+        && (!lineWeights.allFinite() || lineWeights.minCoeff() < 0.0 || lineWeights.maxCoeff() == 0.0))
         return refuse(reason, "weights of the spectrum must be at least 0, and not all 0");
     return true;
 }
 
-double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& records, const std::vector<VectorXd>& initialStates)
+double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& records,
+                       const std::vector<VectorXd>& initialStates)
 {
     const Recursion recursion(model, false);
     MatrixXd states;
@@ -180,8 +190,8 @@ double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& recor
     return outputErrorDb(outputs, records);
 }
 
-PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
-                  const PnlssFitOptions& options, const Progress& progress)
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
+                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
 {
     std::string reason;
     if (!start.isValid(&reason) || !options.isValid(&reason))
@@ -190,7 +200,8 @@ PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation
     for (const auto& record : estimation)
         if (options.lineWeights.size() != 0
             && (!record.periodic || (record.input.rows() - record.skip) / 2 + 1 != options.lineWeights.size()))
-            throw Error(Error::Kind::data, "Weights of the spectrum need periodic records, and as many numbers as a record has lines.");
+            throw Error(Error::Kind::data,
+                        "Weights of the spectrum need periodic records, and as many numbers as a record has lines.");
     Fitting fitting(start, estimation, validation, options, progress);
     if (!fitting.isFree())
         throw Error(Error::Kind::usage, "The model cannot be fitted: nothing of it is free.");
@@ -213,4 +224,4 @@ PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation
     return best.fit;
 }
 
-} // namespace excursion
+}  // namespace excursion

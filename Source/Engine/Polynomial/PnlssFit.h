@@ -12,23 +12,30 @@ namespace excursion {
 
 /// How a fit begins; see fitPnlss.
 enum class PnlssSearch {
-    plain,    ///< by simulation
-    guided,   ///< following the measured output
-    grown,    ///< on the first quarter of each record
-    any       ///< in all three ways, one after the other as long as none comes to enoughDb; the best one goes on
+    plain,   ///< by simulation
+    guided,  ///< following the measured output
+    grown,   ///< on the first quarter of each record
+    any      ///< in all three ways, one after the other as long as none comes to enoughDb; the best one goes on
 };
 
 struct PnlssFitOptions {
-    int maximumIterations = 100;        ///< of a way, by simulation of the whole records; what leads up to that comes on top
-    double costTolerance = 1e-8;        ///< stop when three accepted steps in a row lower the cost by less than this fraction
-    double rankTolerance = 1e-13;       ///< singular values of the scaled Jacobian below this, relative to the largest, are cut off
-    bool linearFree = true;             ///< A, B, C, D move too
-    bool estimateInitialStates = false; ///< each record's first state is a parameter; else it is zero, and `skip` has to do
+    /// of a way, by simulation of the whole records; what leads up to that comes on top
+    int maximumIterations = 100;
+    /// stop when three accepted steps in a row lower the cost by less than this fraction
+    double costTolerance = 1e-8;
+    /// singular values of the scaled Jacobian below this, relative to the largest, are cut off
+    double rankTolerance = 1e-13;
+    bool linearFree = true;  ///< A, B, C, D move too
+    bool estimateInitialStates =
+        false;  ///< each record's first state is a parameter; else it is zero, and `skip` has to do
     PnlssSearch search = PnlssSearch::any;
-    std::vector<double> guideGains {1.0, 0.5, 0.2, 0.1, 0.05, 0.02};   ///< of a guided search: see fitPnlss
-    double enoughDb = -200.0;           ///< relative rms error, on the validation records where there are any, below which no other way is tried; of the weighted error where there are weights and no such records
+    std::vector<double> guideGains {1.0, 0.5, 0.2, 0.1, 0.05, 0.02};  ///< of a guided search: see fitPnlss
+    /// relative rms error, on the validation records where there are any, below which no other way is tried; of the
+    /// weighted error where there are weights and no such records
+    double enoughDb = -200.0;
 
-    /// Weights of the error's spectrum, one a line 0 .. N/2 of the judged samples of each record (all equally long, periodic); empty: all equal.
+    /// Weights of the error's spectrum, one a line 0 .. N/2 of the judged samples of each record (all equally long,
+    /// periodic); empty: all equal.
     Eigen::VectorXd lineWeights;
 
     bool isValid(std::string* reason = nullptr) const;
@@ -37,34 +44,41 @@ struct PnlssFitOptions {
 /// What became of a fit; the default is failure.
 struct PnlssFit {
     Pnlss model;
-    std::vector<Eigen::VectorXd> initialStates;   ///< one a record, where they were estimated
-    double estimationDb = 0.0, validationDb = 0.0;   ///< relative rms error (seed 4.26), of the model that is returned; validation NaN without records
-    int iterations = 0;              ///< of all ways
+    std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they were estimated
+    /// relative rms error (seed 4.26), of the model that is returned; validation NaN without records
+    double estimationDb = 0.0, validationDb = 0.0;
+    int iterations = 0;  ///< of all ways
     bool converged = false;
-    bool stable = false;             ///< its linear part is stable and no record made it run away
+    bool stable = false;  ///< its linear part is stable and no record made it run away
     std::string reason = "the fit was not run";
-    std::vector<double> history;     ///< relative rms error in dB on the estimation records after each accepted step of the way that was kept
+    /// relative rms error in dB on the estimation records after each accepted step of the way that was kept
+    std::vector<double> history;
 };
 
-/// 20 log10(|model - measured| / |measured|) over all records and outputs, samples after `skip`; +infinity when the model runs away.
-double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&, const std::vector<Eigen::VectorXd>& initialStates = {});
+/// 20 log10(|model - measured| / |measured|) over all records and outputs, samples after `skip`; +infinity when the
+/// model runs away.
+double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
+                       const std::vector<Eigen::VectorXd>& initialStates = {});
 
-/// Levenberg-Marquardt on the simulation error (seed 4.3.1 and appendix C), columns scaled to unit length, singular values truncated, steps bent along
-/// the error's valleys (see Search.h).
+/// Levenberg-Marquardt on the simulation error (seed 4.3.1 and appendix C), columns scaled to unit length, singular
+/// values truncated, steps bent along the error's valleys (see Search.h).
 ///
-/// Only the triangular factor of [J, r] is kept, gathered block by block by orthogonal transformations, so memory stays bounded and no condition
-/// number is squared: what the seed loses to its normal equations.
-/// A step that lets a simulation run away is refused. Where there are validation records the model with the least error on them is returned.
+/// Only the triangular factor of [J, r] is kept, gathered block by block by orthogonal transformations, so memory stays
+/// bounded and no condition number is squared: what the seed loses to its normal equations. A step that lets a
+/// simulation run away is refused. Where there are validation records the model with the least error on them is
+/// returned.
 ///
-/// A plain search may end in a valley that leads nowhere; which one depends on where it sets out. Three ways fail in different cases, so each is gone for half
-/// of the iterations, and the best one on to their end.
+/// A plain search may end in a valley that leads nowhere; which one depends on where it sets out. Three ways fail in
+/// different cases, so each is gone for half of the iterations, and the best one on to their end.
 ///
-/// Guided: with gains g_1 > g_2 > .. the model is first fitted while it follows the measured output, x(t+1) = f(x, u) + g L (y - yhat), L the gain
-/// of a Kalman filter on the linear part. A guided model cannot drift away from the data, so its error is far smoother in the parameters than that of
-/// a simulation over thousands of samples; as g falls to 0 it becomes the simulation. Such a search also copes with a linear part that is not stable.
+/// Guided: with gains g_1 > g_2 > .. the model is first fitted while it follows the measured output, x(t+1) = f(x, u) +
+/// g L (y - yhat), L the gain of a Kalman filter on the linear part. A guided model cannot drift away from the data, so
+/// its error is far smoother in the parameters than that of a simulation over thousands of samples; as g falls to 0 it
+/// becomes the simulation. Such a search also copes with a linear part that is not stable.
 ///
-/// Grown: a quarter of a record lets errors of the model add up for a shorter time, and its error has fewer valleys. Weights of the spectrum come later.
-PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
-                  const PnlssFitOptions& = {}, const Progress& = {});
+/// Grown: a quarter of a record lets errors of the model add up for a shorter time, and its error has fewer valleys.
+/// Weights of the spectrum come later.
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
+                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
 
-} // namespace excursion
+}  // namespace excursion

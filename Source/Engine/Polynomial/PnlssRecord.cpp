@@ -13,15 +13,17 @@ namespace excursion {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Index inputs, Index outputs)
+void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+                    Index inputs, Index outputs)
 {
     if (estimation.empty())
         throw Error(Error::Kind::data, "The model cannot be fitted: there is no record to fit it to.");
     for (const auto* records : {&estimation, &validation})
         for (const auto& record : *records) {
-            if (record.input.cols() != inputs || record.output.cols() != outputs || record.input.rows() != record.output.rows() || record.skip < 0
-                || record.skip >= record.input.rows())
-                throw Error(Error::Kind::data, "A record does not fit the model: its inputs, outputs or length are others.");
+            if (record.input.cols() != inputs || record.output.cols() != outputs
+                || record.input.rows() != record.output.rows() || record.skip < 0 || record.skip >= record.input.rows())
+                throw Error(Error::Kind::data,
+                            "A record does not fit the model: its inputs, outputs or length are others.");
             if (!record.input.allFinite() || !record.output.allFinite())
                 throw Error(Error::Kind::data, "A record holds a sample that is not finite.");
         }
@@ -57,7 +59,8 @@ double judgedPower(const std::vector<PnlssRecord>& records)
     return power;
 }
 
-void foldJudged(TallQr& qr, const PnlssRecord& record, Index first, const MatrixXd& derivatives, const Eigen::VectorXd& error)
+void foldJudged(TallQr& qr, const PnlssRecord& record, Index first, const MatrixXd& derivatives,
+                const Eigen::VectorXd& error)
 {
     const Index drop = std::clamp<Index>(record.skip - first, 0, derivatives.rows()), rows = derivatives.rows() - drop;
     if (rows == 0)
@@ -77,4 +80,4 @@ double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::ve
     return std::isfinite(error) ? decibelsOf(error / judgedPower(records)) : std::numeric_limits<double>::infinity();
 }
 
-} // namespace excursion
+}  // namespace excursion

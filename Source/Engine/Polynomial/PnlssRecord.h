@@ -15,21 +15,28 @@ class TallQr;
 
 /// A stretch of input and output that a PNLSS model is fitted to or judged by.
 struct PnlssRecord {
-    Eigen::MatrixXd input;    ///< N x m
-    Eigen::MatrixXd output;   ///< N x p, as measured
-    Eigen::Index skip = 0;    ///< samples at the start that the model is simulated through but not judged on: its transient dies there
-    bool periodic = false;    ///< the samples after `skip` are whole periods in steady state, as frequency weights need
+    Eigen::MatrixXd input;   ///< N x m
+    Eigen::MatrixXd output;  ///< N x p, as measured
+    /// samples at the start that the model is simulated through but not judged on: its transient dies there
+    Eigen::Index skip = 0;
+    /// the samples after `skip` are whole periods in steady state, as frequency weights need
+    bool periodic = false;
 };
 
-/// A record of one steady period: `before` of its last samples are put in front, again and again if need be, to let the transient die.
+/// A record of one steady period: `before` of its last samples are put in front, again and again if need be, to let the
+/// transient die.
 PnlssRecord periodicRecord(const Eigen::MatrixXd& input, const Eigen::MatrixXd& output, Eigen::Index before);
 
-/// Throws Error (data) unless there is something to estimate from, and all records fit a model of these inputs and outputs and are finite.
-void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation, Eigen::Index inputs, Eigen::Index outputs);
+/// Throws Error (data) unless there is something to estimate from, and all records fit a model of these inputs and
+/// outputs and are finite.
+void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+                    Eigen::Index inputs, Eigen::Index outputs);
 
-/// The same before a fit of a model with one input and one output; options that are not valid and sample rates that are none: Error (usage).
+/// The same before a fit of a model with one input and one output; options that are not valid and sample rates that are
+/// none: Error (usage).
 template <class Options>
-void requireFitting(const Options& options, double sampleRate, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation)
+void requireFitting(const Options& options, double sampleRate, const std::vector<PnlssRecord>& estimation,
+                    const std::vector<PnlssRecord>& validation)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -45,12 +52,14 @@ Eigen::MatrixXd judgedError(const PnlssRecord&, const Eigen::MatrixXd& modelled)
 /// |measured|^2 of the samples after `skip`, of all records.
 double judgedPower(const std::vector<PnlssRecord>&);
 
-/// Folds [derivatives, error] of a stretch of a record's samples, `first` and those after it, as far as they are judged.
+/// Folds [derivatives, error] of a stretch of a record's samples, `first` and those after it, as far as they are
+/// judged.
 /// @param error  one output's column of judgedError()
-void foldJudged(TallQr&, const PnlssRecord&, Eigen::Index first, const Eigen::MatrixXd& derivatives, const Eigen::VectorXd& error);
+void foldJudged(TallQr&, const PnlssRecord&, Eigen::Index first, const Eigen::MatrixXd& derivatives,
+                const Eigen::VectorXd& error);
 
-/// 20 log10(|modelled - measured| / |measured|) over all records, samples after `skip` (seed 4.26); +infinity where the model ran away, NaN
-/// without records.
+/// 20 log10(|modelled - measured| / |measured|) over all records, samples after `skip` (seed 4.26); +infinity where the
+/// model ran away, NaN without records.
 /// @param modelled  one a record, N x p
 double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<PnlssRecord>&);
 
@@ -64,4 +73,4 @@ double simulationErrorDb(const Model& model, const std::vector<PnlssRecord>& rec
     return outputErrorDb(outputs, records);
 }
 
-} // namespace excursion
+}  // namespace excursion

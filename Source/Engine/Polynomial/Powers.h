@@ -19,4 +19,4 @@ inline Eigen::MatrixXd powersOf(const Eigen::VectorXd& v, int lowest, Eigen::Ind
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -17,10 +17,13 @@ using lanes::abreast, lanes::pitch, lanes::stretch;
 
 Index padded(Index count, Index unit) { return (count + unit - 1) / unit * unit; }
 
-} // namespace
+}  // namespace
 
 Recursion::Recursion(const Pnlss& structure, bool linearFree)
-    : n_(structure.linear.order()), m_(structure.linear.inputs()), p_(structure.linear.outputs()), monomials_(structure.exponents, n_ + m_, n_)
+    : n_(structure.linear.order()),
+      m_(structure.linear.inputs()),
+      p_(structure.linear.outputs()),
+      monomials_(structure.exponents, n_ + m_, n_)
 {
     for (Index row = 0; row < n_ + p_; ++row) {
         const auto first = static_cast<Index>(columns_.size());
@@ -44,8 +47,8 @@ VectorXd Recursion::valuesOf(const Pnlss& model) const
         const bool state = row < n_;
         const Index r = state ? row : row - n_;
         values[c] = regressor < n_        ? (state ? model.linear.A : model.linear.C)(r, regressor)
-                  : regressor < n_ + m_ ? (state ? model.linear.B : model.linear.D)(r, regressor - n_)
-                                        : (state ? model.E : model.F)(r, regressor - n_ - m_);
+                    : regressor < n_ + m_ ? (state ? model.linear.B : model.linear.D)(r, regressor - n_)
+                                          : (state ? model.E : model.F)(r, regressor - n_ - m_);
     }
     return values;
 }
@@ -65,13 +68,13 @@ void Recursion::setValues(Pnlss& model, const VectorXd& values) const
     }
 }
 
-bool Recursion::run(const Pnlss& model, const MatrixXd& input, const VectorXd& initial, double bound, MatrixXd& states, MatrixXd& outputs,
-                    const Guide* guide) const
+bool Recursion::run(const Pnlss& model, const MatrixXd& input, const VectorXd& initial, double bound, MatrixXd& states,
+                    MatrixXd& outputs, const Guide* guide) const
 {
     const auto N = input.rows();
     const auto rows = padded(n_ + p_, 4);
     const auto nodes = monomials_.nodes();
-    MatrixXd W = MatrixXd::Zero(rows, nodes);   // one column a node
+    MatrixXd W = MatrixXd::Zero(rows, nodes);  // one column a node
     W.block(0, 1, n_, n_) = model.linear.A;
     W.block(0, 1 + n_, n_, m_) = model.linear.B;
     W.block(n_, 1, p_, n_) = model.linear.C;
@@ -113,9 +116,13 @@ Recursion::Stretch Recursion::room() const
     return along;
 }
 
-Index Recursion::nodeOf(Index regressor) const { return regressor < n_ + m_ ? 1 + regressor : monomials_.termNode(regressor - n_ - m_); }
+Index Recursion::nodeOf(Index regressor) const
+{
+    return regressor < n_ + m_ ? 1 + regressor : monomials_.termNode(regressor - n_ - m_);
+}
 
-void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Guide* guide, Index first, Index T, Stretch& along) const
+void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Guide* guide,
+                       Index first, Index T, Stretch& along) const
 {
     for (Index i = 0; i < n_; ++i)
         along.values.col(1 + i).head(T) = states.row(i).segment(first, T).transpose();
@@ -123,7 +130,8 @@ void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd
         along.values.col(1 + n_ + i).head(T) = input.col(i).segment(first, T);
     Index node = 1 + n_ + m_;
     for (const auto& product : monomials_.products())
-        lanes::multiply(along.values.col(node++).data(), along.values.col(product.left).data(), along.values.col(product.right).data(), T);
+        lanes::multiply(along.values.col(node++).data(), along.values.col(product.left).data(),
+                        along.values.col(product.right).data(), T);
     for (Index i = 0; i < n_ + p_; ++i)
         for (Index j = 0; j < n_; ++j)
             along.MG.col(i * n_ + j).setConstant(i < n_ ? model.linear.A(i, j) : model.linear.C(i - n_, j));
@@ -131,30 +139,35 @@ void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd
         for (Index i = 0; i < n_ + p_; ++i) {
             const double c = i < n_ ? model.E(i, slope.term) : model.F(i - n_, slope.term);
             if (c != 0.0)
-                lanes::addScaled(along.MG.col(i * n_ + slope.state).data(), c * slope.factor, along.values.col(slope.node).data(), T);
+                lanes::addScaled(along.MG.col(i * n_ + slope.state).data(), c * slope.factor,
+                                 along.values.col(slope.node).data(), T);
         }
-    if (guide)   // M - L G
+    if (guide)  // M - L G
         for (Index i = 0; i < n_; ++i)
             for (Index o = 0; o < p_; ++o)
                 for (Index j = 0; j < n_; ++j)
-                    lanes::addScaled(along.MG.col(i * n_ + j).data(), -guide->gain(i, o), along.MG.col((n_ + o) * n_ + j).data(), T);
+                    lanes::addScaled(along.MG.col(i * n_ + j).data(), -guide->gain(i, o),
+                                     along.MG.col((n_ + o) * n_ + j).data(), T);
 }
 
-void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Taker& take, const Guide* guide) const
+void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Taker& take,
+                              const Guide* guide) const
 {
     const auto N = input.rows(), P = parameters();
     auto along = room();
-    // Eight columns of a row side by side are a lane: one stretch of memory, [time][column]. Last those of the initial state.
+    // Eight columns of a row side by side are a lane: one stretch of memory, [time][column]. Last those of the initial
+    // state.
     std::vector<Group> groups = groups_;
     groups.push_back({-1, P, n_});
-    std::vector<Index> place;   // the first lane of a group
+    std::vector<Index> place;  // the first lane of a group
     Index lanesInAll = 0;
     for (const auto& group : groups) {
         place.push_back(lanesInAll);
         lanesInAll += padded(group.count, abreast) / abreast;
     }
     const auto source = regressorLanes(groups, place);
-    MatrixXd regressors = MatrixXd::Zero(abreast * stretch, lanesInAll), J = MatrixXd::Zero(abreast * stretch, p_ * lanesInAll);
+    MatrixXd regressors = MatrixXd::Zero(abreast * stretch, lanesInAll),
+             J = MatrixXd::Zero(abreast * stretch, p_ * lanesInAll);
     MatrixXd X = MatrixXd::Zero(abreast * std::max<Index>(n_, 1), lanesInAll), scratch(abreast, std::max<Index>(n_, 1));
     for (Index i = 0; i < n_; ++i)
         X(abreast * i + i % abreast, place.back() + i / abreast) = 1.0;
@@ -179,8 +192,10 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                 double* r = regressors.col(source[g] + c / abreast).data();
                 if (!initial && source[g] == place[g]) {
                     const double* from[abreast];
-                    for (Index l = 0; l < abreast; ++l) {   // the last one again where there are no more
-                        const auto regressor = columns_[static_cast<std::size_t>(group.first + std::min(c + l, group.count - 1))].regressor;
+                    for (Index l = 0; l < abreast; ++l) {  // the last one again where there are no more
+                        const auto regressor =
+                            columns_[static_cast<std::size_t>(group.first + std::min(c + l, group.count - 1))]
+                                .regressor;
                         from[l] = along.values.col(nodeOf(regressor)).data();
                     }
                     lanes::toRows(r, from, T);
@@ -191,8 +206,9 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                     for (Index o = 0; o < p_; ++o)
                         J.col(o * lanesInAll + lane).setZero();
                 else
-                    lanes::columnsThroughBlock(n_, M, G, p_, r, gains.col(static_cast<Index>(g)).data(), initial || ofOutput ? -1 : group.row,
-                                               X.col(lane).data(), scratch.data(), J.col(lane).data(), J.rows() * lanesInAll, T);
+                    lanes::columnsThroughBlock(n_, M, G, p_, r, gains.col(static_cast<Index>(g)).data(),
+                                               initial || ofOutput ? -1 : group.row, X.col(lane).data(), scratch.data(),
+                                               J.col(lane).data(), J.rows() * lanesInAll, T);
                 if (ofOutput)
                     J.col((group.row - n_) * lanesInAll + lane) += regressors.col(source[g] + c / abreast);
             }
@@ -202,7 +218,8 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
             target.resize(T, P + n_);
             for (std::size_t g = 0; g < groups.size(); ++g)
                 for (Index c = 0; c < groups[g].count; c += abreast)
-                    lanes::toColumns(target.data() + (groups[g].first + c) * T, T, J.col(o * lanesInAll + place[g] + c / abreast).data(),
+                    lanes::toColumns(target.data() + (groups[g].first + c) * T, T,
+                                     J.col(o * lanesInAll + place[g] + c / abreast).data(),
                                      std::min(abreast, groups[g].count - c), T);
         }
         take(first, derivatives);
@@ -216,21 +233,23 @@ std::vector<Index> Recursion::regressorLanes(const std::vector<Group>& groups, c
     const auto alike = [&](const Group& a, const Group& b) {
         const auto column = columns_.begin();
         return a.count == b.count
-            && std::equal(column + a.first, column + a.first + a.count, column + b.first,
-                          [](const Column& x, const Column& y) { return x.regressor == y.regressor; });
+               && std::equal(column + a.first, column + a.first + a.count, column + b.first,
+                             [](const Column& x, const Column& y) { return x.regressor == y.regressor; });
     };
-    for (std::size_t g = 1; g + 1 < groups.size(); ++g)   // not those of the initial state, which have none
+    for (std::size_t g = 1; g + 1 < groups.size(); ++g)  // not those of the initial state, which have none
         for (std::size_t h = g; h-- > 0;)
             if (alike(groups[h], groups[g]))
                 source[g] = source[h];
     return source;
 }
 
-VectorXd Recursion::pullBack(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const MatrixXd& weights, const Guide* guide) const
+VectorXd Recursion::pullBack(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const MatrixXd& weights,
+                             const Guide* guide) const
 {
     const auto N = input.rows();
     auto along = room();
-    // Of every row the weight that its regressors bear, at every time: lambda(t+1) of the states, w(t) of the outputs less what the guide passes on.
+    // Of every row the weight that its regressors bear, at every time: lambda(t+1) of the states, w(t) of the outputs
+    // less what the guide passes on.
     MatrixXd bears(n_ + p_, stretch), sums = MatrixXd::Zero(n_ + p_, monomials_.nodes());
     VectorXd lambda = VectorXd::Zero(n_), before(n_);
     for (Index first = (N - 1) / stretch * stretch; first >= 0; first -= stretch) {
@@ -260,4 +279,4 @@ VectorXd Recursion::pullBack(const Pnlss& model, const MatrixXd& input, const Ma
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -14,9 +14,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double boldness = 1000.0;    // by which the damping falls with a step that is taken
-const double caution = std::sqrt(10.0);   // by which it rises with one that is not
-constexpr double hopeless = 1e3;      // times the cost: no bend makes up for that
+constexpr double boldness = 1000.0;      // by which the damping falls with a step that is taken
+const double caution = std::sqrt(10.0);  // by which it rises with one that is not
+constexpr double hopeless = 1e3;         // times the cost: no bend makes up for that
 
 /// The damped least squares of one iteration.
 class Linearization {
@@ -25,7 +25,8 @@ public:
     Linearization(const MatrixXd& R, double rankTolerance)
     {
         const auto P = R.cols() - 1;
-        scale_ = R.leftCols(P).colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+        scale_ = R.leftCols(P).colwise().norm().transpose().unaryExpr(
+            [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
         svd_ = thinSvd(R.topLeftCorner(P, P) * scale_.asDiagonal());
         s_ = (svd_.s.array() > rankTolerance * svd_.s[0]).select(svd_.s, 0.0);
         gradient_ = s_.cwiseProduct(svd_.U.transpose() * R.col(P).head(P));
@@ -76,7 +77,7 @@ Trial straightOrBent(SearchProblem& problem, const Trial& from, const Linearizat
     return bent.cost < straight.cost ? bent : straight;
 }
 
-} // namespace
+}  // namespace
 
 SearchSummary search(SearchProblem& problem, const VectorXd& start, const SearchOptions& options)
 {
@@ -133,4 +134,4 @@ SearchSummary search(SearchProblem& problem, const VectorXd& start, const Search
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

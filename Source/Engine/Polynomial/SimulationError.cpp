@@ -17,10 +17,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double far = 1e12;   // no state of a model that follows a measurement goes there
+constexpr double far = 1e12;  // no state of a model that follows a measurement goes there
 
-/// The gain L of the stationary Kalman filter x(t+1|t) of a linear model, process noise on all states in the proportion of their
-/// movement: by iterating Riccati's equation, which converges for an unstable A as well.
+/// The gain L of the stationary Kalman filter x(t+1|t) of a linear model, process noise on all states in the proportion
+/// of their movement: by iterating Riccati's equation, which converges for an unstable A as well.
 MatrixXd kalmanGain(const StateSpace& model, const VectorXd& movement, const VectorXd& outputPower, double ratio)
 {
     const auto n = model.order();
@@ -46,11 +46,17 @@ VectorXd outputPower(const std::vector<PnlssRecord>& records)
     return sum / static_cast<double>(records.size());
 }
 
-} // namespace
+}  // namespace
 
-SimulationError::SimulationError(const std::vector<PnlssRecord>& records, const PnlssFitOptions& options, const Pnlss& structure)
-    : structure_(structure), records_(records), options_(options), recursion_(structure, options.linearFree), n_(structure.linear.order()),
-      states_(records.size()), outputs_(records.size())
+SimulationError::SimulationError(const std::vector<PnlssRecord>& records, const PnlssFitOptions& options,
+                                 const Pnlss& structure)
+    : structure_(structure),
+      records_(records),
+      options_(options),
+      recursion_(structure, options.linearFree),
+      n_(structure.linear.order()),
+      states_(records.size()),
+      outputs_(records.size())
 {
     for (const auto& record : records)
         power_ += weighted(record.output.bottomRows(record.output.rows() - record.skip)).squaredNorm();
@@ -128,7 +134,8 @@ bool SimulationError::play(const Pnlss& model, const VectorXd& values)
 {
     for (std::size_t k = 0; k < records_.size(); ++k) {
         const auto guide = guideOf(records_[k]);
-        if (!recursion_.run(model, records_[k].input, initialState(values, k), bound_, states_[k], outputs_[k], guide ? &*guide : nullptr))
+        if (!recursion_.run(model, records_[k].input, initialState(values, k), bound_, states_[k], outputs_[k],
+                            guide ? &*guide : nullptr))
             return false;
     }
     return true;
@@ -148,7 +155,8 @@ MatrixXd SimulationError::factor(const VectorXd& values)
         const auto N = record.output.rows();
         const MatrixXd rest = judgedError(record, outputs_[k]);
         const auto guide = guideOf(record);
-        std::vector<MatrixXd> whole;   // for weights along the spectrum the record's Jacobian has to stand as a whole
+        // for weights along the spectrum the record's Jacobian has to stand as a whole
+        std::vector<MatrixXd> whole;
         if (spectral)
             whole.assign(static_cast<std::size_t>(record.output.cols()), MatrixXd::Zero(N, all));
         recursion_.differentiate(
@@ -178,7 +186,7 @@ MatrixXd SimulationError::factor(const VectorXd& values)
 
 VectorXd SimulationError::curvature(const VectorXd& values, const VectorXd& step)
 {
-    constexpr double h = 0.1;   // of the step: fourth derivatives count for little
+    constexpr double h = 0.1;  // of the step: fourth derivatives count for little
     const VectorXd forth = values + h * step, back = values - h * step;
     if (!play(modelAt(forth), forth))
         return {};
@@ -193,9 +201,11 @@ VectorXd SimulationError::curvature(const VectorXd& values, const VectorXd& step
         const auto rows = record.output.rows() - record.skip;
         MatrixXd bend = MatrixXd::Zero(record.output.rows(), record.output.cols());
         // The weights are a symmetric filter: once for the error, once for the Jacobian.
-        bend.bottomRows(rows) = weighted(weighted((2.0 * linearOutputs_[k] - ahead[k] - outputs_[k]).bottomRows(rows) / (h * h)));
+        bend.bottomRows(rows) = weighted(
+            weighted((2.0 * linearOutputs_[k] - ahead[k] - outputs_[k]).bottomRows(rows) / (h * h)));
         const auto guide = guideOf(record);
-        const VectorXd part = recursion_.pullBack(model, record.input, linearStates_[k], bend, guide ? &*guide : nullptr);
+        const VectorXd part = recursion_.pullBack(model, record.input, linearStates_[k], bend,
+                                                  guide ? &*guide : nullptr);
         sum.head(P) += part.head(P);
         if (options_.estimateInitialStates)
             sum.segment(P + n_ * static_cast<Index>(k), n_) += part.tail(n_);
@@ -238,4 +248,4 @@ MatrixXd SimulationError::weighted(const MatrixXd& columns) const
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,7 +16,8 @@ Eigen::MatrixXd columnOf(std::span<const double> samples)
 }
 
 /// Of all periods of a realization around their mean, summed.
-double scatterOf(const Measurement& take, const Channel& output, int level, int realization, const std::vector<double>& mean)
+double scatterOf(const Measurement& take, const Channel& output, int level, int realization,
+                 const std::vector<double>& mean)
 {
     double scatter = 0.0;
     for (int p = 0; p < take.excitation->periods; ++p) {
@@ -27,7 +28,7 @@ double scatterOf(const Measurement& take, const Channel& output, int level, int 
     return scatter;
 }
 
-} // namespace
+}  // namespace
 
 PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Channel& output, int wantedLevel)
 {
@@ -37,7 +38,7 @@ PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Chan
         const auto u = columnOf(input.samples), y = columnOf(output.samples);
         const Eigen::Index skip = std::min<Eigen::Index>(1000, N / 10);
         records.estimation.push_back({u.topRows(cut), y.topRows(cut), skip, false});
-        records.validation.push_back({u, y, cut, false});   // led in by all that comes before
+        records.validation.push_back({u, y, cut, false});  // led in by all that comes before
         return records;
     }
     const auto& excitation = periodicExcitation(take);
@@ -54,8 +55,9 @@ PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Chan
         (last ? records.validation : records.estimation).push_back(record);
     }
     if (const double P = excitation.periods; P > 1.0)
-        records.noiseDb = decibelsOf(scatter / (P * (P - 1.0)) / power);   // the variance of the means over their power
+        // the variance of the means over their power
+        records.noiseDb = decibelsOf(scatter / (P * (P - 1.0)) / power);
     return records;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -56,13 +56,15 @@ double factorial(std::size_t n) { return std::tgamma(static_cast<double>(n) + 1.
 void requireOrder(std::size_t order)
 {
     if (order < 1 || order > highestOrder)
-        throw Error(Error::Kind::usage, "Volterra kernels are computed of orders 1 to " + std::to_string(highestOrder) + ".");
+        throw Error(Error::Kind::usage,
+                    "Volterra kernels are computed of orders 1 to " + std::to_string(highestOrder) + ".");
 }
 
-} // namespace
+}  // namespace
 
 template <class Algebra, class Number>
-void Volterra::multiply(const Algebra& algebra, Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& nodes, Index component) const
+void Volterra::multiply(const Algebra& algebra, Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& nodes,
+                        Index component) const
 {
     // Column after column a node, as nodes are made of earlier ones
     Index node = 1 + model_.linear.order() + model_.linear.inputs();
@@ -117,7 +119,8 @@ std::vector<Index> Volterra::inputsOf(std::size_t order, const std::vector<Index
     const auto inputs = given.empty() ? std::vector<Index>(order, 0) : given;
     for (const auto input : inputs)
         if (inputs.size() != order || input < 0 || input >= model_.linear.inputs())
-            throw Error(Error::Kind::usage, "A Volterra kernel needs as many inputs as its order, each of them one of the model's.");
+            throw Error(Error::Kind::usage,
+                        "A Volterra kernel needs as many inputs as its order, each of them one of the model's.");
     return inputs;
 }
 
@@ -155,7 +158,8 @@ MatrixXd Volterra::kernel(const std::vector<Index>& impulses, Index length, cons
     requireOrder(impulses.size());
     const auto inputs = inputsOf(impulses.size(), given);
     if (length < 0 || std::any_of(impulses.begin(), impulses.end(), [](Index s) { return s < 0; }))
-        throw Error(Error::Kind::usage, "A Volterra kernel needs impulses at time 0 or later, and a length of at least 0.");
+        throw Error(Error::Kind::usage,
+                    "A Volterra kernel needs impulses at time 0 or later, and a length of at least 0.");
     const auto n = model_.linear.order();
     const Subsets algebra {static_cast<Index>(impulses.size())};
     MatrixXd nodes = MatrixXd::Zero(algebra.size(), products_.nodes()), result(length, model_.linear.outputs());
@@ -196,4 +200,4 @@ std::vector<MatrixXd> Volterra::parts(const MatrixXd& input, int highest) const
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -28,7 +28,8 @@ bool VolterraSeries::isValid(std::string* reason) const
     if (first.size() == 0 || second.rows() != second.cols())
         return refuse(reason, "a Volterra series needs a first kernel, and a second one that is square");
     const auto T3 = static_cast<Index>(third.size());
-    bool finite = std::isfinite(offset) && first.allFinite() && second.allFinite(), cubic = true, symmetric = second == second.transpose();
+    bool finite = std::isfinite(offset) && first.allFinite() && second.allFinite(), cubic = true,
+         symmetric = second == second.transpose();
     for (Index i = 0; i < T3; ++i) {
         const auto& slice = third[static_cast<std::size_t>(i)];
         cubic = cubic && slice.rows() == T3 && slice.cols() == T3;
@@ -38,7 +39,8 @@ bool VolterraSeries::isValid(std::string* reason) const
         symmetric = symmetric && cubic && slice == slice.transpose();
     }
     if (!cubic)
-        return refuse(reason, "the third kernel of a Volterra series needs as many matrices as each has rows and columns");
+        return refuse(reason,
+                      "the third kernel of a Volterra series needs as many matrices as each has rows and columns");
     if (!finite)
         return refuse(reason, "a kernel of a Volterra series is not finite");
     if (!symmetric)
@@ -53,11 +55,12 @@ MatrixXd simulate(const VolterraSeries& model, const MatrixXd& input)
         throw Error(Error::Kind::usage, "The model cannot be simulated: " + reason + ".");
     if (input.cols() != 1)
         throw Error(Error::Kind::usage, "A Volterra series has one input, but the record has another number.");
-    const Index N = input.rows(), T2 = model.second.rows(), T3 = static_cast<Index>(model.third.size()), longest = std::max(T2, T3);
+    const Index N = input.rows(), T2 = model.second.rows(), T3 = static_cast<Index>(model.third.size()),
+                longest = std::max(T2, T3);
     const auto linear = convolved(std::span(model.first.data(), static_cast<std::size_t>(model.first.size())),
                                   std::span(input.data(), static_cast<std::size_t>(N)));
     VectorXd y = Eigen::Map<const VectorXd>(linear.data(), N).array() + model.offset;
-    VectorXd past = VectorXd::Zero(longest + N);   // newest first
+    VectorXd past = VectorXd::Zero(longest + N);  // newest first
     past.head(N) = input.col(0).reverse();
     for (Index t = 0; longest > 0 && t < N; ++t) {
         const auto window = past.segment(N - 1 - t, longest);
@@ -71,7 +74,8 @@ MatrixXd simulate(const VolterraSeries& model, const MatrixXd& input)
 VolterraSeries volterraSeries(const Pnlss& model, Index memory1, Index memory2, Index memory3)
 {
     if (memory1 < 1 || memory2 < 0 || memory3 < 0 || memory1 > 65536 || memory2 > 2048 || memory3 > 128)
-        throw Error(Error::Kind::usage, "A Volterra series has memories of 1 to 65536, 0 to 2048 and 0 to 128 samples.");
+        throw Error(Error::Kind::usage,
+                    "A Volterra series has memories of 1 to 65536, 0 to 2048 and 0 to 128 samples.");
     const Volterra kernels(model);
     if (model.linear.inputs() != 1 || model.linear.outputs() != 1)
         throw Error(Error::Kind::usage, "A Volterra series is made of a model with one input and one output.");
@@ -101,4 +105,4 @@ VolterraSeries volterraSeries(const Pnlss& model, Index memory1, Index memory2, 
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

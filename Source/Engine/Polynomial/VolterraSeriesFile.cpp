@@ -9,7 +9,8 @@ namespace excursion {
 nlohmann::ordered_json toJson(const Named<VolterraSeries>& named)
 {
     const auto& model = named.model;
-    auto document = modelHeader("excursion-volterra-series", 1, named.name, model.sampleRate, named.input, named.output);
+    auto document = modelHeader("excursion-volterra-series", 1, named.name, model.sampleRate, named.input,
+                                named.output);
     document["offset"] = model.offset;
     document["first"] = std::vector<double>(model.first.begin(), model.first.end());
     document["second"] = matrixJson(model.second);
@@ -45,6 +46,9 @@ Named<VolterraSeries> readVolterraSeries(const std::filesystem::path& path)
     return volterraSeriesFromJson(JsonField(document, "", path.string()));
 }
 
-void writeVolterraSeries(const Named<VolterraSeries>& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
+void writeVolterraSeries(const Named<VolterraSeries>& named, const std::filesystem::path& path)
+{
+    writeJson(toJson(named), path);
+}
 
-} // namespace excursion
+}  // namespace excursion

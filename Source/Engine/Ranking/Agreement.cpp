@@ -40,10 +40,10 @@ double errorOf(const Rung& rung, Quantity output)
     return rung.comparison.channels.front().total.db;
 }
 
-} // namespace
+}  // namespace
 
-Agreement agreement(const Measurement& given, Quantity output, const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& play,
-                    const Progress& progress)
+Agreement agreement(const Measurement& given, Quantity output,
+                    const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& play, const Progress& progress)
 {
     auto take = given;
     completeExcitation(take);
@@ -77,4 +77,4 @@ Agreement agreement(const Measurement& given, Quantity output, const std::functi
     return found;
 }
 
-} // namespace excursion
+}  // namespace excursion

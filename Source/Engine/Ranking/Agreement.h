@@ -12,13 +12,15 @@
 
 namespace excursion {
 
-/// Which physical laws a model without physics agrees with: it plays the take in the loudspeaker's place, and is diagnosed as one. So what a PNLSS
-/// model has found is said in the words of the catalogue (from 4.12 back to what it was expanded from).
+/// Which physical laws a model without physics agrees with: it plays the take in the loudspeaker's place, and is
+/// diagnosed as one. So what a PNLSS model has found is said in the words of the catalogue (from 4.12 back to what it
+/// was expanded from).
 struct Agreement {
-    Ladder ladder;                      ///< of the take as the model plays it
-    std::vector<std::string> effects;   ///< that the physical driver needed to move as the model does
-    double baseDb = 0.0;                ///< relative error of the driver without effects against the model, on validation sections
-    double leftDb = 0.0;                ///< the same with these effects
+    Ladder ladder;                     ///< of the take as the model plays it
+    std::vector<std::string> effects;  ///< that the physical driver needed to move as the model does
+    /// relative error of the driver without effects against the model, on validation sections
+    double baseDb = 0.0;
+    double leftDb = 0.0;  ///< the same with these effects
     std::string sentence;
 };
 
@@ -26,6 +28,7 @@ struct Agreement {
 /// @param output  the channel that the model explains
 /// What the periods of the take scatter is added to what the model plays, so the diagnosis knows how far to trust it.
 /// Throws Error (data) where the take lacks the channel or is not fit for use, (numerical) where the model runs away.
-Agreement agreement(const Measurement&, Quantity output, const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& play, const Progress& = {});
+Agreement agreement(const Measurement&, Quantity output,
+                    const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& play, const Progress& = {});
 
-} // namespace excursion
+}  // namespace excursion

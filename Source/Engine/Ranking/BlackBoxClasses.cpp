@@ -25,7 +25,8 @@ namespace {
 
 std::string ofOrder(const char* words, Eigen::Index order, int degree)
 {
-    return std::string(words) + "order " + std::to_string(order) + (degree > 1 ? ", degree " + std::to_string(degree) : "");
+    return std::string(words) + "order " + std::to_string(order)
+           + (degree > 1 ? ", degree " + std::to_string(degree) : "");
 }
 
 std::string withAlpha(double alpha)
@@ -60,7 +61,8 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
 {
     const auto play = [model, grid](const PnlssRecord& record) {
         FractionalRecursion::Trajectory run;
-        if (!FractionalRecursion(model, grid, false, false).run(model, fineInput(record.input, grid.substeps, record.periodic, record.skip), 1e100, run))
+        if (!FractionalRecursion(model, grid, false, false)
+                 .run(model, fineInput(record.input, grid.substeps, record.periodic, record.skip), 1e100, run))
             run.output = Eigen::MatrixXd::Constant(record.input.rows(), 1, std::numeric_limits<double>::quiet_NaN());
         return run.output;
     };
@@ -68,13 +70,13 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
             isStable(model, grid)};
 }
 
-} // namespace
+}  // namespace
 
 FittedClass fitLinearClass(const RankedTake& data, const Progress&)
 {
     const auto n = data.linear.order();
-    return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); }, ofOrder("", n, 1), static_cast<int>(2 * n + 1),
-            isStable(data.linear)};
+    return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); },
+            ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear)};
 }
 
 FittedClass fitFractionalClass(const RankedTake& data, const Progress&)
@@ -91,7 +93,8 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
 {
     HammersteinFitOptions fitting;
     fitting.degree = data.options.degree;
-    const auto fit = fitHammerstein(data.take.sampleRate, data.records.estimation, data.records.validation, fitting, progress);
+    const auto fit = fitHammerstein(data.take.sampleRate, data.records.estimation, data.records.validation, fitting,
+                                    progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
             static_cast<int>(fit.model.parameters()), true};
@@ -119,7 +122,8 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
     fitting.maximumIterations = data.options.iterations;
     const auto fit = fitNarx(data.take.sampleRate, data.records.estimation, data.records.validation, fitting, progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
-            std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree " + std::to_string(fitting.degree),
+            std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree "
+                + std::to_string(fitting.degree),
             static_cast<int>(fit.model.parameters()), fit.stable};
 }
 
@@ -160,7 +164,8 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
             done += share;
         }
     return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
-            ofOrder("", best.model.linear.order(), data.options.degree), static_cast<int>(Recursion(best.model, true).parameters()), best.stable};
+            ofOrder("", best.model.linear.order(), data.options.degree),
+            static_cast<int>(Recursion(best.model, true).parameters()), best.stable};
 }
 
 FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& progress)
@@ -170,10 +175,12 @@ FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& prog
     FractionalPnlssOptions fitting;
     fitting.maximumIterations = std::min(data.options.iterations, 10);
     fitting.costTolerance = 1e-3;
-    const auto fit = fitFractionalPnlss(start, grid, data.records.estimation, data.records.validation, fitting, progress);
-    auto fitted = fractionalClass(fit.model, grid, data.options.degree, static_cast<int>(FractionalRecursion(fit.model, grid, true, true).parameters()));
+    const auto fit = fitFractionalPnlss(start, grid, data.records.estimation, data.records.validation, fitting,
+                                        progress);
+    auto fitted = fractionalClass(fit.model, grid, data.options.degree,
+                                  static_cast<int>(FractionalRecursion(fit.model, grid, true, true).parameters()));
     fitted.stable = fit.stable;
     return fitted;
 }
 
-} // namespace excursion
+}  // namespace excursion

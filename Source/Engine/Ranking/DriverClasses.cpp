@@ -20,9 +20,11 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
     for (const auto& component : model.components)
         if (&component != &model.components.front())
             description += (description.empty() ? "" : ", ") + component.effect->title();
-    const auto play = [model, rate = data.take.sampleRate, output = data.output.quantity](const PnlssRecord& record) -> Eigen::MatrixXd {
+    const auto play = [model, rate = data.take.sampleRate,
+                       output = data.output.quantity](const PnlssRecord& record) -> Eigen::MatrixXd {
         const Eigen::VectorXd u = record.input.col(0);
-        const auto played = simulate(model, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())), rate, {});
+        const auto played = simulate(model, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())), rate,
+                                     {});
         const auto* channel = played.find(output);
         if (!channel)
             throw Error(Error::Kind::data, "The physical driver does not know this channel.");
@@ -31,7 +33,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
     return {play, description.empty() ? "base alone" : description, parameters, isStable(model)};
 }
 
-} // namespace
+}  // namespace
 
 FittedClass fitDriverClass(const RankedTake& data, const Progress& progress)
 {
@@ -47,4 +49,4 @@ FittedClass fitDriverWithEffectsClass(const RankedTake& data, const Progress& pr
     return driverClass(ladder.model(), data);
 }
 
-} // namespace excursion
+}  // namespace excursion

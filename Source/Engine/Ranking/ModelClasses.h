@@ -16,10 +16,10 @@ struct RankedTake {
     const Channel& output;
     int level;
     PnlssRecords records;
-    FrequencyData response;     ///< output over input
+    FrequencyData response;  ///< output over input
     RankOptions options;
-    int order;                  ///< of the polynomial models
-    StateSpace linear;          ///< of the best order, in discrete time
+    int order;          ///< of the polynomial models
+    StateSpace linear;  ///< of the best order, in discrete time
 };
 
 /// A fitted class: how it plays a record from rest (N x 1), and what it says of itself.
@@ -40,4 +40,4 @@ FittedClass fitFractionalPnlssClass(const RankedTake&, const Progress&);
 FittedClass fitDriverClass(const RankedTake&, const Progress&);
 FittedClass fitDriverWithEffectsClass(const RankedTake&, const Progress&);
 
-} // namespace excursion
+}  // namespace excursion

@@ -21,7 +21,7 @@ namespace {
 struct Fitting {
     ModelClass told;
     FittedClass (*fit)(const RankedTake&, const Progress&);
-    double share;   // of the whole work, about
+    double share;  // of the whole work, about
 };
 
 const std::vector<Fitting>& fittings()
@@ -33,9 +33,13 @@ const std::vector<Fitting>& fittings()
         {{"block", "linear dynamics with polynomials before, behind and in a loop around them"}, fitBlockClass, 0.08},
         {{"narx", "a polynomial in past inputs and outputs"}, fitNarxClass, 0.12},
         {{"pnlss", "polynomial state space"}, fitPnlssClass, 0.2},
-        {{"fractional-pnlss", "polynomial state space, the coil's state of fractional order"}, fitFractionalPnlssClass, 0.15},
+        {{"fractional-pnlss", "polynomial state space, the coil's state of fractional order"},
+         fitFractionalPnlssClass,
+         0.15},
         {{"driver", "the physical driver without effects"}, fitDriverClass, 0.05},
-        {{"driver-with-effects", "the physical driver with the effects that were found missing"}, fitDriverWithEffectsClass, 0.3}};
+        {{"driver-with-effects", "the physical driver with the effects that were found missing"},
+         fitDriverWithEffectsClass,
+         0.3}};
     return all;
 }
 
@@ -78,7 +82,7 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
     return model;
 }
 
-} // namespace
+}  // namespace
 
 bool RankOptions::isValid(std::string* reason) const
 {
@@ -122,14 +126,16 @@ Ranking rank(const Measurement& given, const RankOptions& options, const Progres
         throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
 
     progress.at(0.0, "the linear model");
-    const auto response = frequencyDataOf(periodic ? bla(take, output->quantity, level).frf : welch(take, output->quantity).frf);
+    const auto response = frequencyDataOf(periodic ? bla(take, output->quantity, level).frf
+                                                   : welch(take, output->quantity).frf);
     OrderSweepOptions sweeping;
     sweeping.orders = {2, 3, 4, 5, 6, 8};
     sweeping.identify.sampleRate = take.sampleRate;
     const auto sweep = sweepOrders(response, sweeping);
     const auto linear = sweep.entries[sweep.chosen].found.model;
     const int order = options.order > 0 ? options.order : std::min(4, static_cast<int>(linear.order()));
-    const RankedTake data {take, input, *output, level, recordsOf(take, input, *output, level), response, options, order, linear};
+    const RankedTake data {take,     input,   *output, level, recordsOf(take, input, *output, level),
+                           response, options, order,   linear};
 
     Ranking ranking;
     ranking.input = input.quantity;
@@ -137,24 +143,31 @@ Ranking rank(const Measurement& given, const RankOptions& options, const Progres
     ranking.noiseDb = data.records.noiseDb;
     double done = 0.02;
     for (const auto& fitting : fittings()) {
-        const bool wanted = options.classes.empty() || std::find(options.classes.begin(), options.classes.end(), fitting.told.name) != options.classes.end();
+        const bool wanted = options.classes.empty()
+                            || std::find(options.classes.begin(), options.classes.end(), fitting.told.name)
+                                   != options.classes.end();
         if (wanted)
-            ranking.models.push_back(judge(fitting, data, progress.part(done, std::min(1.0, done + 0.98 * fitting.share))));
+            ranking.models.push_back(
+                judge(fitting, data, progress.part(done, std::min(1.0, done + 0.98 * fitting.share))));
         done += 0.98 * fitting.share;
     }
-    const auto error = [](const RankedModel& m) { return std::isnan(m.validationDb) ? m.estimationDb : m.validationDb; };
+    const auto error = [](const RankedModel& m) {
+        return std::isnan(m.validationDb) ? m.estimationDb : m.validationDb;
+    };
     std::stable_sort(ranking.models.begin(), ranking.models.end(), [&](const RankedModel& a, const RankedModel& b) {
         return a.trouble.empty() != b.trouble.empty() ? a.trouble.empty() : error(a) < error(b);
     });
     // A tenth of a decibel is no reason: among equals the smallest is told.
     const RankedModel* chosen = nullptr;
     for (const auto& model : ranking.models)
-        if (model.trouble.empty() && model.stable && error(model) < error(ranking.models.front()) + 0.5 && (!chosen || model.parameters < chosen->parameters))
+        if (model.trouble.empty() && model.stable && error(model) < error(ranking.models.front()) + 0.5
+            && (!chosen || model.parameters < chosen->parameters))
             chosen = &model;
-    ranking.sentence = chosen ? "\"" + chosen->name + "\" explains most with " + std::to_string(chosen->parameters) + " parameters."
+    ranking.sentence = chosen ? "\"" + chosen->name + "\" explains most with " + std::to_string(chosen->parameters)
+                                    + " parameters."
                               : "No stable model explains the take best.";
     progress.at(1.0, "done");
     return ranking;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index motions = 3;   // i, x, v
+constexpr Index motions = 3;  // i, x, v
 
 /// f(z, u) of a model.
 class RatesOf {
@@ -50,7 +50,8 @@ Eigen::Vector3d visited(const Model& model)
 {
     Eigen::Vector3d range = Eigen::Vector3d::Zero();
     for (const auto& component : model.components)
-        range = range.cwiseMax(Eigen::Vector3d(component.extent.current, component.extent.displacement, component.extent.velocity));
+        range = range.cwiseMax(
+            Eigen::Vector3d(component.extent.current, component.extent.displacement, component.extent.velocity));
     return range;
 }
 
@@ -62,7 +63,8 @@ double power(const Eigen::RowVectorXi& exponents, const Eigen::Vector3d& w)
     return value;
 }
 
-void requireAffine(const RatesOf& rates, const Eigen::Vector3d& w, const std::vector<VectorXd>& slopes, const VectorXd& atRest, std::mt19937& random)
+void requireAffine(const RatesOf& rates, const Eigen::Vector3d& w, const std::vector<VectorXd>& slopes,
+                   const VectorXd& atRest, std::mt19937& random)
 {
     const auto n = rates.order();
     std::normal_distribution<double> normal;
@@ -76,10 +78,11 @@ void requireAffine(const RatesOf& rates, const Eigen::Vector3d& w, const std::ve
     const double u = normal(random);
     expected += u * slopes.back();
     if (!((rates(z, u) - expected).norm() <= 1e-6 * (expected.norm() + 1e-300)))
-        throw Error(Error::Kind::numerical, "The model's equations are not affine in its memories, so this expansion does not hold for it.");
+        throw Error(Error::Kind::numerical,
+                    "The model's equations are not affine in its memories, so this expansion does not hold for it.");
 }
 
-} // namespace
+}  // namespace
 
 bool TaylorOptions::isValid(std::string* reason) const
 {
@@ -93,7 +96,7 @@ FractionalPnlss expand(const Model& model, Quantity output, const TaylorOptions&
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be expanded: " + reason + ".");
     const RatesOf rates(model);
-    const auto n = rates.order(), affine = n - motions + 1;   // memories, and the input
+    const auto n = rates.order(), affine = n - motions + 1;  // memories, and the input
     const bool guarded = options.reach < 0.1;
     const int fitted = options.degree + (guarded ? 2 : 0);
     Exponents basis(1, motions);
@@ -108,7 +111,7 @@ FractionalPnlss expand(const Model& model, Quantity output, const TaylorOptions&
     std::uniform_real_distribution<double> within(-1.0, 1.0);
     const Index points = 4 * basis.rows();
     MatrixXd M(points, basis.rows());
-    std::vector<MatrixXd> values(static_cast<std::size_t>(affine + 1), MatrixXd(points, n));   // f_0, then f_a
+    std::vector<MatrixXd> values(static_cast<std::size_t>(affine + 1), MatrixXd(points, n));  // f_0, then f_a
     for (Index k = 0; k < points; ++k) {
         Eigen::Vector3d s;
         for (auto& value : s)
@@ -201,7 +204,9 @@ FractionalPnlss expand(const Model& model, Quantity output, const TaylorOptions&
         form.linear.D = form.linear.B.row(2);
         form.F = form.E.row(2);
         break;
-    default: throw Error(Error::Kind::usage, "A driver is expanded with its current, displacement, velocity or acceleration as the output.");
+    default:
+        throw Error(Error::Kind::usage,
+                    "A driver is expanded with its current, displacement, velocity or acceleration as the output.");
     }
     form.free.resize(n + 1, K);
     form.free.topRows(n) = form.E.array() != 0.0;
@@ -212,7 +217,8 @@ FractionalPnlss expand(const Model& model, Quantity output, const TaylorOptions&
 Pnlss discretized(const FractionalPnlss& model, double sampleRate)
 {
     if (model.fractional.any() || !(sampleRate > 0.0))
-        throw Error(Error::Kind::usage, "Only a model of whole orders is discretized by holding its input, at a sample rate above 0 Hz.");
+        throw Error(Error::Kind::usage,
+                    "Only a model of whole orders is discretized by holding its input, at a sample rate above 0 Hz.");
     const auto n = model.form.linear.order();
     MatrixXd S(n, n), decay(n, n);
     for (Index j = 0; j < n; ++j) {
@@ -232,4 +238,4 @@ Pnlss discretized(const FractionalPnlss& model, double sampleRate)
     return result;
 }
 
-} // namespace excursion
+}  // namespace excursion

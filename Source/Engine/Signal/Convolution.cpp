@@ -26,4 +26,4 @@ std::vector<double> convolved(std::span<const double> w, std::span<const double>
     return y;
 }
 
-} // namespace excursion
+}  // namespace excursion

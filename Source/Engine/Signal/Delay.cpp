@@ -66,7 +66,7 @@ std::pair<std::size_t, std::size_t> bandLines(std::size_t N, const DelayOptions&
 double coarseDelay(const CrossSpectrum& S, std::size_t first, std::size_t last)
 {
     // The real and the imaginary part of the analytic impulse response, as two real records.
-    const double floor = *std::max_element(S.uu.begin(), S.uu.end()) / 1e3;   // keeps unexcited lines out
+    const double floor = *std::max_element(S.uu.begin(), S.uu.end()) / 1e3;  // keeps unexcited lines out
     std::vector<Complex> H(S.yu.size()), rotated(S.yu.size());
     for (std::size_t k = first; k <= last; ++k) {
         H[k] = S.yu[k] / (S.uu[k] + floor);
@@ -80,12 +80,14 @@ double coarseDelay(const CrossSpectrum& S, std::size_t first, std::size_t last)
             peak = n;
     // With odd lines only, half a period later is the same as inverted; the shorter of the two is meant.
     const std::size_t opposite = (peak + S.N / 2) % S.N;
-    const auto centred = [&](std::size_t n) { return static_cast<double>(n) - (n > S.N / 2 ? static_cast<double>(S.N) : 0.0); };
+    const auto centred = [&](std::size_t n) {
+        return static_cast<double>(n) - (n > S.N / 2 ? static_cast<double>(S.N) : 0.0);
+    };
     const bool ambiguous = magnitude(opposite) > 0.9 * magnitude(peak);
     return ambiguous && std::abs(centred(opposite)) < std::abs(centred(peak)) ? centred(opposite) : centred(peak);
 }
 
-} // namespace
+}  // namespace
 
 std::vector<double> delayed(std::span<const double> x, double samples)
 {
@@ -101,7 +103,8 @@ std::vector<double> delayed(std::span<const double> x, double samples)
 DelayEstimate estimateDelay(std::span<const double> input, std::span<const double> output, const DelayOptions& options)
 {
     if (input.size() != output.size() || input.size() < 16)
-        throw Error(Error::Kind::data, "A delay can only be estimated between two records of the same length, at least 16 samples.");
+        throw Error(Error::Kind::data,
+                    "A delay can only be estimated between two records of the same length, at least 16 samples.");
     const auto S = crossSpectrum(input, output, options);
     const auto [first, last] = bandLines(S.N, options);
     double power = 0.0, weights = 0.0;
@@ -114,7 +117,7 @@ DelayEstimate estimateDelay(std::span<const double> input, std::span<const doubl
     if (!(weights > 0) || !std::isfinite(weights))
         throw Error(Error::Kind::data, "A delay cannot be estimated: one of the records is silent in the band.");
     for (std::size_t k = first; k <= last; ++k)
-        if (S.uu[k] < 1e-12 * power)   // rounding noise has no phase worth a weight
+        if (S.uu[k] < 1e-12 * power)  // rounding noise has no phase worth a weight
             weight[k] = 0.0;
 
     DelayEstimate estimate;
@@ -150,4 +153,4 @@ DelayEstimate estimateDelay(std::span<const double> input, std::span<const doubl
     return estimate;
 }
 
-} // namespace excursion
+}  // namespace excursion

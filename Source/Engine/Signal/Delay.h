@@ -14,15 +14,16 @@ namespace excursion {
 std::vector<double> delayed(std::span<const double> x, double samples);
 
 struct DelayOptions {
-    int period = 0;        ///< samples; above 0: the records are periodic, in steady state, from their first sample on
-    int segment = 8192;    ///< samples of one averaged segment of an aperiodic record
-    double lowest = 0.0, highest = 0.5;   ///< band that is used, in cycles a sample
+    /// samples; above 0: the records are periodic, in steady state, from their first sample on
+    int period = 0;
+    int segment = 8192;                  ///< samples of one averaged segment of an aperiodic record
+    double lowest = 0.0, highest = 0.5;  ///< band that is used, in cycles a sample
 };
 
 struct DelayEstimate {
-    double samples = 0.0;         ///< output later than input: positive
-    double standardError = 0.0;   ///< samples, from how far the phases scatter about the line
-    bool inverted = false;        ///< output ~ -input
+    double samples = 0.0;        ///< output later than input: positive
+    double standardError = 0.0;  ///< samples, from how far the phases scatter about the line
+    bool inverted = false;       ///< output ~ -input
 };
 
 /// The delay of `output` against `input`, to a small part of a sample.
@@ -36,4 +37,4 @@ struct DelayEstimate {
 /// Throws Error (data) when the records differ in length, are shorter than 16 samples or one of them is silent.
 DelayEstimate estimateDelay(std::span<const double> input, std::span<const double> output, const DelayOptions& = {});
 
-} // namespace excursion
+}  // namespace excursion

@@ -13,9 +13,12 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 /// From 0 at 0 to 1 at `length`, where both its slopes are 0.
-double raisedCosine(double time, double length) { return time >= length ? 1.0 : 0.5 - 0.5 * std::cos(pi * time / length); }
+double raisedCosine(double time, double length)
+{
+    return time >= length ? 1.0 : 0.5 - 0.5 * std::cos(pi * time / length);
+}
 
-} // namespace
+}  // namespace
 
 bool ExponentialSweepOptions::isValid(std::string* reason) const
 {
@@ -28,7 +31,9 @@ bool ExponentialSweepOptions::isValid(std::string* reason) const
     if (!(std::isfinite(peak) && peak > 0))
         return refuse(reason, "The peak of a sweep must be a positive number of V.");
     if (!(std::isfinite(seconds) && seconds * bandLow >= std::log(bandHigh / bandLow)))
-        return refuse(reason, "A sweep must last at least a period of its first frequency for each factor e that it runs through.");
+        return refuse(
+            reason,
+            "A sweep must last at least a period of its first frequency for each factor e that it runs through.");
     if (seconds * sampleRate > 100e6)
         return refuse(reason, "A sweep must not be longer than 100 million samples.");
     if (!(fadeIn >= 0 && fadeOut >= 0 && fadeIn + fadeOut < 0.5 * seconds))
@@ -55,7 +60,7 @@ std::vector<double> ExponentialSweep::samples() const
     for (std::size_t n = 0; n < x.size(); ++n) {
         const double t = static_cast<double>(n) / options_.sampleRate;
         x[n] = options_.peak * raisedCosine(t, options_.fadeIn) * raisedCosine(T - t, options_.fadeOut)
-             * std::sin(2 * pi * options_.bandLow * L_ * std::exp(t / L_));
+               * std::sin(2 * pi * options_.bandLow * L_ * std::exp(t / L_));
     }
     return x;
 }
@@ -63,8 +68,9 @@ std::vector<double> ExponentialSweep::samples() const
 std::complex<double> ExponentialSweep::spectrum(double frequency) const
 {
     const double nu = 2 * pi * frequency * L_;
-    return std::polar(0.5 * options_.peak * std::sqrt(L_ / frequency),
-                      nu * (1 - std::log(frequency / options_.bandLow)) + 1 / (12 * nu) + 1 / (360 * nu * nu * nu) - pi / 4);
+    return std::polar(0.5 * options_.peak * std::sqrt(L_ / frequency), nu * (1 - std::log(frequency / options_.bandLow))
+                                                                           + 1 / (12 * nu) + 1 / (360 * nu * nu * nu)
+                                                                           - pi / 4);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -36,7 +36,7 @@ fftw_plan plan(std::size_t N, bool forward)
     return kept.get();
 }
 
-} // namespace
+}  // namespace
 
 std::vector<std::complex<double>> fft(std::span<const double> x)
 {
@@ -44,7 +44,8 @@ std::vector<std::complex<double>> fft(std::span<const double> x)
         return {};
     std::vector<std::complex<double>> X(x.size() / 2 + 1);
     // A plan made with PRESERVE_INPUT does not write to x.
-    fftw_execute_dft_r2c(plan(x.size(), true), const_cast<double*>(x.data()), reinterpret_cast<fftw_complex*>(X.data()));
+    fftw_execute_dft_r2c(plan(x.size(), true), const_cast<double*>(x.data()),
+                         reinterpret_cast<fftw_complex*>(X.data()));
     return X;
 }
 
@@ -60,4 +61,4 @@ std::vector<double> inverseFft(std::span<const std::complex<double>> X, std::siz
     return x;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -18,4 +18,4 @@ std::vector<std::complex<double>> fft(std::span<const double> x);
 /// @param N  length of the record; X.size() must be N/2 + 1
 std::vector<double> inverseFft(std::span<const std::complex<double>> X, std::size_t N);
 
-} // namespace excursion
+}  // namespace excursion

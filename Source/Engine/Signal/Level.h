@@ -28,4 +28,4 @@ inline double rmsOf(std::span<const double> samples)
 /// Ratio of powers in dB; -400 of nothing.
 inline double decibelsOf(double powerRatio) { return 10.0 * std::log10(std::max(powerRatio, 1e-40)); }
 
-} // namespace excursion
+}  // namespace excursion

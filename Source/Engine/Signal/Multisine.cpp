@@ -14,7 +14,8 @@
 namespace excursion {
 namespace {
 
-constexpr std::array<std::string_view, 8> gridNames {"full", "odd", "odd-odd", "odd-random", "R10", "R20", "R40", "R80"};
+constexpr std::array<std::string_view, 8> gridNames {"full", "odd", "odd-odd", "odd-random",
+                                                     "R10",  "R20", "R40",     "R80"};
 constexpr std::array<std::string_view, 3> shapeNames {"white", "pink", "red"};
 
 template <class Enum, std::size_t n>
@@ -114,7 +115,7 @@ void requireValid(const MultisineOptions& options)
         throw Error(Error::Kind::usage, reason);
 }
 
-} // namespace
+}  // namespace
 
 std::string_view name(Grid grid) { return gridNames[static_cast<std::size_t>(grid)]; }
 std::string_view name(Shape shape) { return shapeNames[static_cast<std::size_t>(shape)]; }
@@ -170,7 +171,8 @@ std::vector<double> multisine(const MultisineOptions& options, const std::vector
     requireValid(options);
     if (lines.empty() || lines.front() < 1 || lines.back() > lastLine(options.period)
         || !std::is_sorted(lines.begin(), lines.end()))
-        throw Error(Error::Kind::usage, "The lines of a multisine must ascend from 1 or more to less than half its period.");
+        throw Error(Error::Kind::usage,
+                    "The lines of a multisine must ascend from 1 or more to less than half its period.");
     if (realization < 0)
         throw Error(Error::Kind::usage, "The realizations of a multisine are counted from 0.");
 
@@ -178,14 +180,14 @@ std::vector<double> multisine(const MultisineOptions& options, const std::vector
     double power = 0.0;
     for (const int k : lines)
         power += std::pow(amplitude(options.shape, k), 2) / 2;
-    const double scale = options.rms / std::sqrt(power) * static_cast<double>(N) / 2;   // a_k to |X_k|
+    const double scale = options.rms / std::sqrt(power) * static_cast<double>(N) / 2;  // a_k to |X_k|
 
     Stream random(options.seed, firstPhasePurpose + static_cast<std::uint32_t>(realization));
     std::vector<std::complex<double>> spectrum(N / 2 + 1);
     for (const int k : lines)
-        spectrum[static_cast<std::size_t>(k)] =
-            std::polar(scale * amplitude(options.shape, k), 2 * std::numbers::pi * random.uniform());
+        spectrum[static_cast<std::size_t>(k)] = std::polar(scale * amplitude(options.shape, k),
+                                                           2 * std::numbers::pi * random.uniform());
     return inverseFft(spectrum, N);
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -12,7 +12,7 @@
 namespace excursion {
 namespace {
 
-constexpr std::size_t reflectedSamples = 1024;   // longer than the interpolation filter
+constexpr std::size_t reflectedSamples = 1024;  // longer than the interpolation filter
 
 /// x with `pad` samples reflected about its first and its last one.
 std::vector<double> extended(std::span<const double> x, std::size_t pad)
@@ -26,12 +26,13 @@ std::vector<double> extended(std::span<const double> x, std::size_t pad)
     return longer;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<double> upsample(std::span<const double> x, int factor)
 {
     if (factor < 1 || factor > 256)
-        throw Error(Error::Kind::usage, "A record can be upsampled by a factor of 1 to 256, not " + std::to_string(factor) + ".");
+        throw Error(Error::Kind::usage,
+                    "A record can be upsampled by a factor of 1 to 256, not " + std::to_string(factor) + ".");
     if (factor == 1 || x.empty())
         return {x.begin(), x.end()};
 
@@ -47,7 +48,8 @@ std::vector<double> upsample(std::span<const double> x, int factor)
     const auto failure = soxr_oneshot(1.0, static_cast<double>(factor), 1, input.data(), input.size(), nullptr,
                                       output.data(), output.size(), &done, &io, &quality, &runtime);
     if (failure || done < (pad + x.size()) * L)
-        throw Error(Error::Kind::numerical, std::string("Upsampling failed: ") + (failure ? failure : "too few samples came out"));
+        throw Error(Error::Kind::numerical,
+                    std::string("Upsampling failed: ") + (failure ? failure : "too few samples came out"));
 
     const auto first = output.begin() + static_cast<std::ptrdiff_t>(pad * L);
     return {first, first + static_cast<std::ptrdiff_t>(x.size() * L)};
@@ -56,7 +58,8 @@ std::vector<double> upsample(std::span<const double> x, int factor)
 std::vector<double> resampled(std::span<const double> x, double step)
 {
     if (!(step >= 0.01 && step <= 100.0))
-        throw Error(Error::Kind::usage, "A record can be read in steps of 0.01 to 100 of its samples, not " + std::to_string(step) + ".");
+        throw Error(Error::Kind::usage,
+                    "A record can be read in steps of 0.01 to 100 of its samples, not " + std::to_string(step) + ".");
     if (x.empty())
         return {};
     const auto count = static_cast<std::size_t>(std::floor(static_cast<double>(x.size() - 1) / step)) + 1;
@@ -66,11 +69,13 @@ std::vector<double> resampled(std::span<const double> x, double step)
     quality.passband_end = 0.96;
     const auto runtime = soxr_runtime_spec(1);
     std::size_t done = 0;
-    const auto failure = soxr_oneshot(step, 1.0, 1, x.data(), x.size(), nullptr, output.data(), output.size(), &done, &io, &quality, &runtime);
+    const auto failure = soxr_oneshot(step, 1.0, 1, x.data(), x.size(), nullptr, output.data(), output.size(), &done,
+                                      &io, &quality, &runtime);
     if (failure || done + 2 < count)
-        throw Error(Error::Kind::numerical, std::string("Resampling failed: ") + (failure ? failure : "too few samples came out"));
-    output.resize(count);   // one that rounding left out is zero
+        throw Error(Error::Kind::numerical,
+                    std::string("Resampling failed: ") + (failure ? failure : "too few samples came out"));
+    output.resize(count);  // one that rounding left out is zero
     return output;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -16,8 +16,9 @@ std::vector<double> upsample(std::span<const double> x, int factor);
 
 /// Band-limited reading at any other rate, with zero delay, by libsoxr (as above, with its exact clock):
 ///     y(n) = x(n step),  n = 0 .. floor((x.size() - 1)/step),
-/// x being silent outside. Errors are below -150 dB up to a quarter of x's rate, or of y's where that is lower, and rise to -60 dB near half of it: upsample first.
+/// x being silent outside. Errors are below -150 dB up to a quarter of x's rate, or of y's where that is lower, and
+/// rise to -60 dB near half of it: upsample first.
 /// @param step  0.01 .. 100; anything else throws Error (usage)
 std::vector<double> resampled(std::span<const double> x, double step);
 
-} // namespace excursion
+}  // namespace excursion

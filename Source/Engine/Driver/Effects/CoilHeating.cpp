@@ -7,12 +7,13 @@
 namespace excursion {
 namespace {
 
-/// The coil's resistance rises with the power that it has turned into heat, through two stages (coil and magnet; Button, J. Audio
-/// Eng. Soc. 40, 1992; Zuccatti, 38, 1990):
+/// The coil's resistance rises with the power that it has turned into heat, through two stages (coil and magnet;
+/// Button, J. Audio Eng. Soc. 40, 1992; Zuccatti, 38, 1990):
 ///     u = R i,   R = r (w_1 + share w_2),   dw_k/dt = (P - w_k)/tau_k,   P = (Re + R) i^2,
-/// w_k the power that stage k feels, in W. This is the two-stage ladder of thermal resistances and capacities seen from the coil, as its
-/// partial fractions. r is in ohm per watt and takes in the temperature coefficient of the wire. The time constants
-/// are sought between a small part of the take and many times its length: what is slower still is a steady rise.
+/// w_k the power that stage k feels, in W. This is the two-stage ladder of thermal resistances and capacities seen from
+/// the coil, as its partial fractions. r is in ohm per watt and takes in the temperature coefficient of the wire. The
+/// time constants are sought between a small part of the take and many times its length: what is slower still is a
+/// steady rise.
 class CoilHeating final : public EffectOf<CoilHeating> {
 public:
     std::string id() const override { return "coil-heating"; }
@@ -20,7 +21,8 @@ public:
     std::string physics() const override { return "The coil turns power into heat, and hot copper resists more."; }
     std::string symptoms() const override
     {
-        return "residual voltage in step with the current that grows with the level and in the course of the take, without harmonics";
+        return "residual voltage in step with the current that grows with the level and in the course of the take, "
+               "without harmonics";
     }
     std::string remedy() const override
     {
@@ -33,12 +35,19 @@ public:
 
     std::vector<Parameter> parameters(const Extent& e) const override
     {
-        constexpr double plausibleRise = 10.0;   // Re doubles at a current of a third of the visited peak
+        constexpr double plausibleRise = 10.0;  // Re doubles at a current of a third of the visited peak
         const auto time = [&e](const char* name, double likely, double least, double most) -> Parameter {
-            return {.name = name, .unit = "log10 s", .value = std::log10(likely * e.duration), .lower = std::log10(least * e.duration),
+            return {.name = name,
+                    .unit = "log10 s",
+                    .value = std::log10(likely * e.duration),
+                    .lower = std::log10(least * e.duration),
                     .upper = std::log10(most * e.duration)};
         };
-        return {{.name = "rise", .unit = "ohm/W", .lower = 0.0, .strength = true, .prior = plausibleRise / (e.current * e.current)},
+        return {{.name = "rise",
+                 .unit = "ohm/W",
+                 .lower = 0.0,
+                 .strength = true,
+                 .prior = plausibleRise / (e.current * e.current)},
                 time("fast", 0.1, 0.003, 2.0),
                 {.name = "share", .unit = "1", .value = 0.3, .lower = 0.0, .upper = 30.0},
                 time("slow", 4.0, 0.5, 100.0)};
@@ -69,7 +78,7 @@ public:
     }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& coilHeating()
 {
@@ -77,4 +86,4 @@ const Effect& coilHeating()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -11,20 +11,25 @@ namespace {
 ///     y'' = -(w/Q) (y' - v) - w^2 (y - x),
 /// whose own motion r = y - x is heard with a gain g and seen at the laser's spot with a gain h:
 ///     area (a + sum g_k r_k''),   x + sum h_k r_k.
-/// The modes are taken for too light to be felt by the coil. Frequencies are told by their distance from places spread over the upper three
-/// octaves of the band, so that what is plausible beforehand holds for each.
+/// The modes are taken for too light to be felt by the coil. Frequencies are told by their distance from places spread
+/// over the upper three octaves of the band, so that what is plausible beforehand holds for each.
 class ConeBreakup final : public EffectOf<ConeBreakup> {
 public:
     std::string id() const override { return "cone-breakup"; }
     std::string title() const override { return "Cone breakup"; }
-    std::string physics() const override { return "Above some frequency the cone bends: parts of it move by themselves and radiate."; }
+    std::string physics() const override
+    {
+        return "Above some frequency the cone bends: parts of it move by themselves and radiate.";
+    }
     std::string symptoms() const override
     {
-        return "linear residual pressure in narrow peaks and dips at the top of the band, the same at every level, with no trace of it in the current";
+        return "linear residual pressure in narrow peaks and dips at the top of the band, the same at every level, "
+               "with no trace of it in the current";
     }
     std::string remedy() const override
     {
-        return "More damping in the cone or its surround, another shape of the cone, or a crossover below the first mode.";
+        return "More damping in the cone or its surround, another shape of the cone, or a crossover below the first "
+               "mode.";
     }
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
@@ -55,11 +60,11 @@ public:
         }
         return result;
     }
-    /// Broader and narrower modes are found from one of this quality, which is too narrow to stand for two at once. They lie so close that
-    /// the next one is always within the width of a mode.
+    /// Broader and narrower modes are found from one of this quality, which is too narrow to stand for two at once.
+    /// They lie so close that the next one is always within the width of a mode.
     std::vector<Part> parts(const Extent&) const override
     {
-        constexpr double quality = 12.0, step = 0.75 / quality, aboveBand = 0.1;   // octaves
+        constexpr double quality = 12.0, step = 0.75 / quality, aboveBand = 0.1;  // octaves
         std::vector<Part> parts;
         for (int k = 0; k < modes; ++k) {
             Part part {static_cast<std::size_t>(each * k), each, {}};
@@ -71,15 +76,18 @@ public:
     }
 
     /// A mode rings, above the band in which the cone moves as one piece, and what swings is a part of the cone.
-    bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
+    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+                   const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 1.5;
         const double resonance = resonanceOf(base);
         for (int k = 0; k < modes; ++k) {
             const auto* p = own.data() + each * k;
-            const double frequency = e.highFrequency * std::exp2(octaveOf(k) + p[0].value), quality = middlingQuality * std::exp2(p[1].value);
+            const double frequency = e.highFrequency * std::exp2(octaveOf(k) + p[0].value),
+                         quality = middlingQuality * std::exp2(p[1].value);
             if ((p[2].value != 0.0 || p[3].value != 0.0)
-                && (frequency < lowest * resonance || quality < leastQuality || std::abs(p[2].value) > mostGain || std::abs(p[3].value) > mostGain))
+                && (frequency < lowest * resonance || quality < leastQuality || std::abs(p[2].value) > mostGain
+                    || std::abs(p[3].value) > mostGain))
                 return false;
         }
         return true;
@@ -113,7 +121,8 @@ public:
     }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>& at, const T& acceleration, const T* memory, const T* rate, Emission<T>& sum) const
+    void radiate(const Extent&, const T* c, const Motion<T>& at, const T& acceleration, const T* memory, const T* rate,
+                 Emission<T>& sum) const
     {
         for (int k = 0; k < modes; ++k, c += each, memory += 2, rate += 2) {
             sum.acceleration += c[2] * (rate[1] - acceleration);
@@ -123,7 +132,7 @@ public:
 
 private:
     static constexpr int modes = 4, each = 4;
-    static constexpr double spacing = 0.75;   // octaves from one place to the next
+    static constexpr double spacing = 0.75;  // octaves from one place to the next
     static constexpr double plausibleGain = 3.0;
     static constexpr double octavesSearched = modes * spacing, middlingQuality = 5.0;
 
@@ -131,7 +140,7 @@ private:
     static double octaveOf(int mode) { return spacing * (mode + 0.5 - modes); }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& coneBreakup()
 {
@@ -139,4 +148,4 @@ const Effect& coneBreakup()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

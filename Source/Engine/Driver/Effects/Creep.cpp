@@ -15,11 +15,11 @@ namespace {
 
 /// A viscoelastic suspension is a spring with relaxing ones beside it (generalized Maxwell body):
 ///     F = K x + sum_k K_k (x - y_k),   dy_k/dt = 2 pi f_k (x - y_k),
-/// which any linear suspension with positive relaxations is, a chain of Kelvin-Voigt cells too. Beforehand the relaxation frequencies f_k lie
-/// evenly on a logarithmic axis, over `width` decades around 10^centre Hz, and K_k grows like f_k^tilt, sum K_k = S. A wide
-/// even band is the logarithmic creep of Knudsen and Jensen (J. Audio Eng. Soc. 41, 1993), a wide tilted one a fractional
-/// (spring-pot) suspension, a narrow one the three-parameter solid. From there f_k and K_k depart as far as the data asks
-/// (RelaxationSpectrum.h).
+/// which any linear suspension with positive relaxations is, a chain of Kelvin-Voigt cells too. Beforehand the
+/// relaxation frequencies f_k lie evenly on a logarithmic axis, over `width` decades around 10^centre Hz, and K_k grows
+/// like f_k^tilt, sum K_k = S. A wide even band is the logarithmic creep of Knudsen and Jensen (J. Audio Eng. Soc. 41,
+/// 1993), a wide tilted one a fractional (spring-pot) suspension, a narrow one the three-parameter solid. From there
+/// f_k and K_k depart as far as the data asks (RelaxationSpectrum.h).
 class Creep final : public EffectOf<Creep>, public NetworkParts {
 public:
     std::string id() const override { return "creep"; }
@@ -32,10 +32,7 @@ public:
     {
         return "linear residual force below and around resonance, a stiffness that rises slowly with frequency";
     }
-    std::string remedy() const override
-    {
-        return "A surround and spider of less lossy material creep less.";
-    }
+    std::string remedy() const override { return "A surround and spider of less lossy material creep less."; }
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
     bool relaxes() const override { return true; }
@@ -55,7 +52,8 @@ public:
         width.name = "width";
         width.unit = "decades";
         width.value = 2.0;
-        width.prior = 3.0;   // the sign says nothing: a search that passes through the single relaxation at 0 must not hit a wall
+        // the sign says nothing: a search that passes through the single relaxation at 0 must not hit a wall
+        width.prior = 3.0;
         tilt.name = "tilt";
         tilt.unit = "1";
         tilt.prior = 0.5;
@@ -67,7 +65,8 @@ public:
     std::vector<std::vector<double>> starts(const Extent& e) const override
     {
         const double low = std::log10(e.lowFrequency);
-        std::vector<std::vector<double>> result {{0.0, low, 3.0, 0.0}, {0.0, low + 0.3, 0.5, 0.0}, {0.0, low - 0.5, 0.5, 0.0}};
+        std::vector<std::vector<double>> result {
+            {0.0, low, 3.0, 0.0}, {0.0, low + 0.3, 0.5, 0.0}, {0.0, low - 0.5, 0.5, 0.0}};
         for (auto& start : result)
             start.resize(shape + spectrum::departures, 0.0);
         return result;
@@ -98,7 +97,7 @@ public:
         using std::exp;
         T sum = T(0.0);
         for (int k = 0; k < cells; ++k) {
-            const T logarithm = std::numbers::ln10 * p[2] * ((k + 0.5) / cells - 0.5);   // of f_k over the centre
+            const T logarithm = std::numbers::ln10 * p[2] * ((k + 0.5) / cells - 0.5);  // of f_k over the centre
             c[2 * k] = exp(p[3] * logarithm);
             c[2 * k + 1] = 2.0 * std::numbers::pi * exp(std::numbers::ln10 * p[1] + logarithm);
             sum += c[2 * k];
@@ -134,10 +133,10 @@ public:
 
 private:
     static constexpr int shape = 4;                // parameters ahead of the departures
-    static constexpr int cells = spectrum::cells;   // over five decades: a ripple below a thousandth of S
+    static constexpr int cells = spectrum::cells;  // over five decades: a ripple below a thousandth of S
 };
 
-} // namespace
+}  // namespace
 
 const Effect& creep()
 {
@@ -145,4 +144,4 @@ const Effect& creep()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -10,9 +10,10 @@ namespace {
 
 /// Rms(v) = Rms + sum_{k=1..n} c_k [T_k(2 s - 1) - T_k(-1)] + a_1 w + a_3 w^3,  w = v/V,
 /// s = sqrt((w - w_0)^2 + e^2) - sqrt(w_0^2 + e^2),  e = 1/50,
-/// with Chebyshev polynomials T_k. Damping of air flow grows like |v|, which no short polynomial in v imitates: s is |w|, rounded
-/// at rest so that the law stays differentiable. The odd terms let inward and outward differ; w_0 is where the flow is least
-/// resisted, near rest. Beyond the visited range, up to twice it, a law that rises goes on in proportion to |v|.
+/// with Chebyshev polynomials T_k. Damping of air flow grows like |v|, which no short polynomial in v imitates: s is
+/// |w|, rounded at rest so that the law stays differentiable. The odd terms let inward and outward differ; w_0 is where
+/// the flow is least resisted, near rest. Beyond the visited range, up to twice it, a law that rises goes on in
+/// proportion to |v|.
 class DampingVelocity final : public EffectOf<DampingVelocity> {
 public:
     std::string id() const override { return "damping-velocity"; }
@@ -75,7 +76,7 @@ public:
                 c[k] = (k > 0 ? 2.0 * c[k - 1] : T(0.0)) - c[k];
             c[0] += b[static_cast<std::size_t>(j)];
         }
-        c[0] = T(0.0);   // no difference at rest
+        c[0] = T(0.0);  // no difference at rest
         c[n + 1] = p[n];
         c[n + 2] = p[n + 1];
         c[n + 3] = p[n + 2];
@@ -114,7 +115,7 @@ private:
     }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& dampingVelocity()
 {
@@ -122,4 +123,4 @@ const Effect& dampingVelocity()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

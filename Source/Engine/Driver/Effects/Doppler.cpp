@@ -4,25 +4,28 @@
 namespace excursion {
 namespace {
 
-/// The source of the sound moves: what leaves the cone at x has the way to the microphone shortened by x and is heard earlier by x/c. The
-/// motion itself is not changed. The slowness 1/c is left to the data, so no unit of length or time is taken for granted; in air it is
-/// 2.9 ms/m.
+/// The source of the sound moves: what leaves the cone at x has the way to the microphone shortened by x and is heard
+/// earlier by x/c. The motion itself is not changed. The slowness 1/c is left to the data, so no unit of length or time
+/// is taken for granted; in air it is 2.9 ms/m.
 class Doppler final : public EffectOf<Doppler> {
 public:
     std::string id() const override { return "doppler"; }
     std::string title() const override { return "Doppler shift of the sound"; }
     std::string physics() const override
     {
-        return "The cone carries the source of its sound to and fro, so high tones are phase-modulated by the excursion of low ones.";
+        return "The cone carries the source of its sound to and fro, so high tones are phase-modulated by the "
+               "excursion of low ones.";
     }
     std::string symptoms() const override
     {
-        return "residual pressure around high tones at distances of low ones, growing with frequency and excursion, with no trace of it in "
+        return "residual pressure around high tones at distances of low ones, growing with frequency and excursion, "
+               "with no trace of it in "
                "current or displacement";
     }
     std::string remedy() const override
     {
-        return "Less excursion where treble is played: a crossover, or more area. No voltage removes it for every tone at once.";
+        return "Less excursion where treble is played: a crossover, or more area. No voltage removes it for every tone "
+               "at once.";
     }
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
@@ -53,7 +56,7 @@ public:
     }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& doppler()
 {
@@ -61,4 +64,4 @@ const Effect& doppler()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

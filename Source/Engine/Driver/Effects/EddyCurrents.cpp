@@ -13,34 +13,33 @@
 namespace excursion {
 namespace {
 
-/// Currents in the iron, Z(s) = sum_k R_k s/(s + p_k) with R_k > 0: resistors in parallel with inductors, as any set of passive loops that
-/// couple to the coil. Beforehand it is a semi-inductance Z(s) = K s^a (seed chapter 5). From
+/// Currents in the iron, Z(s) = sum_k R_k s/(s + p_k) with R_k > 0: resistors in parallel with inductors, as any set of
+/// passive loops that couple to the coil. Beforehand it is a semi-inductance Z(s) = K s^a (seed chapter 5). From
 ///     s^a = (sin(pi a)/pi) int_0^inf p^(a-1) s/(s + p) dp,     0 < a < 1,
 /// the trapezoidal rule in log p gives one resistor in parallel with one inductor per cell,
 ///     R_k s/(s + p_k),   R_k = K (sin(pi a)/pi) p_k^a ln q,   p_k = p_0 q^k,
 /// with an error of about 2 exp(-pi^2/ln q) for the sum over all k. What it has below p_low and above p_high is
-/// not dropped: the moments of these tails are geometric series, and the first three of each are matched by one more cell with a
-/// series resistor (below) and a series inductor (above). So the element is K (jw)^a within 3.5e-4 from the lowest to the
-/// highest frequency of interest and still has finite resistance and stiffness in the numerical sense. The fastest cells below the upper
-/// tail, those that the impedance shows, depart from the law in rate and weight as far as the data asks (RelaxationSpectrum.h): real
-/// coils follow K s^a within a few to thirty percent.
-/// A cell's memory is the current j_k through its inductor: dj_k/dt = p_k (i - j_k), voltage R_k (i - j_k).
+/// not dropped: the moments of these tails are geometric series, and the first three of each are matched by one more
+/// cell with a series resistor (below) and a series inductor (above). So the element is K (jw)^a within 3.5e-4 from the
+/// lowest to the highest frequency of interest and still has finite resistance and stiffness in the numerical sense.
+/// The fastest cells below the upper tail, those that the impedance shows, depart from the law in rate and weight as
+/// far as the data asks (RelaxationSpectrum.h): real coils follow K s^a within a few to thirty percent. A cell's memory
+/// is the current j_k through its inductor: dj_k/dt = p_k (i - j_k), voltage R_k (i - j_k).
 class EddyCurrents final : public EffectOf<EddyCurrents>, public NetworkParts {
 public:
     std::string id() const override { return "eddy-currents"; }
     std::string title() const override { return "Eddy currents (semi-inductance)"; }
     std::string physics() const override
     {
-        return "Currents induced in the iron make the coil's impedance rise about like a fractional power of frequency, K s^a.";
+        return "Currents induced in the iron make the coil's impedance rise about like a fractional power of "
+               "frequency, K s^a.";
     }
     std::string symptoms() const override
     {
-        return "linear residual voltage well above resonance, with a steady slope of the magnitude and a phase that stays below 90 degrees";
+        return "linear residual voltage well above resonance, with a steady slope of the magnitude and a phase that "
+               "stays below 90 degrees";
     }
-    std::string remedy() const override
-    {
-        return "It is no fault; a copper ring lowers it and makes it more linear.";
-    }
+    std::string remedy() const override { return "It is no fault; a copper ring lowers it and makes it more linear."; }
     bool electrical() const override { return true; }
     bool linear() const override { return true; }
 
@@ -81,7 +80,8 @@ public:
         constexpr int points = 60;
         double mean = 0.0, slope = 0.0, spread = 0.0, rest = 0.0;
         std::array<double, points> across {}, up {};
-        const double low = std::log(2.0 * std::numbers::pi * e.lowFrequency), high = std::log(2.0 * std::numbers::pi * e.highFrequency);
+        const double low = std::log(2.0 * std::numbers::pi * e.lowFrequency),
+                     high = std::log(2.0 * std::numbers::pi * e.highFrequency);
         for (std::size_t n = 0; n < points; ++n) {
             across[n] = (high - low) * ((static_cast<double>(n) + 0.5) / points - 0.5);
             up[n] = std::log(std::abs(impedance(e, c.data(), {0.0, std::exp(across[n] + 0.5 * (low + high))})));
@@ -92,7 +92,9 @@ public:
         slope /= spread;
         for (std::size_t n = 0; n < points; ++n)
             rest += std::pow(up[n] - mean - slope * across[n], 2) / points;
-        return {{"K", "ohm s^a", std::exp(mean - slope * 0.5 * (low + high))}, {"a", "1", slope}, {"departure", "%", 100.0 * std::sqrt(rest)}};
+        return {{"K", "ohm s^a", std::exp(mean - slope * 0.5 * (low + high))},
+                {"a", "1", slope},
+                {"departure", "%", 100.0 * std::sqrt(rest)}};
     }
 
     int memorySize(const Extent& e) const override { return innerCells(e) + 2; }
@@ -106,14 +108,16 @@ public:
         using std::sin;
         const T &K = parameters[0], &a = parameters[1];
         const int inner = innerCells(e), first = inner - spectrum::cells;
-        const double low = std::log(lowRate(e)), high = std::log(highRate(e)), step = (high - low) / inner;   // step: ln q
+        // step: ln q
+        const double low = std::log(lowRate(e)), high = std::log(highRate(e)), step = (high - low) / inner;
         const T factor = K * sin(std::numbers::pi * a) * (step / std::numbers::pi);
         const auto power = [](double logarithm, const T& exponent) { return exp(exponent * logarithm); };
 
         T* cell = c + 2;
         for (int k = 0; k < inner; ++k) {
             const double logRate = low + step * (k + 0.5);
-            const auto departs = k < first ? spectrum::Departure<T> {T(1.0), T(1.0)} : spectrum::departure(parameters + 2, k - first);
+            const auto departs = k < first ? spectrum::Departure<T> {T(1.0), T(1.0)}
+                                           : spectrum::departure(parameters + 2, k - first);
             *cell++ = std::exp(logRate) * departs.rate;
             *cell++ = factor * power(logRate, a) * departs.weight;
         }
@@ -164,14 +168,15 @@ private:
 
     static double lowRate(const Extent& e) { return 2.0 * std::numbers::pi * e.lowFrequency * 0.15; }
     static double highRate(const Extent& e) { return 2.0 * std::numbers::pi * e.highFrequency * 2.5; }
-    /// ln q of 1 and the margins of the two rates each leave an error below 3.5e-4; wider margins would make the fastest cell stiff.
+    /// ln q of 1 and the margins of the two rates each leave an error below 3.5e-4; wider margins would make the
+    /// fastest cell stiff.
     static int innerCells(const Extent& e)
     {
         return std::max(spectrum::cells, static_cast<int>(std::ceil(std::log(highRate(e) / lowRate(e)))));
     }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& eddyCurrents()
 {
@@ -179,4 +184,4 @@ const Effect& eddyCurrents()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -20,4 +20,4 @@ const Effect& doppler();
 const Effect& coneBreakup();
 const Effect& sideResonance();
 
-} // namespace excursion
+}  // namespace excursion

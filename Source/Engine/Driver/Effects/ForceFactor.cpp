@@ -22,7 +22,8 @@ public:
     }
     std::string remedy() const override
     {
-        return "A longer coil or gap, or a centred rest position, flattens Bl(x); its offset shows how far to shift the coil.";
+        return "A longer coil or gap, or a centred rest position, flattens Bl(x); its offset shows how far to shift "
+               "the coil.";
     }
     bool electrical() const override { return true; }
     bool linear() const override { return false; }
@@ -42,7 +43,7 @@ public:
     }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& forceFactor()
 {
@@ -50,4 +51,4 @@ const Effect& forceFactor()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

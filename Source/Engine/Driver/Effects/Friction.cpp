@@ -7,11 +7,13 @@
 namespace excursion {
 namespace {
 
-/// Hysteresis that depends on how far the cone went and not on how fast: Dahl's model (1968), one element per reach r_k,
+/// Hysteresis that depends on how far the cone went and not on how fast: Dahl's model (1968), one element per reach
+/// r_k,
 ///     F = -(F_c/n) sum_k g_k,   dg_k/dt = (v - |v| g_k) / r_k,   k = 1 .. n,
-/// g the share of its limit that an element carries. After a turn an element follows like a spring of F_c/(n r_k) and slips when the
-/// cone has gone a few r_k. The reaches lie evenly on a logarithmic axis, over `spread` octaves around `reach`; several elements
-/// approach the distributed slip of Iwan's model (1966). |v| is rounded within a hundredth of the visited velocity,
+/// g the share of its limit that an element carries. After a turn an element follows like a spring of F_c/(n r_k) and
+/// slips when the cone has gone a few r_k. The reaches lie evenly on a logarithmic axis, over `spread` octaves around
+/// `reach`; several elements approach the distributed slip of Iwan's model (1966). |v| is rounded within a hundredth of
+/// the visited velocity,
 ///     |v| = V s^2 (3 - 3 s + s^2),  s = |v|/V < 1,
 /// where it has two continuous derivatives and vanishes at rest, so that a cone that stands still forgets nothing.
 class Friction final : public EffectOf<Friction> {
@@ -20,16 +22,19 @@ public:
     std::string title() const override { return "Suspension hysteresis (friction)"; }
     std::string physics() const override
     {
-        return "Fibres of the spider and surround rub and slip: after every turn of the cone a force builds up against it and then holds.";
+        return "Fibres of the spider and surround rub and slip: after every turn of the cone a force builds up against "
+               "it and then holds.";
     }
     std::string symptoms() const override
     {
-        return "residual force that follows the sign of the velocity, as large at low as at high frequencies and the same at all levels: "
+        return "residual force that follows the sign of the velocity, as large at low as at high frequencies and the "
+               "same at all levels: "
                "stiffer and more damped where the cone moves little";
     }
     std::string remedy() const override
     {
-        return "Impregnation of the spider, glue joints and lead-out wires rub; a smoother weave or less doping lowers the loss.";
+        return "Impregnation of the spider, glue joints and lead-out wires rub; a smoother weave or less doping lowers "
+               "the loss.";
     }
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
@@ -40,7 +45,8 @@ public:
     std::vector<Parameter> parameters(const Extent& e) const override
     {
         const double springForce = e.scale * e.displacement, X = e.displacement;
-        constexpr double anySpread = 3.0;   // its sign says nothing: a search that passes through the single element at 0 must not hit a wall
+        // its sign says nothing: a search that passes through the single element at 0 must not hit a wall
+        constexpr double anySpread = 3.0;
         return {{.name = "Fc", .unit = "N", .lower = 0.0, .strength = true, .prior = springForce},
                 {.name = "reach", .unit = "m", .value = 0.08 * X, .lower = 2e-3 * X, .upper = 2.0 * X},
                 {.name = "spread", .unit = "octaves", .value = 2.0, .prior = anySpread}};
@@ -73,7 +79,7 @@ public:
 
 private:
     static constexpr int elements = 4;
-    static constexpr double rounding = 0.01;   // of the visited velocity
+    static constexpr double rounding = 0.01;  // of the visited velocity
 
     template <class T>
     static T size(const T& v, double width)
@@ -86,7 +92,7 @@ private:
     }
 };
 
-} // namespace
+}  // namespace
 
 const Effect& friction()
 {
@@ -94,4 +100,4 @@ const Effect& friction()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -9,13 +9,15 @@
 namespace excursion {
 namespace {
 
-/// Le(x) = Le + c(x), where c is the change of the flux that the coil's position makes. Not all of that flux follows the current at once: loops in
-/// the iron, which move away from the coil with the rest, delay a part of it. So the flux is c(x) F with
+/// Le(x) = Le + c(x), where c is the change of the flux that the coil's position makes. Not all of that flux follows
+/// the current at once: loops in the iron, which move away from the coil with the rest, delay a part of it. So the flux
+/// is c(x) F with
 ///     F = i + sum_k w_k j_k,   dj_k/dt = p_k (i - j_k),   w_k >= 0,
-/// a voltage d/dt[c F] = c dF/dt + c' v F. The power u i that is neither stored, c (1/2 i^2 + sum w_k j_k^2/2), nor lost in the loops,
-/// c sum w_k p_k (i - j_k)^2, moves the cone: the force is c'(x) (1/2 i^2 + sum w_k (j_k i - 1/2 j_k^2)), without loops the reluctance force of the
-/// magnetic coenergy. The curve is that of the flux that follows at once. The rates are a third, an 18th and a 108th of the band's upper end: what
-/// is faster follows about at once as far as the band shows, and a factor of six from one to the next leaves little of a power law.
+/// a voltage d/dt[c F] = c dF/dt + c' v F. The power u i that is neither stored, c (1/2 i^2 + sum w_k j_k^2/2), nor
+/// lost in the loops, c sum w_k p_k (i - j_k)^2, moves the cone: the force is c'(x) (1/2 i^2 + sum w_k (j_k i - 1/2
+/// j_k^2)), without loops the reluctance force of the magnetic coenergy. The curve is that of the flux that follows at
+/// once. The rates are a third, an 18th and a 108th of the band's upper end: what is faster follows about at once as
+/// far as the band shows, and a factor of six from one to the next leaves little of a power law.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
     std::string id() const override { return "inductance-position"; }
@@ -26,12 +28,10 @@ public:
     }
     std::string symptoms() const override
     {
-        return "residual voltage that grows with frequency and is scaled by a curve of x; a small residual force like the current squared";
+        return "residual voltage that grows with frequency and is scaled by a curve of x; a small residual force like "
+               "the current squared";
     }
-    std::string remedy() const override
-    {
-        return "Shorting rings or a copper cap near the gap flatten Le(x).";
-    }
+    std::string remedy() const override { return "Shorting rings or a copper cap near the gap flatten Le(x)."; }
     bool electrical() const override { return true; }
     bool linear() const override { return false; }
 
@@ -45,7 +45,8 @@ public:
     {
         auto result = curve::parameters(e, "H");
         for (int k = 1; k <= loops; ++k)
-            result.push_back({.name = "w" + std::to_string(k), .unit = "1", .lower = 0.0, .upper = 1e3, .prior = plausibleWeight});
+            result.push_back(
+                {.name = "w" + std::to_string(k), .unit = "1", .lower = 0.0, .upper = 1e3, .prior = plausibleWeight});
         return result;
     }
     int memorySize(const Extent&) const override { return loops; }
@@ -85,11 +86,12 @@ public:
 
 private:
     static constexpr int loops = 3;
-    static constexpr double plausibleWeight = 30.0;   // that of the slowest loop beside a coil that is nothing but a semi-inductance
-    static constexpr double spacing = 6.0;   // from one rate to the next
+    // that of the slowest loop beside a coil that is nothing but a semi-inductance
+    static constexpr double plausibleWeight = 30.0;
+    static constexpr double spacing = 6.0;  // from one rate to the next
 };
 
-} // namespace
+}  // namespace
 
 const Effect& inductancePosition()
 {
@@ -97,4 +99,4 @@ const Effect& inductancePosition()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

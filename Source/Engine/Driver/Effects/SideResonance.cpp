@@ -13,20 +13,23 @@ namespace {
 
 /// Small parts that hang on the cone by a spring and a damper of their own, each a resonator that the coil feels:
 ///     y'' = -(w/Q) (y' - v) - w^2 (y - x),     force -mu y'' on the cone,     mu >= 0.
-/// That is a surround or a dust cap that swings against the cone, the air behind a dome or in a box with its standing waves, and any passive
-/// load of the cone with these resonances (Foster). Far below w such a part moves with the cone as mass, far above it stands still. The base's m
-/// is the rest of the cone. A part is light against it: one that is not is a second loudspeaker's worth of mass, that of a port above all.
+/// That is a surround or a dust cap that swings against the cone, the air behind a dome or in a box with its standing
+/// waves, and any passive load of the cone with these resonances (Foster). Far below w such a part moves with the cone
+/// as mass, far above it stands still. The base's m is the rest of the cone. A part is light against it: one that is
+/// not is a second loudspeaker's worth of mass, that of a port above all.
 class SideResonance final : public EffectOf<SideResonance>, public NetworkParts {
 public:
     std::string id() const override { return "side-resonance"; }
     std::string title() const override { return "Side resonances (surround, dust cap, air behind the cone)"; }
     std::string physics() const override
     {
-        return "A surround, a dust cap or the air behind the cone swings by itself near its own resonance and pulls at the coil.";
+        return "A surround, a dust cap or the air behind the cone swings by itself near its own resonance and pulls at "
+               "the coil.";
     }
     std::string symptoms() const override
     {
-        return "linear residual current in a few narrow bands, each a small step or loop of the impedance, the same at every level";
+        return "linear residual current in a few narrow bands, each a small step or loop of the impedance, the same at "
+               "every level";
     }
     std::string remedy() const override
     {
@@ -56,20 +59,23 @@ public:
         std::vector<Part> parts;
         for (std::size_t k = 0; k < resonators; ++k) {
             parts.push_back({each * k, each, {}});
-            for (double f = 0.7 * e.highFrequency; f > std::max(1.5 * e.lowFrequency, e.highFrequency / 512.0); f /= step)
+            for (double f = 0.7 * e.highFrequency; f > std::max(1.5 * e.lowFrequency, e.highFrequency / 512.0);
+                 f /= step)
                 parts.back().starts.push_back({0.0, f, 1.0 / quality});
         }
         return parts;
     }
-    /// What is heavy enough to count rings at a frequency that was measured, and not far below the cone's own resonance, where a suspension
-    /// creeps and a box has its port.
-    bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
+    /// What is heavy enough to count rings at a frequency that was measured, and not far below the cone's own
+    /// resonance, where a suspension creeps and a box has its port.
+    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+                   const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 0.7, lowest = 0.5;
         const double from = std::max(e.lowFrequency, lowest * resonanceOf(base));
         for (std::size_t k = 0; k < own.size(); k += each)
             if (own[k].value > leastMass * e.scale
-                && (own[k + 1].value < from || own[k + 1].value > e.highFrequency || own[k + 2].value > 1.0 / leastQuality))
+                && (own[k + 1].value < from || own[k + 1].value > e.highFrequency
+                    || own[k + 2].value > 1.0 / leastQuality))
                 return false;
         return true;
     }
@@ -89,8 +95,8 @@ public:
     int memorySize(const Extent&) const override { return 2 * resonators; }
     int coefficientCount(const Extent&) const override { return each * resonators; }
 
-    /// Coefficients of a resonator: mu, w^2, w/Q. Frequency and loss stay at the end of what can be simulated where a search that finds nothing
-    /// runs away with them.
+    /// Coefficients of a resonator: mu, w^2, w/Q. Frequency and loss stay at the end of what can be simulated where a
+    /// search that finds nothing runs away with them.
     template <class T>
     void prepareFor(const Extent& e, const T* p, T* c) const
     {
@@ -130,10 +136,10 @@ public:
 private:
     static constexpr int resonators = 3, each = 3;
     static constexpr double someLoss = 0.3, mostMass = 0.25;
-    static constexpr double leastMass = 1e-5;   ///< of the base's: what is lighter is not there
+    static constexpr double leastMass = 1e-5;  ///< of the base's: what is lighter is not there
 };
 
-} // namespace
+}  // namespace
 
 const Effect& sideResonance()
 {
@@ -141,4 +147,4 @@ const Effect& sideResonance()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

@@ -8,11 +8,12 @@
 namespace excursion {
 namespace {
 
-/// K(x) = K + c(x). Where the suspension creeps, what yields lies in series with the spring that is bent, which so is stretched by
+/// K(x) = K + c(x). Where the suspension creeps, what yields lies in series with the spring that is bent, which so is
+/// stretched by
 ///     s = x - sum_k w_k q_k,   dq_k/dt = p_k (x - q_k),   w_k >= 0,
-/// and adds the force -c(s) s; the linear part of the yielding is the creep's. Without yields that is -c(x) x. The rates are 11, 2 and a third of the
-/// band's lower end: around the resonance, where a bent spring makes its distortion. A suspension
-/// that hardens goes on hardening beyond the visited range.
+/// and adds the force -c(s) s; the linear part of the yielding is the creep's. Without yields that is -c(x) x. The
+/// rates are 11, 2 and a third of the band's lower end: around the resonance, where a bent spring makes its distortion.
+/// A suspension that hardens goes on hardening beyond the visited range.
 class Stiffness final : public EffectOf<Stiffness> {
 public:
     std::string id() const override { return "stiffness"; }
@@ -27,7 +28,8 @@ public:
     }
     std::string remedy() const override
     {
-        return "A wider surround roll or a softer, symmetric spider straightens K(x); an even part asks for a shifted rest position.";
+        return "A wider surround roll or a softer, symmetric spider straightens K(x); an even part asks for a shifted "
+               "rest position.";
     }
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
@@ -36,13 +38,19 @@ public:
     {
         auto result = curve::parameters(e, "N/m");
         for (int k = 1; k <= yields; ++k)
-            result.push_back({.name = "w" + std::to_string(k), .unit = "1", .lower = 0.0, .upper = 1.0, .relaxed = true, .prior = plausibleYield});
+            result.push_back({.name = "w" + std::to_string(k),
+                              .unit = "1",
+                              .lower = 0.0,
+                              .upper = 1.0,
+                              .relaxed = true,
+                              .prior = plausibleYield});
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"K(x)", "N/m", "x", "m", "K"}; }
     double lawAt(const Extent& e, const double* p, double x) const override
     {
-        return curve::valueAt(e.degree, p, x, e.displacement) + curve::beyond(p[0], e.degree > 1 ? p[1] : 0.0, x, e.displacement);
+        return curve::valueAt(e.degree, p, x, e.displacement)
+               + curve::beyond(p[0], e.degree > 1 ? p[1] : 0.0, x, e.displacement);
     }
     int memorySize(const Extent& e) const override { return e.relaxed ? yields : 0; }
     bool remembersMotionAlone() const override { return true; }
@@ -80,11 +88,11 @@ public:
 private:
     static constexpr int yields = 3;
     static constexpr double plausibleYield = 0.3;
-    static constexpr double fastest = 11.0;   // over the band's lower end
-    static constexpr double spacing = 6.0;    // from one rate to the next
+    static constexpr double fastest = 11.0;  // over the band's lower end
+    static constexpr double spacing = 6.0;   // from one rate to the next
 };
 
-} // namespace
+}  // namespace
 
 const Effect& stiffness()
 {
@@ -92,4 +100,4 @@ const Effect& stiffness()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion

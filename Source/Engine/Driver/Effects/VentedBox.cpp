@@ -10,29 +10,34 @@
 namespace excursion {
 namespace {
 
-/// An air spring that cone and port share [Small, Vented-Box Loudspeaker Systems, J. Audio Eng. Soc. 21, 1973]. All displacements are volumes
-/// over the cone's area, positive outward: x of the cone, y of the port, l of what leaks; w = x + y + l expands the air, which pulls
-/// with Ka w. A passive radiator of mass mp has a spring Kp besides, r = Kp/Ka; an open port has none.
+/// An air spring that cone and port share [Small, Vented-Box Loudspeaker Systems, J. Audio Eng. Soc. 21, 1973]. All
+/// displacements are volumes over the cone's area, positive outward: x of the cone, y of the port, l of what leaks; w =
+/// x + y + l expands the air, which pulls with Ka w. A passive radiator of mass mp has a spring Kp besides, r = Kp/Ka;
+/// an open port has none.
 ///     port:   mp d2y/dt2 = -Ka (w + dA/wB dw/dt) - Kp y - mp wB dP dy/dt,     wB^2 = (Ka + Kp)/mp,   dP = 1/QP
 ///     leak:   dl/dt = -wB dL (w + dA/wB dw/dt),                               dL = 1/QL; dA = 1/QA is absorption
-/// At rest, without a leak, x, y and the radiator share the spring's pull, so that the box adds Ka r/(1 + r) to the stiffness, and far above the
-/// tuning Ka, of which Kb = Ka/(1 + r) is the difference. The base's K stays the stiffness at rest, with the box in it:
+/// At rest, without a leak, x, y and the radiator share the spring's pull, so that the box adds Ka r/(1 + r) to the
+/// stiffness, and far above the tuning Ka, of which Kb = Ka/(1 + r) is the difference. The base's K stays the stiffness
+/// at rest, with the box in it:
 ///     force:  -Ka (w + dA/wB dw/dt) + Kb r x
-/// For then the cone without leak and absorption does not depend on r, which the sound alone shows: the radiator's notch is at fB sqrt(r/(1 + r)).
-/// The microphone hears the cone, and the port as much as its place lets it: `port` is 1 far away, less close to the cone.
-/// The memory is w, dy/dt and y, and does not depend on Kb, which is a strength. The radiator's spring yields below a thousandth of the lowest
-/// frequency of interest, so that nothing integrates for ever. A closed box adds to K alone.
+/// For then the cone without leak and absorption does not depend on r, which the sound alone shows: the radiator's
+/// notch is at fB sqrt(r/(1 + r)). The microphone hears the cone, and the port as much as its place lets it: `port` is
+/// 1 far away, less close to the cone. The memory is w, dy/dt and y, and does not depend on Kb, which is a strength.
+/// The radiator's spring yields below a thousandth of the lowest frequency of interest, so that nothing integrates for
+/// ever. A closed box adds to K alone.
 class VentedBox final : public EffectOf<VentedBox>, public NetworkParts {
 public:
     std::string id() const override { return "vented-box"; }
     std::string title() const override { return "Vented box or passive radiator"; }
     std::string physics() const override
     {
-        return "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a second resonance.";
+        return "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a "
+               "second resonance.";
     }
     std::string symptoms() const override
     {
-        return "two humps in the impedance with a dip between them, where the cone stands nearly still and the port moves";
+        return "two humps in the impedance with a dip between them, where the cone stands nearly still and the port "
+               "moves";
     }
     std::string remedy() const override
     {
@@ -43,9 +48,11 @@ public:
 
     std::vector<Parameter> parameters(const Extent& e) const override
     {
-        auto stiffness = positiveParameter("Kb", "N/m", 0.0), tuning = positiveParameter("fB", "Hz", 4.0 * e.lowFrequency),
+        auto stiffness = positiveParameter("Kb", "N/m", 0.0),
+             tuning = positiveParameter("fB", "Hz", 4.0 * e.lowFrequency),
              port = positiveParameter("1/QP", "1", someLoss), leak = positiveParameter("1/QL", "1", someLoss),
-             absorption = positiveParameter("1/QA", "1", 0.0), radiator = positiveParameter("Kp/Ka", "1", 0.0), share = positiveParameter("port", "1", 0.0);
+             absorption = positiveParameter("1/QA", "1", 0.0), radiator = positiveParameter("Kp/Ka", "1", 0.0),
+             share = positiveParameter("port", "1", 0.0);
         stiffness.strength = share.strength = true;
         // Losses are small and an open port has no spring: without better knowledge they stay near zero.
         for (auto* p : {&port, &leak, &absorption, &radiator})
@@ -56,7 +63,8 @@ public:
     std::vector<std::vector<double>> starts(const Extent& e) const override
     {
         std::vector<std::vector<double>> starts;
-        for (double f = 1.5 * e.lowFrequency; f < 100.0 * e.lowFrequency && (starts.empty() || f < 0.1 * e.highFrequency); f *= 1.5)
+        for (double f = 1.5 * e.lowFrequency;
+             f < 100.0 * e.lowFrequency && (starts.empty() || f < 0.1 * e.highFrequency); f *= 1.5)
             starts.push_back({0.0, f, someLoss, someLoss, 0.0, 0.0, 0.0});
         return starts;
     }
@@ -65,23 +73,26 @@ public:
     {
         return {start[1], 1.5 * start[1]};
     }
-    /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air or the radiator is not much
-    /// lighter than the cone, and the air in the box not much softer than the suspension: what is found in real boxes lies well inside. Something
-    /// lighter is a part that swings by itself.
-    bool plausible(const Extent& e, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
+    /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air
+    /// or the radiator is not much lighter than the cone, and the air in the box not much softer than the suspension:
+    /// what is found in real boxes lies well inside. Something lighter is a part that swings by itself.
+    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+                   const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.16, highestTuning = 4.0;
         const double mass = own[0].value * std::pow((1.0 + own[5].value) / (2.0 * std::numbers::pi * own[1].value), 2);
-        return own[1].value < highestTuning * resonanceOf(base) && own[2].value + own[3].value + own[4].value < 1.0 / leastQuality
-               && own[0].value > leastStiffness * parameterNamed(base, "K").value && mass > leastMass * parameterNamed(base, "m").value
-               && own[1].value > e.lowFrequency && own[1].value < e.highFrequency;
+        return own[1].value < highestTuning * resonanceOf(base)
+               && own[2].value + own[3].value + own[4].value < 1.0 / leastQuality
+               && own[0].value > leastStiffness * parameterNamed(base, "K").value
+               && mass > leastMass * parameterNamed(base, "m").value && own[1].value > e.lowFrequency
+               && own[1].value < e.highFrequency;
     }
 
     int memorySize(const Extent&) const override { return 3; }
     int coefficientCount(const Extent&) const override { return 8; }
 
-    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard. The tuning stays at the end of what was measured where a
-    /// search that finds nothing runs away with it.
+    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard. The tuning stays at the
+    /// end of what was measured where a search that finds nothing runs away with it.
     template <class T>
     void prepareFor(const Extent& e, const T* p, T* c) const
     {
@@ -100,21 +111,21 @@ public:
     void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
     {
         const T &w = memory[0], &vy = memory[1], &y = memory[2];
-        rate[0] = (at.v + vy - c[5] * w) / (1.0 + c[5] * c[6]);   // dw/dt = v + dy/dt + dl/dt, solved
+        rate[0] = (at.v + vy - c[5] * w) / (1.0 + c[5] * c[6]);  // dw/dt = v + dy/dt + dl/dt, solved
         const T pull = w + c[6] * rate[0];
         rate[1] = -c[2] * pull - c[3] * vy - c[4] * y;
         rate[2] = vy - yield * e.lowFrequency * y;
         sum.force += c[1] * at.x - c[0] * pull;
     }
 
-    /// The air spring, with its absorption, between the cone and what leaks, from there to the port, which moves inward as the cone moves
-    /// outward; the port's mass, losses and, of a radiator, its spring with what it yields.
+    /// The air spring, with its absorption, between the cone and what leaks, from there to the port, which moves inward
+    /// as the cone moves outward; the port's mass, losses and, of a radiator, its spring with what it yields.
     void draw(const Extent& e, const double* c, NetworkDrawing& into) const override
     {
         const double Ka = c[0];
         if (Ka == 0.0)
             return;
-        const double portMass = Ka / c[2], leak = c[5] / Ka;   // leak: velocity over force
+        const double portMass = Ka / c[2], leak = c[5] / Ka;  // leak: velocity over force
         const std::string air = leak > 0.0 ? "air" : "port";
         into.spring(Network::cone, Network::ground, -c[1]);
         into.spring(Network::cone, air, Ka);
@@ -140,7 +151,7 @@ private:
     static constexpr double someLoss = 0.1, yield = 2.0 * std::numbers::pi * 0.001;
 };
 
-} // namespace
+}  // namespace
 
 const Effect& ventedBox()
 {
@@ -148,4 +159,4 @@ const Effect& ventedBox()
     return effect;
 }
 
-} // namespace excursion
+}  // namespace excursion
