@@ -2,6 +2,7 @@
 #include "Bench/Draw.h"
 
 #include "Bench/Random.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 
 #include <algorithm>
@@ -253,9 +254,7 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
     else if (effect.id == "side-resonance")
         speaker.sideResonance = drawParts(strength, speaker, f0, plan.bandHigh, random);
     else {
-        std::string known;
-        for (const auto& id : effectIds())
-            known += (known.empty() ? "" : ", ") + id;
+        const auto known = joined(effectIds());
         throw Error(Error::Kind::usage, "There is no effect \"" + effect.id + "\" to hide; choose from " + known + ".");
     }
     return strength;

@@ -5,6 +5,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/Bla.h"
 #include "Engine/Measurement/Distortion.h"

@@ -8,6 +8,7 @@
 #include "Engine/Import/Calibration.h"
 #include "Engine/Import/ResponseCurve.h"
 #include "Engine/Import/Tone.h"
+#include "Engine/Measurement/Air.h"
 #include "Engine/Measurement/WavFile.h"
 
 #include <cmath>
@@ -47,7 +48,7 @@ ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calib
                 "--sense-resistor out.");
         entry.quantity = Quantity::pressure;
         entry.unit = "Pa";
-        entry.fullScale = 20e-6 * std::pow(10.0, a.spl / 20.0) / tone.rms;
+        entry.fullScale = referencePressure * std::pow(10.0, a.spl / 20.0) / tone.rms;
         entry.referenceFrequency = tone.frequency;
         entry.sensitivity.reset();
         entry.preampGainDb.reset();
@@ -89,10 +90,7 @@ void run(const CalibrateArguments& a, Terminal& terminal)
                                             + " channels, so there is no channel " + std::to_string(a.channel)
                                             + "; they are counted from 1.");
     const auto& samples = sound.channels[static_cast<std::size_t>(a.channel) - 1];
-    for (std::size_t n = 0; n < samples.size(); ++n)
-        if (!std::isfinite(samples[n]))
-            throw Error(Error::Kind::input, "'" + a.file + "': sample " + std::to_string(n) + " of channel "
-                                                + std::to_string(a.channel) + " is not a finite number; record again.");
+    requireFinite(sound, static_cast<std::size_t>(a.channel) - 1, a.file);
     const auto tone = findTone(samples, sound.sampleRate, label.c_str());
     const bool merged = fs::exists(a.out);
     Calibration calibration = merged ? readCalibration(a.out) : Calibration {};
@@ -146,8 +144,7 @@ void addCalibrate(CLI::App& app, Terminal& terminal)
     auto* spl = verb->add_option("--spl", o->spl,
                                  "dB (20 uPa) of a calibrator's tone at the microphone: calibrates all of the way")
                     ->check(CLI::Range(40.0, 160.0));
-    verb->add_option("--quantity", o->quantity, "what is connected to it")
-        ->check(CLI::IsMember({"voltage", "current", "displacement", "velocity", "acceleration", "pressure", "force"}));
+    verb->add_option("--quantity", o->quantity, "what is connected to it")->check(CLI::IsMember(quantityNames()));
     verb->add_option("--divider", o->divider, "voltage at the loudspeaker over that at the input")
         ->check(CLI::Range(1.0, 1e6));
     verb->add_option("--sense-resistor", o->resistor, "ohm; the current is the voltage over it")

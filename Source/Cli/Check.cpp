@@ -115,9 +115,7 @@ void addCheck(CLI::App& app, Terminal& terminal)
     verb->callback([take, &terminal] {
         auto measurement = readMeasurement(*take);
         completeExcitation(measurement);
-        auto report = check(measurement);
-        for (const auto& remark : measurement.remarks)
-            report.problems.push_back({"assumption", std::nullopt, 0.0, "", false, remark});
+        const auto report = check(measurement);
         print(report, terminal);
         terminal.document(documentOf(report, *take, measurement.sampleRate));
         if (!report.fitForUse())

@@ -6,6 +6,8 @@
 #include "Engine/Batch/CollectionFile.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/TextFile.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Report/BatchReport.h"
 
@@ -26,14 +28,6 @@ struct CollectArguments {
     bool goOn = false;
 };
 
-std::string joinedBy(const std::vector<std::string>& words, const char* between)
-{
-    std::string text;
-    for (const auto& word : words)
-        text += (text.empty() ? "" : between) + word;
-    return text;
-}
-
 std::string known(double value, int digits = 4)
 {
     return std::isfinite(value) ? significant(value, digits) : std::string("-");
@@ -44,12 +38,12 @@ void printUnits(const Collection& all, Terminal& terminal)
     std::vector<std::vector<std::string>> rows;
     for (std::size_t k = 0; k < all.units.size(); ++k) {
         const auto& unit = all.units[k];
-        rows.push_back({unit.name + (all.golden == k ? " (golden)" : ""), unit.verdict, joinedBy(unit.effects, ", "),
+        rows.push_back({unit.name + (all.golden == k ? " (golden)" : ""), unit.verdict, joined(unit.effects),
                         !all.limited                ? ""
                         : !unit.measured            ? "not measured"
                         : unit.beyondLimits.empty() ? "within"
-                                                    : joinedBy(unit.beyondLimits, ", "),
-                        joinedBy(unit.standsOutBy(), ", ")});
+                                                    : joined(unit.beyondLimits),
+                        joined(unit.standsOutBy())});
     }
     terminal.table({"unit", "verdict", "effects", all.limited ? "limits" : "", "stands out by"}, rows);
 }
@@ -113,7 +107,7 @@ void run(const CollectArguments& options, Terminal& terminal)
                             ? "; " + std::to_string(all.units.size() - all.measured) + " more are not measured."
                             : "."));
     if (!options.out.empty())
-        terminal.say("Wrote " + joinedBy(options.out, ", ") + ".");
+        terminal.say("Wrote " + joined(options.out) + ".");
     terminal.document(document);
     if (all.limited && all.passed < all.units.size())
         terminal.answer = 1;

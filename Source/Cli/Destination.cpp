@@ -3,7 +3,6 @@
 
 #include "Engine/Error.h"
 
-#include <algorithm>
 #include <cctype>
 #include <filesystem>
 
@@ -64,14 +63,6 @@ void requireFolderPlace(const std::string& folder)
     if (folder.empty())
         refuse(folder, "the name is empty");
     requireWritable(folder, folder);
-}
-
-std::string endingOf(const std::string& path)
-{
-    auto text = fs::path(path).extension().string();
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
 }
 
 }  // namespace excursion::cli

@@ -11,7 +11,4 @@ void requireFilePlace(const std::string& file);  ///< a file can be written ther
 /// it is a folder that files can be written to, or can become one
 void requireFolderPlace(const std::string& folder);
 
-/// What a file's name ends in, with the dot and in lower case: ".csv"; empty without one.
-std::string endingOf(const std::string& path);
-
 }  // namespace excursion::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Document/Words.h"
 
 #include <Eigen/Core>
 #include <ceres/version.h>
@@ -89,11 +90,7 @@ std::optional<std::string> soundCards()
         if (open == std::string::npos || close == std::string::npos || line.find_first_not_of(' ') > open)
             continue;
         const auto number = line.substr(0, open), name = line.substr(open + 1, close - open - 1);
-        const auto trimmed = [](const std::string& text) {
-            const auto first = text.find_first_not_of(' ');
-            return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
-        };
-        cards += (cards.empty() ? "" : ", ") + trimmed(number) + " " + trimmed(name);
+        cards += (cards.empty() ? "" : ", ") + std::string(trimmed(number)) + " " + std::string(trimmed(name));
     }
     return cards.empty() ? std::nullopt : std::optional(cards);
 }

@@ -2,6 +2,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Driver/Catalogue.h"
 
 #include <nlohmann/json.hpp>
@@ -17,9 +18,8 @@ std::string parametersText(const Effect& effect, const std::vector<Parameter>& p
     if (effect.law())
         return std::to_string(parameters.size()) + " coefficients in " + parameters.front().unit
                + ", more where the data asks for them";
-    std::string text;
-    for (const auto& p : parameters)
-        text += (text.empty() ? "" : ", ") + p.name + (p.unit == "1" ? "" : " in " + p.unit);
+    const auto text = joined(parameters,
+                             [&](const auto& p) { return p.name + (p.unit == "1" ? "" : " in " + p.unit); });
     return text;
 }
 

@@ -2,6 +2,7 @@
 #include "Cli/Help.h"
 
 #include "Cli/Terminal.h"
+#include "Engine/Document/Words.h"
 
 namespace excursion::cli {
 namespace {
@@ -24,14 +25,6 @@ std::string defaultOf(const CLI::Option& option)
     auto text = option.get_default_str();
     if (text.size() > 2 && text.front() == '[' && text.back() == ']')
         text = text.substr(1, text.size() - 2);
-    return text;
-}
-
-std::string joined(const std::vector<std::string>& words)
-{
-    std::string text;
-    for (const auto& word : words)
-        text += (text.empty() ? "" : ", ") + word;
     return text;
 }
 

@@ -3,6 +3,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ImportText.h"
 #include "Engine/Measurement/Export.h"
@@ -28,14 +29,6 @@ struct ImportArguments {
     std::size_t from = 0, to = 0;
     bool removeMean = false, minimumPhase = false;
 };
-
-bool endsIn(const std::filesystem::path& path, const std::string& extension)
-{
-    auto text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text == extension;
-}
 
 ImportOptions importOptions(const ImportArguments& options)
 {
@@ -93,12 +86,12 @@ void describe(const Measurement& take, Terminal& terminal, const std::string& ou
 void importSpectra(const Spectra& spectra, const std::string& out, Terminal& terminal)
 {
     const auto *voltage = spectra.find(Quantity::voltage), *current = spectra.find(Quantity::current);
-    if (endsIn(out, ".zma") && voltage && current) {
+    if (endingOf(out) == ".zma" && voltage && current) {
         Frf impedance {spectra.frequency, {}, {}, {}};
         for (std::size_t k = 0; k < voltage->values.size(); ++k)
             impedance.value.push_back(voltage->values[k] / current->values[k]);
         writeZma(impedance, out);
-    } else if (endsIn(out, ".csv")) {
+    } else if (endingOf(out) == ".csv") {
         writeCsv(spectra, out);
     } else {
         throw Error(
@@ -120,10 +113,10 @@ void importSpectra(const Spectra& spectra, const std::string& out, Terminal& ter
 
 Take read(const ImportArguments& options)
 {
-    if (endsIn(options.file, ".mat"))
+    if (endingOf(options.file) == ".mat")
         return importMat(options.file, importOptions(options));
     std::error_code ignored;
-    if (!endsIn(options.file, ".json") && !endsIn(options.file, ".wav")
+    if (endingOf(options.file) != ".json" && endingOf(options.file) != ".wav"
         && std::filesystem::is_regular_file(options.file, ignored))
         return importText(options.file, importOptions(options));
     if (!options.map.empty() || options.rate > 0 || options.from > 0 || options.to > 0 || options.removeMean
@@ -160,7 +153,7 @@ void run(ImportArguments options, Terminal& terminal)
     auto& measurement = std::get<Measurement>(take);
     if (!options.name.empty())
         measurement.driver.name = options.name;
-    if (endsIn(options.out, ".csv"))
+    if (endingOf(options.out) == ".csv")
         writeCsv(measurement, options.out);
     else
         writeMeasurement(measurement, options.out);

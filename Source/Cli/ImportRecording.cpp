@@ -4,6 +4,7 @@
 #include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ImportRecording.h"
 #include "Engine/Measurement/Export.h"
@@ -131,12 +132,9 @@ void describe(const ImportedRecording& imported, bool aligned, const std::string
 
 bool isRecording(const std::string& file)
 {
-    auto extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     static constexpr std::array<std::string_view, 8> known {".wav",  ".wave", ".rf64", ".aif",
                                                             ".aiff", ".aifc", ".caf",  ".flac"};
-    return std::find(known.begin(), known.end(), extension) != known.end();
+    return std::find(known.begin(), known.end(), endingOf(file)) != known.end();
 }
 
 void addRecordingOptions(CLI::App& verb, RecordingArguments& arguments)
@@ -158,7 +156,7 @@ void addRecordingOptions(CLI::App& verb, RecordingArguments& arguments)
 
 void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
 {
-    const bool text = std::filesystem::path(arguments.out).extension() == ".csv";
+    const bool text = endingOf(arguments.out) == ".csv";
     text ? requireFilePlace(arguments.out) : requireFolderPlace(arguments.out);
     const auto options = recordingOptions(arguments);
     auto imported = importRecording(options, terminal.progress());

@@ -4,6 +4,7 @@
 #include "Cli/ModelTables.h"
 #include "Cli/OpenTake.h"
 #include "Cli/Terminal.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Driver/Catalogue.h"
 
 #include <algorithm>
@@ -69,9 +70,7 @@ void LiveLadder::show(const Rung& rung)
     terminal_.say(wrapped(
         "     missing: " + best.effect + " (" + confidenceText(best.confidence) + " sure). " + best.reason, 14));
     if (!diagnosis.indistinguishable.empty()) {
-        std::string others;
-        for (const auto& id : diagnosis.indistinguishable)
-            others += (others.empty() ? "" : " or ") + id;
+        const auto others = joined(diagnosis.indistinguishable, " or ");
         terminal_.say(wrapped("     or else: " + others + "; this take cannot tell. " + diagnosis.measureNext, 14));
     }
 }

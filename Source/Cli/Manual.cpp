@@ -3,6 +3,7 @@
 
 #include "Cli/Help.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Driver/Catalogue.h"
 
 #include <algorithm>
@@ -74,9 +75,7 @@ std::string verbSection(const Help& help, const CLI::App& verb)
 /// Words between blanks, each quoted for the shell.
 std::string shellWords(const std::vector<std::string>& words)
 {
-    std::string text;
-    for (const auto& word : words)
-        text += (text.empty() ? "" : " ") + word;
+    const auto text = joined(words, " ");
     return "'" + text + "'";
 }
 

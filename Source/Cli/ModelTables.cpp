@@ -4,6 +4,7 @@
 #include "Cli/Terminal.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Driver/Summary.h"
 #include "Plots/Engineering.h"
 
@@ -43,25 +44,6 @@ void addRows(Rows& rows, const std::vector<Figure>& figures)
     }
 }
 
-void printLaws(const Model& model, Terminal& terminal)
-{
-    Rows rows;
-    for (const auto& law : laws(model)) {
-        const auto largest = std::max_element(law.value.begin(), law.value.end(),
-                                              [](double a, double b) { return std::abs(a) < std::abs(b); });
-        const auto unit = displayUnit(std::abs(*largest), law.info.unit);
-        const auto argument = displayUnit(law.argument.back(), law.info.argumentUnit);
-        const auto at = [&](std::size_t k) { return significant(law.value[k] * unit.factor); };
-        rows.push_back(
-            {law.info.name, at(0), at(law.value.size() / 2), at(law.value.size() - 1), unit.unit,
-             law.info.argument + " = " + significant(law.argument.back() * argument.factor, 3) + " " + argument.unit});
-    }
-    if (rows.empty())
-        return;
-    terminal.say("");
-    terminal.table({"law", "at -end", "at rest", "at +end", "unit", "end"}, rows);
-}
-
 }  // namespace
 
 void printParameters(const Model& model, Terminal& terminal)
@@ -78,7 +60,45 @@ void printParameters(const Model& model, Terminal& terminal)
     addRows(rows, model.path.parameters);
     const bool held = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.back().empty(); });
     terminal.table({"parameter", "value", "std error", "unit", held ? "remark" : ""}, rows);
-    printLaws(model, terminal);
+    std::vector<LawTable> tables;
+    for (const auto& law : laws(model))
+        tables.push_back(tableOf(law));
+    printLaws(tables, terminal);
+}
+
+void printLaws(const std::vector<LawTable>& laws, Terminal& terminal)
+{
+    Rows rows;
+    for (const auto& law : laws) {
+        const auto largest = std::max_element(law.value.begin(), law.value.end(),
+                                              [](double a, double b) { return std::abs(a) < std::abs(b); });
+        const auto unit = displayUnit(std::abs(*largest), law.unit),
+                   argument = displayUnit(law.at.back(), law.argumentUnit);
+        const auto at = [&](std::size_t k) {
+            const double half = 0.5 * (law.high95[k] - law.low95[k]) * unit.factor;
+            return significant(law.value[k] * unit.factor)
+                   + (std::isfinite(half) ? " \u00b1 " + significant(half, 2) : std::string());
+        };
+        rows.push_back({law.name, at(0), at(law.at.size() / 2), at(law.at.size() - 1), unit.unit,
+                        law.argument + " = " + significant(law.at.back() * argument.factor, 3) + " " + argument.unit});
+    }
+    if (rows.empty())
+        return;
+    terminal.say("");
+    terminal.table({"law", "at -end", "at rest", "at +end", "unit", "end"}, rows);
+    terminal.say("\u00b1: half of the 95 % band.");
+}
+
+void printLimits(const StrokeLimits& stroke, Terminal& terminal)
+{
+    const auto place = [](const std::optional<double>& metres, double atEnd) {
+        return metres ? significant(1e3 * *metres, 3) + " mm" : "not reached (" + significant(atEnd, 3) + " %)";
+    };
+    Rows rows;
+    for (const auto& limit : stroke.limits)
+        rows.push_back({limit.name + " " + limit.criterion, place(limit.inward, limit.inwardEnd),
+                        place(limit.outward, limit.outwardEnd)});
+    terminal.table({"limit of the stroke", "inward", "outward"}, rows);
 }
 
 void printErrors(const Comparison& comparison, Terminal& terminal)
@@ -112,9 +132,7 @@ std::string confidenceText(double confidence) { return fixed(std::min(99.0, 100.
 
 std::string effectsText(const Model& model)
 {
-    std::string text;
-    for (const auto& id : model.effectIds())
-        text += (text.empty() ? "" : ", ") + id;
+    const auto text = joined(model.effectIds());
     return text.empty() ? "the base alone, which is linear" : "the base and " + text;
 }
 

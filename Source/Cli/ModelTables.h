@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Datasheet/LawTable.h"
+#include "Engine/Design/StrokeLimits.h"
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/Model.h"
@@ -8,6 +10,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <vector>
 
 namespace excursion::cli {
 
@@ -15,6 +18,12 @@ class Terminal;
 
 /// The parameters with their standard errors in units of a handy size, then each law at its ends and at rest.
 void printParameters(const Model&, Terminal&);
+
+/// Each law at its ends and at rest, with half of its 95 % band.
+void printLaws(const std::vector<LawTable>&, Terminal&);
+
+/// How far the coil may go either way.
+void printLimits(const StrokeLimits&, Terminal&);
 
 /// Error, noise floor and misfit of each channel, and what they mean.
 void printErrors(const Comparison&, Terminal&);

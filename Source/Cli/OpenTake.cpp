@@ -25,12 +25,9 @@ bool hasCoil(const Take& take)
 OpenTake openTake(const std::string& path)
 {
     OpenTake open {path, readTake(path), {}};
-    if (auto* measurement = std::get_if<Measurement>(&open.take)) {
+    if (auto* measurement = std::get_if<Measurement>(&open.take))
         completeExcitation(*measurement);
-        open.report = check(*measurement);
-    }
-    for (const auto& remark : std::visit([](const auto& take) { return take.remarks; }, open.take))
-        open.report.problems.push_back({"assumption", std::nullopt, 0.0, "", false, remark});
+    open.report = std::visit([](const auto& take) { return check(take); }, open.take);
     return open;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/ModelTables.h"
 #include "Cli/OpenDriver.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
@@ -9,6 +10,8 @@
 #include "Engine/Datasheet/SpiceNetlist.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/TextFile.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/Export.h"
 #include "Engine/Measurement/FindExcitation.h"
@@ -95,39 +98,6 @@ void printInductance(const LossyInductance& inductance, Terminal& terminal)
     terminal.say("Error: rms of the complex impedance with Re in it, and the largest of its magnitude.");
 }
 
-void printLaws(const Datasheet& sheet, Terminal& terminal)
-{
-    std::vector<std::vector<std::string>> rows;
-    for (const auto& law : sheet.laws) {
-        const auto unit = displayUnit(law.value[law.value.size() / 2], law.unit),
-                   argument = displayUnit(law.at.back(), law.argumentUnit);
-        const auto at = [&](std::size_t k) {
-            const double half = 0.5 * (law.high95[k] - law.low95[k]) * unit.factor;
-            return significant(law.value[k] * unit.factor)
-                   + (std::isfinite(half) ? " ± " + significant(half, 2) : std::string());
-        };
-        rows.push_back({law.name, at(0), at(law.at.size() / 2), at(law.at.size() - 1), unit.unit,
-                        law.argument + " = " + significant(law.at.back() * argument.factor, 3) + " " + argument.unit});
-    }
-    if (!rows.empty()) {
-        terminal.say("");
-        terminal.table({"law", "at -end", "at rest", "at +end", "unit", "end"}, rows);
-        terminal.say("\u00b1: half of the 95 % band.");
-    }
-    if (!sheet.stroke)
-        return;
-    rows.clear();
-    for (const auto& limit : sheet.stroke->limits) {
-        const auto place = [](const std::optional<double>& metres, double atEnd) {
-            return metres ? significant(1e3 * *metres, 3) + " mm" : "not reached (" + significant(atEnd, 3) + " %)";
-        };
-        rows.push_back({limit.name + " " + limit.criterion, place(limit.inward, limit.inwardEnd),
-                        place(limit.outward, limit.outwardEnd)});
-    }
-    terminal.say("");
-    terminal.table({"limit of the stroke", "inward", "outward"}, rows);
-}
-
 /// The curves of a take or of a model at a level; the files that were written.
 void writeCurves(const ParametersArguments& options, const ScaledModel* given, const Measurement* measured,
                  Json& written, Terminal& terminal)
@@ -171,9 +141,7 @@ bool isTake(const std::string& path)
 
 void sayWritten(const Json& written, Terminal& terminal)
 {
-    std::string list;
-    for (const auto& file : written)
-        list += (list.empty() ? "" : ", ") + file.get<std::string>();
+    const auto list = joined(written, [&](const auto& file) { return file.get<std::string>(); });
     if (!list.empty())
         terminal.say("Wrote " + list + ".");
 }
@@ -233,7 +201,11 @@ void run(const ParametersArguments& options, Terminal& terminal)
     printFigures(sheet, terminal);
     if (sheet.inductance)
         printInductance(*sheet.inductance, terminal);
-    printLaws(sheet, terminal);
+    printLaws(sheet.laws, terminal);
+    if (sheet.stroke) {
+        terminal.say("");
+        printLimits(*sheet.stroke, terminal);
+    }
     sayWritten(written, terminal);
     document["wrote"] = written;
     terminal.document(document);

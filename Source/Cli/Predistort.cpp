@@ -35,11 +35,8 @@ struct PredistortArguments {
 Wav readPlayable(const std::string& file)
 {
     auto wav = readWav(file);
-    for (const auto& channel : wav.channels)
-        for (std::size_t n = 0; n < channel.size(); ++n)
-            if (!std::isfinite(channel[n]))
-                throw Error(Error::Kind::input, "'" + file + "': sample " + std::to_string(n)
-                                                    + " is not a finite number; export the WAV again.");
+    for (std::size_t c = 0; c < wav.channels.size(); ++c)
+        requireFinite(wav, c, file);
     return wav;
 }
 

@@ -3,6 +3,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/TextFile.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
@@ -44,16 +45,12 @@ Played fromWav(const SimulateArguments& options, const Model& model)
     if (wav.channels.size() != 1)
         throw Error(Error::Kind::input, "'" + options.input + "' has " + std::to_string(wav.channels.size())
                                             + " channels, expected one; keep the one that the loudspeaker is to play.");
+    requireFinite(wav, 0, options.input);
     Played played;
     played.sampleRate = wav.sampleRate;
     played.channel.samples = std::move(wav.channels.front());
-    for (std::size_t n = 0; n < played.channel.samples.size(); ++n) {
-        auto& sample = played.channel.samples[n];
-        if (!std::isfinite(sample))
-            throw Error(Error::Kind::input, "'" + options.input + "': sample " + std::to_string(n)
-                                                + " is not a finite number; export the WAV again.");
+    for (double& sample : played.channel.samples)
         sample *= options.fullScale;
-    }
     played.channel.fullScale = options.fullScale;
     return played;
 }

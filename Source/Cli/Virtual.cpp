@@ -6,6 +6,7 @@
 #include "Bench/Draw.h"
 #include "Bench/Truth.h"
 #include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/TakeFile.h"
 
@@ -110,9 +111,8 @@ void run(const VirtualArguments& options, Terminal& terminal)
         document["channels"].push_back(name(channel.quantity));
     terminal.document(document);
 
-    std::string channels;
-    for (const auto& channel : take.channels)
-        channels += (channels.empty() ? "" : ", ") + std::string(name(channel.quantity));
+    const auto channels = joined(take.channels,
+                                 [&](const auto& channel) { return std::string(name(channel.quantity)); });
     terminal.say(options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 1)
                  + " s of a virtual " + drawn.driver + " at " + fixed(take.sampleRate, 0) + " Hz (" + channels
                  + "), up to " + significant(plan.levels.back(), 3) + " V rms.");

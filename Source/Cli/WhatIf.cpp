@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/ModelTables.h"
 #include "Cli/OpenTake.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
@@ -28,11 +29,6 @@ std::string levelText(double db)
     return !std::isfinite(db) ? "-" : db < least ? "<" + fixed(least, 0) : fixed(db, 1);
 }
 
-std::string placeOf(const std::optional<double>& metres, double atEnd)
-{
-    return metres ? significant(1e3 * *metres, 3) + " mm" : "not reached (" + significant(atEnd, 3) + " %)";
-}
-
 /// A channel of each variant: even, odd, and what is gone without the effect.
 void printChannel(const DistortionByEffect& distortion, std::size_t channel, Terminal& terminal)
 {
@@ -52,19 +48,6 @@ void printChannel(const DistortionByEffect& distortion, std::size_t channel, Ter
     terminal.table({"", "even dB", "odd dB", "gain dB", "falls by dB", "alone: even dB", "odd dB"}, rows);
 }
 
-void printLimits(const StrokeLimits& stroke, Terminal& terminal)
-{
-    std::vector<std::vector<std::string>> rows;
-    for (const auto& limit : stroke.limits)
-        rows.push_back({limit.name + " " + limit.criterion, placeOf(limit.inward, limit.inwardEnd),
-                        placeOf(limit.outward, limit.outwardEnd)});
-    terminal.say("");
-    terminal.say("Stroke, within the measured " + significant(1e3 * stroke.range, 3)
-                 + " mm either way; impedance and Doppler shift at " + significant(stroke.tone, 3)
-                 + " Hz, 8.5 times the resonance");
-    terminal.table({"limit", "inward", "outward"}, rows);
-}
-
 void run(const WhatIfArguments& options, Terminal& terminal)
 {
     const auto model = readModel(options.model);
@@ -80,6 +63,10 @@ void run(const WhatIfArguments& options, Terminal& terminal)
     for (std::size_t c = 0; c < result.distortion.whole.size(); ++c)
         printChannel(result.distortion, c, terminal);
     terminal.say("Gain: the level against that of the linear part. Alone: the effect beside the linear ones only.");
+    terminal.say("");
+    terminal.say("Stroke, within the measured " + significant(1e3 * result.stroke.range, 3)
+                 + " mm either way; impedance and Doppler shift at " + significant(result.stroke.tone, 3)
+                 + " Hz, 8.5 times the resonance");
     printLimits(result.stroke, terminal);
     terminal.say("");
     terminal.say(wrapped(advice(result)));

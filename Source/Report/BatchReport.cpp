@@ -2,6 +2,7 @@
 #include "Report/BatchReport.h"
 
 #include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Words.h"
 #include "Plots/BatchPlots.h"
 #include "Plots/Engineering.h"
 #include "Plots/Words.h"
@@ -16,20 +17,9 @@ namespace {
 
 constexpr auto dash = "\u2013";
 
-std::string listOf(const std::vector<std::string>& words)
-{
-    std::string text;
-    for (const auto& word : words)
-        text += (text.empty() ? "" : ", ") + word;
-    return text;
-}
-
 std::string effectTitles(const std::vector<std::string>& ids)
 {
-    std::vector<std::string> titles;
-    for (const auto& id : ids)
-        titles.push_back(effectTitle(id));
-    return listOf(titles);
+    return joined(ids, [](const auto& id) { return effectTitle(id); });
 }
 
 /// With decimals down to a hundredth of the spread within the batch.
@@ -96,7 +86,7 @@ void addUnits(Page& page, const Collection& all)
         if (all.limited)
             row.emplace_back(!unit.measured              ? "not measured"
                              : unit.beyondLimits.empty() ? "none"
-                                                         : listOf(unit.beyondLimits));
+                                                         : joined(unit.beyondLimits));
         auto out = unit.outlying;
         if (!unit.additional.empty())
             out.push_back("has " + effectTitles(unit.additional));
@@ -104,7 +94,7 @@ void addUnits(Page& page, const Collection& all)
             out.push_back("lacks " + effectTitles(unit.absent));
         if (unit.otherVerdict)
             out.emplace_back("its verdict");
-        row.emplace_back(listOf(out));
+        row.emplace_back(joined(out));
         row.push_back(Page::figure(std::isfinite(unit.distance) ? fixedText(unit.distance, 2) : dash));
         rows.push_back(std::move(row));
     }

@@ -2,6 +2,7 @@
 #include "Plots/Engineering.h"
 #include "Plots/Words.h"
 #include "Report/Sections.h"
+#include "Engine/Document/Words.h"
 
 #include <algorithm>
 
@@ -29,9 +30,7 @@ void addRanking(Page& page, const LadderFile& file)
         page.subsection("After rung " + rungTitle(ladder, k));
         page.paragraph(diagnosis.sentence);
         if (!diagnosis.indistinguishable.empty()) {
-            std::string names;
-            for (const auto& id : diagnosis.indistinguishable)
-                names += (names.empty() ? "" : ", ") + effectTitle(id);
+            const auto names = joined(diagnosis.indistinguishable, [&](const auto& id) { return effectTitle(id); });
             page.paragraph("This take cannot tell the first of the ranking from: " + names + ". "
                            + diagnosis.measureNext);
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/ComparisonFile.h"
+#include "Engine/Document/Words.h"
 #include "Plots/Engineering.h"
 #include "Plots/Words.h"
 #include "Report/Sections.h"
@@ -14,14 +15,6 @@ std::string_view tone(Verdict verdict)
     case Verdict::badMeasurement: return "bad";
     default: return "warn";
     }
-}
-
-std::string joined(const std::vector<std::string>& parts)
-{
-    std::string text;
-    for (const auto& part : parts)
-        text += (text.empty() ? "" : ", ") + part;
-    return text;
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/Remainder.h"
 #include "Engine/Document/Figures.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
+#include "Engine/Signal/Median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -275,9 +277,7 @@ void putLimits(Collection& all, const std::map<std::string, Limits>& limits)
         const auto found = std::find_if(all.quantities.begin(), all.quantities.end(),
                                         [&name = name](const Quantities& q) { return q.name == name; });
         if (found == all.quantities.end()) {
-            std::string known;
-            for (const auto& q : all.quantities)
-                known += (known.empty() ? "" : ", ") + q.name;
+            const auto known = joined(all.quantities, [&](const auto& q) { return q.name; });
             throw Error(Error::Kind::usage,
                         "There is a limit for \"" + name + "\", which no unit has; the quantities are " + known + ".");
         }

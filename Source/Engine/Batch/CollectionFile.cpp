@@ -4,6 +4,7 @@
 #include "Engine/Document/CsvText.h"
 #include "Engine/Document/JsonField.h"
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/Words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +13,6 @@ namespace excursion {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string listed(const std::vector<std::string>& words)
-{
-    std::string text;
-    for (const auto& word : words)
-        text += (text.empty() ? "" : "; ") + word;
-    return text;
-}
 
 Json unitJson(const UnitResult& unit, bool limited)
 {
@@ -99,11 +92,11 @@ std::string collectionCsv(const Collection& all)
     text += '\n';
     for (std::size_t k = 0; k < all.units.size(); ++k) {
         const auto& unit = all.units[k];
-        text += csvText(unit.name) + "," + unit.verdict + "," + csvText(listed(unit.effects)) + ","
+        text += csvText(unit.name) + "," + unit.verdict + "," + csvText(joined(unit.effects, "; ")) + ","
                 + (!all.limited || !unit.measured ? ""
                    : unit.beyondLimits.empty()    ? "yes"
                                                   : "no")
-                + "," + csvText(listed(unit.beyondLimits)) + "," + csvText(listed(unit.standsOutBy())) + ","
+                + "," + csvText(joined(unit.beyondLimits, "; ")) + "," + csvText(joined(unit.standsOutBy(), "; ")) + ","
                 + csvNumber(unit.distance);
         for (std::size_t n = 0; n < all.quantities.size(); ++n) {
             text += "," + csvNumber(all.quantities[n].value[k]);

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Batch/Statistics.h"
 
+#include "Engine/Signal/Median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace excursion {
-
-double medianOf(std::vector<double> values)
-{
-    std::erase_if(values, [](double v) { return !std::isfinite(v); });
-    if (values.empty())
-        return std::numeric_limits<double>::quiet_NaN();
-    std::sort(values.begin(), values.end());
-    const auto half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 double robustSpread(const std::vector<double>& values)
 {

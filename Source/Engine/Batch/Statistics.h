@@ -5,10 +5,7 @@
 
 namespace excursion {
 
-/// Median of the finite values; NaN without one. Of an even number the mean of the middle two.
-double medianOf(std::vector<double> values);
-
-/// 1.4826 median |value - median|.
+/// 1.4826 median |value - median|, of the finite values.
 double robustSpread(const std::vector<double>& values);
 
 /// The least-squares line value = a + slope k through the finite values, k = 0, 1, 2, ... their places.

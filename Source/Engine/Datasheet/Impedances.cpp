@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Datasheet/Impedances.h"
 
+#include "Engine/Driver/BalancedResolvent.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Network.h"
 #include "Engine/Error.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -34,13 +33,12 @@ std::vector<std::complex<double>> blockedImpedance(const Model& model, const std
         throw Error(Error::Kind::data, "The model has no coil, and so no electrical impedance.");
     const auto linear = linearize(linearPart(model));
     const auto states = statesWithout(linear.A.rows(), {1, velocity});
-    const Eigen::MatrixXcd A = linear.A(states, states).cast<std::complex<double>>();
-    const Eigen::VectorXcd B = linear.B(states).cast<std::complex<double>>();
+    BalancedResolvent resolvent(linear.A(states, states));
+    const Eigen::VectorXd B = linear.B(states);
     std::vector<std::complex<double>> impedance;
     for (const double f : frequency) {
-        Eigen::MatrixXcd system = -A;
-        system.diagonal().array() += std::complex<double>(0.0, 2.0 * std::numbers::pi * f);
-        impedance.push_back(1.0 / system.partialPivLu().solve(B)[current]);
+        resolvent.moveTo({0.0, 2.0 * std::numbers::pi * f});
+        impedance.push_back(1.0 / resolvent.times(B)[current]);
     }
     return impedance;
 }
@@ -73,11 +71,9 @@ OpenCoilMechanics::OpenCoilMechanics(const Model& model)
 
 OpenCoilMechanics::At OpenCoilMechanics::at(double omega) const
 {
-    Eigen::MatrixXcd system = -A_.cast<std::complex<double>>();
-    system.diagonal().array() += std::complex<double>(0.0, omega);
-    const auto solver = system.partialPivLu();
-    const Eigen::VectorXcd z = solver.solve(B_.cast<std::complex<double>>()),
-                           dz = -solver.solve(z);  // d/ds (s I - A)^-1 B
+    BalancedResolvent resolvent(A_);
+    resolvent.moveTo({0.0, omega});
+    const Eigen::VectorXcd z = resolvent.times(B_), dz = -resolvent.times(z);  // d/ds (s I - A)^-1 B
     constexpr Eigen::Index cone = velocity - 1;
     return {1.0 / z[cone], -dz[cone] / (z[cone] * z[cone])};
 }

@@ -6,18 +6,24 @@
 
 namespace excursion {
 
+LawTable tableOf(const LawCurve& law)
+{
+    LawTable table {
+        law.info.name, law.info.unit, law.info.argument, law.info.argumentUnit, law.argument, law.value, {}, {}};
+    for (std::size_t k = 0; k < law.value.size(); ++k) {
+        table.low95.push_back(law.value[k] - law.halfWidth[k]);
+        table.high95.push_back(law.value[k] + law.halfWidth[k]);
+    }
+    return table;
+}
+
 std::vector<LawTable> lawTables(const ScaledModel& given, int points)
 {
     std::vector<LawTable> tables;
     for (const auto& law : laws(given.model, points)) {
         if (given.motionIsGuessed && law.info.argument != "i")
             continue;
-        LawTable table {
-            law.info.name, law.info.unit, law.info.argument, law.info.argumentUnit, law.argument, law.value, {}, {}};
-        for (std::size_t k = 0; k < law.value.size(); ++k) {
-            table.low95.push_back(law.value[k] - law.halfWidth[k]);
-            table.high95.push_back(law.value[k] + law.halfWidth[k]);
-        }
+        auto table = tableOf(law);
         tables.push_back(table);
         if (law.info.base != "K")
             continue;
@@ -28,9 +34,7 @@ std::vector<LawTable> lawTables(const ScaledModel& given, int points)
                 value = 1.0 / value;
         std::swap(table.low95, table.high95);
         for (std::size_t k = 0; k < table.at.size(); ++k)
-            if (!(law.value[k]
-                  // the band of the stiffness holds zero: that of the compliance has no end
-                  > law.halfWidth[k])) {
+            if (!(law.value[k] > law.halfWidth[k])) {  // the band of K holds zero: that of Cms has no end
                 table.low95[k] = 1.0 / (law.value[k] + law.halfWidth[k]);
                 table.high95[k] = std::numeric_limits<double>::quiet_NaN();
             }

@@ -15,6 +15,8 @@ struct LawTable {
     std::vector<double> at, value, low95, high95;
 };
 
+LawTable tableOf(const LawCurve&);
+
 /// The laws of the model's effects, and with K(x) its reciprocal Cms(x). Where the motion is a guess there are only
 /// those against the current.
 /// @param points  at least 3; an odd number has one at rest

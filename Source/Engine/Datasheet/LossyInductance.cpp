@@ -2,6 +2,7 @@
 #include "Engine/Datasheet/LossyInductance.h"
 
 #include "Engine/Datasheet/Impedances.h"
+#include "Engine/Datasheet/ResponseCurves.h"
 #include "Engine/Driver/LeastSquares.h"
 #include "Engine/Error.h"
 
@@ -240,11 +241,7 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
             "The band of the inductance must span at least an octave, from a lower to a higher frequency in Hz.");
     result.Re = coilResistance(model, resistanceFrequency(model));
 
-    constexpr double pointsPerOctave = 24.0;
-    const auto points = static_cast<int>(std::ceil(pointsPerOctave * std::log2(result.high / result.low))) + 1;
-    std::vector<double> frequency;
-    for (int k = 0; k < points; ++k)
-        frequency.push_back(result.low * std::pow(result.high / result.low, static_cast<double>(k) / (points - 1)));
+    const auto frequency = curveFrequencies(result.low, result.high, 24.0);
     Target target {result.Re, {}, blockedImpedance(model, frequency)};
     double loss = 0.0;
     for (std::size_t k = 0; k < frequency.size(); ++k) {

@@ -6,6 +6,7 @@
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
+#include "Engine/Measurement/Air.h"
 #include "Engine/Measurement/Bla.h"
 #include "Engine/Measurement/ExcitationPlan.h"
 
@@ -53,18 +54,17 @@ void requireChannel(const Measurement& take, Quantity quantity)
 void refer(Frf& frf, double distance)
 {
     for (auto& value : frf.value)
-        value *= sheetVoltage * distance / sheetPressure;
+        value *= sheetVoltage * distance / referencePressure;
     frf.noiseVariance.clear();  // no file of a curve has them
     frf.totalVariance.clear();
 }
 
 }  // namespace
 
-std::vector<double> curveFrequencies(double low, double high)
+std::vector<double> curveFrequencies(double low, double high, double pointsPerOctave)
 {
     if (!(low > 0.0 && high > low && std::isfinite(high)))
         throw Error(Error::Kind::usage, "The band must be two frequencies in Hz, the lower one first.");
-    constexpr double pointsPerOctave = 48.0;
     const auto steps = static_cast<int>(std::ceil(pointsPerOctave * std::log2(high / low)));
     std::vector<double> frequency;
     for (int k = 0; k < steps; ++k)

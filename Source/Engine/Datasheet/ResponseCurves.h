@@ -13,8 +13,8 @@ namespace excursion {
 // Impedance and sound for programs that design crossovers and boxes. Sound is that of 2.83 V at 1 m, over 20 uPa: the
 // level in dB that writeFrd() writes is a sound pressure level.
 
-/// Frequencies at 48 points an octave, both ends among them, Hz.
-std::vector<double> curveFrequencies(double low, double high);
+/// Frequencies evenly spaced on a logarithmic axis, both ends among them, Hz.
+std::vector<double> curveFrequencies(double low, double high, double pointsPerOctave = 48.0);
 
 /// Of small signals. @throws Error (data) without a coil
 Frf impedanceCurve(const Model&, const std::vector<double>& frequency);

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Datasheet/SpiceNetlist.h"
 
+#include "Engine/Document/Figures.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Network.h"
 
-#include <array>
-#include <charconv>
 #include <cctype>
 
 namespace excursion {
 namespace {
-
-std::string number(double value)
-{
-    std::array<char, 32> text {};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return {text.data(), end};
-}
 
 /// Lower case letters, digits and underscores, a letter first: what every SPICE takes for a name.
 std::string plainName(const std::string& name)
@@ -59,10 +52,10 @@ public:
                 line('L', from, to, part.kind == Network::Kind::cell ? part.inductance : part.value);
             from = to;
         }
-        text += "* Motor: u = Bl v and F = Bl i, Bl = " + number(network_.forceFactor)
+        text += "* Motor: u = Bl v and F = Bl i, Bl = " + shortest(network_.forceFactor)
                 + " N/A. Vi measures the current.\n";
-        text += "Vi " + from + " motor 0\nEbl motor minus cone 0 " + number(network_.forceFactor) + "\nFbl 0 cone Vi "
-                + number(network_.forceFactor) + "\n";
+        text += "Vi " + from + " motor 0\nEbl motor minus cone 0 " + shortest(network_.forceFactor) + "\nFbl 0 cone Vi "
+                + shortest(network_.forceFactor) + "\n";
     }
 
     void mechanics()
@@ -100,7 +93,7 @@ private:
     }
     void line(char letter, const std::string& from, const std::string& to, double value)
     {
-        text += letter + std::to_string(++parts_) + " " + from + " " + to + " " + number(value) + "\n";
+        text += letter + std::to_string(++parts_) + " " + from + " " + to + " " + shortest(value) + "\n";
     }
 
     const Network& network_;
@@ -131,9 +124,7 @@ std::string spiceNetlist(const Model& model, const std::string& name)
     text += "* Mechanics: a mass of m kg is a capacitor of m F, a spring of K N/m an inductor of 1/K H, a damper of R "
             "N s/m a resistor of 1/R ohm;\n"
             "* voltages are velocities in m/s, currents are forces in N.\n";
-    std::string out;
-    for (const auto& id : network.leftOut)
-        out += (out.empty() ? "" : ", ") + id;
+    const auto out = joined(network.leftOut);
     text += out.empty()
                 ? "* Nothing of the model is left out but the path of the sound.\n"
                 : "* Left out, as they are no linear part of coil and cone: " + out + ", and the path of the sound.\n";

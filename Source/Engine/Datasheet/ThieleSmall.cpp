@@ -4,6 +4,7 @@
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Driver/Propagate.h"
 #include "Engine/Error.h"
+#include "Engine/Measurement/Air.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@ namespace excursion {
 namespace {
 
 using std::numbers::pi;
-constexpr double density = 1.2, speedOfSound = 343.0;
 
 /// In the order in which they are told.
 const std::vector<DatasheetFigure>& blanks()
@@ -75,7 +75,7 @@ Model withoutCreep(Model model)
     return model;
 }
 
-double levelOf(double pressure) { return 20.0 * std::log10(pressure / sheetPressure); }
+double levelOf(double pressure) { return 20.0 * std::log10(pressure / referencePressure); }
 
 /// One number a figure, in the order of blanks(); NaN where there is no coil to have it.
 Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
@@ -89,7 +89,7 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
     const double losses = mechanics.at(omega).impedance.real(), compliance = 1.0 / (omega * omega * mass),
                  Qms = omega * mass / losses;
     const double area = model.path.parameters[0].value,
-                 volume = density * speedOfSound * speedOfSound * area * area * compliance;
+                 volume = airDensity * speedOfSound * speedOfSound * area * area * compliance;
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double Re = none, Le = none, Bl = none, Qes = none, Qts = none, eta0 = none, watt = none, volts = none;
     if (model.electrical()) {
@@ -99,8 +99,8 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
         Le = blockedImpedance(model, {sheetFrequency}).front().imag() / (2.0 * pi * sheetFrequency);
         Qes = omega * mass * Re / (Bl * Bl);
         Qts = 1.0 / (1.0 / Qms + 1.0 / Qes);
-        const double perVolt = density / (2.0 * pi) * Bl * area / (Re * mass);  // Pa at 1 m
-        eta0 = density / (2.0 * pi * speedOfSound) * std::pow(Bl * area / mass, 2) / Re;
+        const double perVolt = airDensity / (2.0 * pi) * Bl * area / (Re * mass);  // Pa at 1 m
+        eta0 = airDensity / (2.0 * pi * speedOfSound) * std::pow(Bl * area / mass, 2) / Re;
         watt = levelOf(perVolt * std::sqrt(Re));
         volts = levelOf(perVolt * sheetVoltage);
     }

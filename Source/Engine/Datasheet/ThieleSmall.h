@@ -10,8 +10,7 @@
 namespace excursion {
 
 /// What the sound of a datasheet is referred to.
-inline constexpr double sheetVoltage = 2.83;    ///< V
-inline constexpr double sheetPressure = 20e-6;  ///< Pa, of 0 dB
+inline constexpr double sheetVoltage = 2.83;  ///< V; and referencePressure
 
 /// A number of a datasheet.
 struct DatasheetFigure {

@@ -2,6 +2,7 @@
 #include "Engine/Design/StrokeLimits.h"
 
 #include "Engine/Driver/Dynamics.h"
+#include "Engine/Measurement/Air.h"
 
 #include <Eigen/LU>
 
@@ -202,7 +203,7 @@ StrokeLimits strokeLimits(const Model& model)
             result.limits.push_back(limitOf(*change, 10.0, "impedance", "changes by 10 %"));
 
     // A tone f carried by a peak excursion X has two sidebands of pi f X/c each (their rms sum is the distortion).
-    constexpr double speedOfSound = 343.0, allowed = 0.1;
+    constexpr double allowed = 0.1;
     const double percentPerMetre = 100.0 * std::numbers::sqrt2 * std::numbers::pi * result.tone / speedOfSound;
     const double X = 100.0 * allowed / percentPerMetre, atEnd = percentPerMetre * result.range;
     StrokeLimit doppler {"Doppler shift", "makes 10 % distortion", {}, {}, atEnd, atEnd};

@@ -140,6 +140,41 @@ Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& co
     return isNoise(comparison) ? Verdict::complete : Verdict::unknownEffect;
 }
 
+/// Of all responses together.
+double squaredError(const Model& model, const std::vector<ResponseTarget>& targets)
+{
+    return std::pow(10.0, responseErrorDb(model, targets) / 10.0);
+}
+
+/// An effect whose model has been fitted to responses; whether it is significant is not said yet.
+RankedEffect triedByResponse(const Effect& effect, const Model& model, const std::vector<ResponseTarget>& targets,
+                             const Comparison& before)
+{
+    RankedEffect entry;
+    entry.effect = effect.id();
+    entry.model = model;
+    entry.predictedChi = entry.confirmedChi = squaredError(model, targets);
+    for (const auto& target : targets)
+        entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(model,
+                                                                                                            target);
+    entry.reason = reasonFor(effect, model, before, entry.confirmedErrorDb);
+    return entry;
+}
+
+/// What a ranking on responses comes to.
+void conclude(Diagnosis& diagnosis, bool found, const Model& model, const std::vector<ResponseTarget>& targets,
+              const Comparison& before)
+{
+    diagnosis.indistinguishable.clear();
+    diagnosis.measureNext.clear();
+    judge(diagnosis.ranking, squaredError(model, targets), Excess(before), diagnosis);
+    if (!diagnosis.indistinguishable.empty())
+        diagnosis.measureNext = "Measure in time, with multisines of several levels: distortion and the motion of the "
+                                "cone tell more than responses do.";
+    diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
+    diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
+}
+
 }  // namespace
 
 std::string_view name(Verdict verdict)
@@ -260,8 +295,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     return diagnosis;
 }
 
-Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress,
-                   const Step* next)
+Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress)
 {
     Diagnosis diagnosis;
     const auto before = compare(model, spectra);
@@ -269,8 +303,7 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     diagnosis.remainder = remainderOf(before);
     constexpr int coarse = 24;  // points an octave: enough to tell what is there
     const auto targets = responsesOf(spectra), few = thinned(targets, coarse);
-    const auto cost = [&](const Model& m) { return std::pow(10.0, responseErrorDb(m, targets) / 10.0); };
-    const double now = cost(model);
+    const double now = squaredError(model, targets);
     const auto seen = seenIn(spectra);
     std::vector<const Effect*> candidates;
     for (const auto* effect : catalogue())
@@ -280,49 +313,37 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     inParallel(trials.size(), options.fit.threads, progress, [&](std::size_t n) {
         if (addByResponse(trials[n], *candidates[n], few).usable)
             fitResponse(trials[n], targets, {20, 1e-5});
-        if (next && next->added == candidates[n]->id() && cost(next->model) < cost(trials[n]))
-            trials[n] = next->model;
         return true;
     });
     for (std::size_t n = 0; n < trials.size(); ++n) {
-        const auto* effect = candidates[n];
-        const bool known = next && next->added == effect->id();
-        RankedEffect entry;
-        entry.effect = effect->id();
-        entry.confirmedChi = now;
-        entry.model = model;
-        if (const double chi = cost(trials[n]); chi < entry.confirmedChi) {
-            entry.confirmedChi = chi;
-            entry.model = std::move(trials[n]);
-        }
-        for (const auto& target : targets)
-            entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(
-                entry.model, target);
-        entry.predictedChi = entry.confirmedChi;
+        const bool lower = squaredError(trials[n], targets) < now;
+        auto entry = triedByResponse(*candidates[n], lower ? trials[n] : model, targets, before);
         // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be
         // sure of them.
-        entry.significant = known
-                            || (entry.confirmedChi < 0.8 * now
-                                && isSeen(entry.model, entry.model.components.size() - 1));
-        if (known)
-            entry.vote = next->vote;
-        entry.reason = reasonFor(*effect, entry.model, before, entry.confirmedErrorDb);
+        entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model, entry.model.components.size() - 1);
         diagnosis.ranking.push_back(std::move(entry));
     }
     std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
-    if (next)
-        std::stable_partition(diagnosis.ranking.begin(), diagnosis.ranking.end(),
-                              [&](const RankedEffect& r) { return r.effect == next->added; });
-    judge(diagnosis.ranking, now, Excess(before), diagnosis);
-    if (!diagnosis.indistinguishable.empty())
-        diagnosis.measureNext = "Measure in time, with multisines of several levels: distortion and the motion of the "
-                                "cone tell more than responses do.";
-    const bool found = next
-                       || (!diagnosis.ranking.empty() && diagnosis.ranking.front().significant
-                           && !outdone(diagnosis.ranking, Excess(before)));
-    diagnosis.verdict = found ? Verdict::missingEffect : Verdict::unknownEffect;
-    diagnosis.sentence = sentenceFor(diagnosis) + caveatsOf(model, targets);
+    const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant
+                       && !outdone(diagnosis.ranking, Excess(before));
+    conclude(diagnosis, found, model, targets, before);
     return diagnosis;
+}
+
+void nameNext(Diagnosis& diagnosis, const Model& model, const Spectra& spectra, const Step& next)
+{
+    const auto before = compare(model, spectra);
+    const auto targets = responsesOf(spectra);
+    const auto place = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                                    [&](const RankedEffect& r) { return r.effect == next.added; });
+    if (place == diagnosis.ranking.end())
+        throw Error(Error::Kind::usage, "The diagnosis has not tried the effect \"" + next.added + "\".");
+    if (squaredError(next.model, targets) < place->confirmedChi)
+        *place = triedByResponse(effectNamed(next.added), next.model, targets, before);
+    place->significant = true;
+    place->vote = next.vote;
+    std::rotate(diagnosis.ranking.begin(), place, place + 1);
+    conclude(diagnosis, true, model, targets, before);
 }
 
 }  // namespace excursion

@@ -70,9 +70,10 @@ RankedEffect promisedBy(const Score&);
 Diagnosis diagnose(const Model&, const Record&, const DiagnoseOptions& = {}, const Progress& = {});
 
 /// The same for a take that is a frequency response only: the linear effects compete.
-/// @param next  null, or a model with one more effect that is known to be missing, as others that are missing too have
-/// shown
-Diagnosis diagnose(const Model&, const Spectra&, const DiagnoseOptions& = {}, const Progress& = {},
-                   const Step* next = nullptr);
+Diagnosis diagnose(const Model&, const Spectra&, const DiagnoseOptions& = {}, const Progress& = {});
+
+/// Says again what such a diagnosis of the model comes to when the step's effect is known to be missing, as others that
+/// are missing too have shown: it comes first, with the step's model where that leaves less.
+void nameNext(Diagnosis&, const Model&, const Spectra&, const Step&);
 
 }  // namespace excursion

@@ -68,19 +68,16 @@ FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const
 
 Improvement::Improvement(const Take& take, const ImproveOptions& options, const Progress& progress) : options_(options)
 {
-    std::vector<Problem> assumed;
-    for (const auto& remark : std::visit([](const auto& t) { return t.remarks; }, take))
-        assumed.push_back({"assumption", std::nullopt, 0.0, "", false, remark});
     if (const auto* spectra = std::get_if<Spectra>(&take)) {
         data_ = *spectra;
-        ladder_.problems = std::move(assumed);
+        report_ = check(*spectra);
+        ladder_.problems = report_.problems;
         return;
     }
     Measurement measurement = std::get<Measurement>(take);
     progress.at(0.0, "checking the take");
     completeExcitation(measurement);
     report_ = check(measurement);
-    report_.problems.insert(report_.problems.end(), assumed.begin(), assumed.end());
     ladder_.problems = report_.problems;
     if (report_.fitForUse()) {
         data_ = makeRecord(measurement);
@@ -98,71 +95,69 @@ void Improvement::begin(const Progress& progress)
     auto data = data_;  // is adapted to the model; should the work be cancelled, nothing has happened
     rung.model = std::visit([&](auto& d) { return first(d, options_, rung.fit, progress.part(0.0, 0.4)); }, data);
     data_ = std::move(data);
+    rung = judged(std::move(rung), progress.part(0.4, 1.0));
     ladder_.rungs.clear();
-    push(std::move(rung), progress.part(0.4, 1.0));
+    keep(std::move(rung));
 }
 
 bool Improvement::addTogether(const Progress& progress)
 {
-    const auto before = ladder_;
-    try {
-        const auto* spectra = std::get_if<Spectra>(&data_);
-        return spectra ? addSteps(*spectra, progress) : addWhole(std::get<Record>(data_), progress);
-    } catch (...) {
-        ladder_ = before;
-        throw;
-    }
-}
-
-bool Improvement::addSteps(const Spectra& spectra, const Progress& progress)
-{
-    const auto steps = stepsByResponse(ladder_.model(), spectra, options_.diagnose.fit.threads,
-                                       progress.part(0.0, 0.6));
-    for (std::size_t n = 0; n < steps.size(); ++n) {
-        const double count = static_cast<double>(steps.size()), done = static_cast<double>(n);
-        auto last = std::move(ladder_.rungs.back());
-        ladder_.rungs.pop_back();
-        last.diagnosis = diagnose(last.model, spectra, options_.diagnose,
-                                  progress.part(0.6 + 0.3 * done / count, 0.6 + 0.3 * (done + 1.0) / count), &steps[n]);
-        keep(std::move(last));
-        Rung rung;
-        rung.added = steps[n].added;
-        rung.model = ladder_.rungs.back().diagnosis.ranking.front().model;  // the step's, or what leaves less
-        auto order = ladder_.rungs.back().model.effectIds();
-        order.push_back(rung.added);
-        putInOrder(rung.model, order);
-        rung.fit = settle(rung.model, spectra, options_.diagnose.fit, {});
-        rung.comparison = compare(rung.model, spectra);
-        ladder_.rungs.push_back(std::move(rung));
-    }
-    if (steps.empty())
+    auto rungs = std::visit([&](const auto& d) { return rungsTogether(d, progress.part(0.0, 0.8)); }, data_);
+    if (rungs.empty())
         return false;
-    auto last = std::move(ladder_.rungs.back());
-    ladder_.rungs.pop_back();
-    push(std::move(last), progress.part(0.9, 1.0));
+    rungs.back() = judged(std::move(rungs.back()), progress.part(0.8, 1.0));
+    ladder_.rungs.pop_back();  // comes again, with its diagnosis
+    for (auto& rung : rungs)
+        keep(std::move(rung));
     return true;
 }
 
-bool Improvement::addWhole(const Record& record, const Progress& progress)
+/// The last rung, and those that follow from it together; the last of them is not diagnosed yet. None where nothing is
+/// to be added.
+std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progress& progress) const
+{
+    const auto& options = options_.diagnose;
+    const auto steps = stepsByResponse(ladder_.model(), spectra, options.fit.threads, progress.part(0.0, 0.7));
+    std::vector<Rung> rungs;
+    for (std::size_t n = 0; n < steps.size(); ++n) {
+        const double count = static_cast<double>(steps.size()), done = static_cast<double>(n);
+        if (n == 0)
+            rungs.push_back(ladder_.rungs.back());
+        else
+            rungs.back().diagnosis = diagnose(
+                rungs.back().model, spectra, options,
+                progress.part(0.7 + 0.3 * done / count, 0.7 + 0.3 * (done + 1.0) / count));
+        auto& last = rungs.back();
+        nameNext(last.diagnosis, last.model, spectra, steps[n]);
+        const auto& named = last.diagnosis.ranking.front();
+        Rung rung;
+        rung.added = named.effect;
+        rung.predictedErrorDb = named.predictedErrorDb;
+        rung.model = named.model;  // the step's, or what leaves less
+        auto order = last.model.effectIds();
+        order.push_back(rung.added);
+        putInOrder(rung.model, order);
+        rung.fit = settle(rung.model, spectra, options.fit, {});
+        rung.comparison = compare(rung.model, spectra);
+        rungs.push_back(std::move(rung));
+    }
+    return rungs;
+}
+
+std::vector<Rung> Improvement::rungsTogether(const Record& record, const Progress& progress) const
 {
     const auto& base = ladder_.rungs.back();
     const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(),
                                       [](const RankedEffect& r) { return r.vote.backs(); });
     if (!hasPeriods(record) || backed < 2)
-        return false;
-    const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.5));
+        return {};
+    const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
     if (whole.votes.size() < 2)
-        return false;
-    auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.5, 0.8));
+        return {};
+    auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
     if (!(rungs.back().comparison.chi < base.comparison.chi))
-        return false;
-    auto last = std::move(rungs.back());
-    rungs.pop_back();
-    ladder_.rungs.pop_back();  // comes again, with its diagnosis
-    for (auto& rung : rungs)
-        keep(std::move(rung));
-    push(std::move(last), progress.part(0.8, 1.0));
-    return true;
+        return {};
+    return rungs;
 }
 
 void Improvement::add(const std::string& id, const Progress& progress)
@@ -187,11 +182,11 @@ void Improvement::add(const std::string& id, const Progress& progress)
             data_);
     rung.fit = std::visit(
         [&](const auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data_);
-    push(std::move(rung), progress.part(0.5, 1.0));
+    keep(judged(std::move(rung), progress.part(0.5, 1.0)));
 }
 
 /// Compares and diagnoses the rung's model.
-void Improvement::push(Rung rung, const Progress& progress)
+Rung Improvement::judged(Rung rung, const Progress& progress) const
 {
     const auto judge = [&](const Progress& part) {
         rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
@@ -211,7 +206,7 @@ void Improvement::push(Rung rung, const Progress& progress)
             judge(progress.part(0.7, 1.0));
         }
     }
-    keep(std::move(rung));
+    return rung;
 }
 
 void Improvement::keep(Rung rung)

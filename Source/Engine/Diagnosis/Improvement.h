@@ -25,7 +25,7 @@ public:
     /// Checks the take and makes it ready. Throws Error (data) when it has no channel to compare.
     explicit Improvement(const Take&, const ImproveOptions& = {}, const Progress& = {});
 
-    const CheckReport& report() const { return report_; }  ///< empty for a frequency response
+    const CheckReport& report() const { return report_; }  ///< of a frequency response what its reader assumed
     const Ladder& ladder() const { return ladder_; }
 
     /// The first rung: the base, with the effects asked for in ImproveOptions::with. Not for a take that is unfit for
@@ -49,9 +49,9 @@ public:
     std::vector<Waveform> waveforms(int level) const;
 
 private:
-    bool addSteps(const Spectra&, const Progress&);
-    bool addWhole(const Record&, const Progress&);
-    void push(Rung, const Progress&);
+    std::vector<Rung> rungsTogether(const Spectra&, const Progress&) const;
+    std::vector<Rung> rungsTogether(const Record&, const Progress&) const;
+    Rung judged(Rung, const Progress&) const;
     void keep(Rung);
     void concludeFromLast();  ///< verdict and sentence, as the last rung's diagnosis says
 

@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/Reason.h"
 
 #include "Engine/Document/Figures.h"
+#include "Engine/Document/Words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,10 +48,9 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
     if (figures.empty())
         for (const auto& p : component->parameters)
             figures.push_back({p.name, p.unit, p.value});
-    std::string text;
-    for (const auto& f : figures)
-        text += (text.empty() ? "" : ", ") + f.name + " = " + figure(f.value, "%.3g")
-                + (f.unit == "1" ? "" : " " + f.unit);
+    const auto text = joined(figures, [&](const auto& f) {
+        return f.name + " = " + figure(f.value, "%.3g") + (f.unit == "1" ? "" : " " + f.unit);
+    });
     return "it comes out with " + text;
 }
 

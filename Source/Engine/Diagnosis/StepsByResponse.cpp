@@ -99,45 +99,59 @@ struct Leaner {
     bool itself = true;  ///< in the model that has it
 };
 
+/// What a search keeps at hand.
+struct Search {
+    const Model& base;
+    const std::vector<ResponseTarget>& targets;
+    Sets sets;
+    unsigned threads;
+};
+
 /// Without each of the effects that the base does not have; what is missed least first. What is left is fitted from
 /// where it is, and from the best that was found without the effect before: one that carries much of the stiffness or
 /// the mass leaves the others far from where they would be.
-std::vector<Leaner> withoutEach(const Model& base, const Found& whole, const Sets& sets,
-                                const std::vector<ResponseTarget>& targets)
+std::vector<Leaner> withoutEach(const Found& whole, const Search& search, const Progress& progress)
 {
     std::vector<Leaner> each;
+    std::vector<std::pair<std::size_t, Model>> starts;  // of which Leaner
     for (std::size_t k = 1; k < whole.model.components.size(); ++k) {
         const auto id = whole.model.components[k].effect->id();
-        if (base.has(id))
+        if (search.base.has(id))
             continue;
+        auto rest = withoutEffect(whole.model, id);
+        if (const auto before = search.sets.find(setOf(rest)); before != search.sets.end())
+            starts.emplace_back(each.size(), before->second.model);
+        starts.emplace_back(each.size(), std::move(rest));
         Leaner leaner;
         leaner.without = id;
         leaner.itself = isItself(whole.model, k);
-        const auto consider = [&](Model model) {
-            if (!fitResponse(model, targets, thoroughly).usable)
-                return;
-            if (const double errorDb = responseErrorDb(model, targets); errorDb < leaner.found.errorDb)
-                leaner.found = {std::move(model), errorDb};
-        };
-        auto rest = withoutEffect(whole.model, id);
-        if (const auto before = sets.find(setOf(rest)); before != sets.end())
-            consider(before->second.model);
-        consider(std::move(rest));
-        if (!std::isfinite(leaner.found.errorDb))
-            continue;
-        leaner.lostDb = leaner.found.errorDb - whole.errorDb;
         each.push_back(std::move(leaner));
     }
+    std::vector<Found> fits(starts.size());
+    inParallel(starts.size(), search.threads, progress, [&](std::size_t n) {
+        auto& model = starts[n].second;
+        if (fitResponse(model, search.targets, thoroughly).usable) {
+            fits[n].errorDb = responseErrorDb(model, search.targets);
+            fits[n].model = std::move(model);
+        }
+        return true;
+    });
+    for (std::size_t n = 0; n < fits.size(); ++n)
+        if (auto& leaner = each[starts[n].first]; fits[n].errorDb < leaner.found.errorDb)
+            leaner.found = std::move(fits[n]);
+    std::erase_if(each, [](const Leaner& leaner) { return !std::isfinite(leaner.found.errorDb); });
+    for (auto& leaner : each)
+        leaner.lostDb = leaner.found.errorDb - whole.errorDb;
     std::stable_sort(each.begin(), each.end(), [](const Leaner& a, const Leaner& b) { return a.lostDb < b.lostDb; });
     return each;
 }
 
 /// Takes out what the others can do without, and then what stands for something else, which may be due to what was not
 /// needed.
-void takeOut(const Model& base, Found& whole, const Sets& sets, const std::vector<ResponseTarget>& targets)
+void takeOut(Found& whole, const Search& search, const Progress& progress)
 {
     for (;;) {
-        auto each = withoutEach(base, whole, sets, targets);
+        auto each = withoutEach(whole, search, progress);
         auto goes = each.begin();
         if (goes != each.end() && goes->lostDb >= neededDb)
             goes = std::find_if(each.begin(), each.end(), [](const Leaner& leaner) { return !leaner.itself; });
@@ -157,20 +171,20 @@ std::vector<Step> stepsByResponse(const Model& base, const Spectra& spectra, uns
     for (const auto* effect : catalogue())
         if (!base.has(effect->id()) && whyUnseen(*effect, seenIn(spectra)).empty())
             effects.push_back(effect);
-    Sets sets;
-    auto whole = withAll(base, effects, thinned(targets, coarse), threads, sets, progress.part(0.0, 0.7));
+    Search search {base, targets, {}, threads};
+    auto whole = withAll(base, effects, thinned(targets, coarse), threads, search.sets, progress.part(0.0, 0.7));
     const auto settle = [&] {
         refineByResponse(whole.model, targets);
         whole.errorDb = responseErrorDb(whole.model, targets);
     };
     progress.at(0.7, "taking out what is not needed");
     settle();
-    takeOut(base, whole, sets, targets);
+    takeOut(whole, search, progress);
     progress.at(0.9, "putting the effects in order");
     settle();
     std::vector<Step> steps;
     for (auto rest = std::move(whole);;) {
-        auto each = withoutEach(base, rest, sets, targets);
+        auto each = withoutEach(rest, search, progress);
         if (each.empty())
             break;
         auto& least = each.front();

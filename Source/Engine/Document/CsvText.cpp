@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/CsvText.h"
 
-#include <array>
-#include <charconv>
+#include "Engine/Document/Figures.h"
+
 #include <cmath>
 
 namespace excursion {
 
-std::string csvNumber(double value)
-{
-    if (!std::isfinite(value))
-        return {};
-    std::array<char, 32> text {};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return {text.data(), end};
-}
+std::string csvNumber(double value) { return std::isfinite(value) ? shortest(value) : std::string(); }
 
 std::string csvText(const std::string& text)
 {

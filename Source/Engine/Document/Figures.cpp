@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/Figures.h"
 
+#include <array>
+#include <charconv>
 #include <cstdio>
 
 namespace excursion {
+
+std::string shortest(double value)
+{
+    std::array<char, 32> text {};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    return {text.data(), end};
+}
 
 std::string figure(double value, const char* format)
 {

@@ -5,6 +5,9 @@
 
 namespace excursion {
 
+/// The shortest text that reads back as the same double.
+std::string shortest(double);
+
 /// Numbers within a sentence, in plain ASCII.
 std::string figure(double value, const char* format = "%.1f");
 std::string frequencyText(double hertz);                       ///< "47 Hz", "1.2 kHz"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/JsonField.h"
 
+#include "Engine/Document/Figures.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 
 namespace excursion {
@@ -14,20 +13,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string written(double number)
-{
-    std::array<char, 64> text {};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
-    return {text.data(), end};
-}
-
 std::string expectedWithin(double least, double most)
 {
     if (least > std::numeric_limits<double>::lowest() && most < std::numeric_limits<double>::max())
-        return "a number from " + written(least) + " to " + written(most);
+        return "a number from " + shortest(least) + " to " + shortest(most);
     if (least > std::numeric_limits<double>::lowest())
-        return "a number of at least " + written(least);
-    return "a number of at most " + written(most);
+        return "a number of at least " + shortest(least);
+    return "a number of at most " + shortest(most);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/TextFile.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 
 #include <fstream>
@@ -45,5 +46,7 @@ std::string readText(const fs::path& path, std::uintmax_t mostBytes)
         text.erase(0, 3);
     return text;
 }
+
+std::string endingOf(const std::filesystem::path& path) { return lowerCase(path.extension().string()); }
 
 }  // namespace excursion

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/Linearize.h"
 
+#include "Engine/Driver/ArrowResolvent.h"
 #include "Engine/Driver/Dynamics.h"
 #include "Engine/Driver/Parallel.h"
-#include "Engine/Driver/ArrowResolvent.h"
 #include "Engine/Error.h"
 
 #include <Eigen/Eigenvalues>

@@ -2,6 +2,7 @@
 #include "Engine/Driver/Model.h"
 
 #include "Engine/Driver/Catalogue.h"
+#include "Engine/Measurement/Air.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,11 +48,7 @@ bool isAtWork(const Component& component)
            || std::none_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength; });
 }
 
-double radiationPerArea()
-{
-    constexpr double densityOfAir = 1.2;  // kg/m^3
-    return densityOfAir / (2.0 * std::numbers::pi);
-}
+double radiationPerArea() { return airDensity / (2.0 * std::numbers::pi); }
 
 const Component* Model::find(std::string_view effectId) const
 {

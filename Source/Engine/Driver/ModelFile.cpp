@@ -2,6 +2,7 @@
 #include "Engine/Driver/ModelFile.h"
 
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Curve.h"
 #include "Engine/Error.h"
@@ -96,9 +97,7 @@ bool mayLack(const Parameter& p) { return !p.strength && std::isfinite(p.prior);
 /// Reads values into `known`, which has the names, units and bounds.
 std::vector<Parameter> parametersFrom(const JsonField& field, std::vector<Parameter> known)
 {
-    std::string names;
-    for (const auto& p : known)
-        names += (names.empty() ? "" : ", ") + p.name;
+    const auto names = joined(known, [&](const auto& p) { return p.name; });
     const auto items = field.items();
     for (std::size_t k = 0; k < std::max(items.size(), known.size()); ++k) {
         if (k >= items.size() && std::all_of(known.begin() + static_cast<std::ptrdiff_t>(k), known.end(), mayLack)) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/PistonBand.h"
 
+#include "Engine/Signal/Median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,13 +10,6 @@
 
 namespace excursion {
 namespace {
-
-double medianOf(std::vector<double> values)
-{
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 }  // namespace
 

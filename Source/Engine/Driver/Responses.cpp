@@ -6,6 +6,7 @@
 #include "Engine/Measurement/Motion.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Signal/Median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,11 +81,9 @@ std::pair<std::size_t, std::size_t> drivenRange(const Spectra& spectra, const Sp
     for (std::size_t k = 0; k < points; ++k)
         amplitude[k] = std::sqrt(std::abs(input.values[k]) * std::abs((current ? *current : input).values[k]));
     const auto fallen = [&](std::size_t from, std::size_t to, double value) {
-        std::vector<double> near(amplitude.begin() + static_cast<std::ptrdiff_t>(from),
-                                 amplitude.begin() + static_cast<std::ptrdiff_t>(to));
-        const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-        std::nth_element(near.begin(), middle, near.end());
-        return value < 0.1 * *middle;
+        return value < 0.1
+                           * medianOf({amplitude.begin() + static_cast<std::ptrdiff_t>(from),
+                                       amplitude.begin() + static_cast<std::ptrdiff_t>(to)});
     };
     std::size_t first = 0, last = points;
     const auto octaveAbove = [&](std::size_t k) {

@@ -4,8 +4,10 @@
 #include "Engine/Driver/ImpedanceScan.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/PistonBand.h"
+#include "Engine/Measurement/Air.h"
 #include "Engine/Measurement/Motion.h"
 #include "Engine/Measurement/PhysicalDelay.h"
+#include "Engine/Signal/Median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -149,8 +151,7 @@ void considerGrid(Contest& contest, Model model, const Sight& sight)
         std::vector<double> ohms;
         for (const auto& v : sight.current->value)
             ohms.push_back(sight.current->impedance ? std::abs(v) : 1.0 / std::abs(v));
-        std::nth_element(ohms.begin(), ohms.begin() + static_cast<std::ptrdiff_t>(ohms.size() / 2), ohms.end());
-        Re = 0.8 * ohms[ohms.size() / 2];
+        Re = 0.8 * medianOf(std::move(ohms));
     }
     for (double f0 = std::max(sight.low, 2.0) * 1.1; f0 < std::min(sight.high, 3000.0); f0 *= 1.45)
         for (const double Q : {1.0, 5.0}) {

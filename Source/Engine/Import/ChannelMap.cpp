@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/ChannelMap.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/TextTable.h"
 #include "Engine/Measurement/Units.h"
@@ -59,8 +60,7 @@ ChannelMapping parseChannelMapping(std::string_view text)
     }
     mapping.quantity = quantityNamed(word);
     if (!mapping.quantity)
-        refuse("names no known quantity (voltage, current, displacement, velocity, acceleration, pressure, force, or "
-               "loopback)");
+        refuse("names no known quantity (" + joined(quantityNames()) + ", or loopback)");
     if (colon != std::string_view::npos) {
         mapping.fullScale = scaled(*mapping.quantity, meaning.substr(colon + 1));
         if (!mapping.fullScale)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/ColumnTitle.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Import/ResponseName.h"
 #include "Engine/Measurement/Units.h"
 
@@ -29,15 +30,6 @@ bool isOneOf(std::string_view text, std::initializer_list<std::string_view> word
     return std::find(words.begin(), words.end(), text) != words.end();
 }
 
-std::string_view trimmed(std::string_view text)
-{
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
-        text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t'))
-        text.remove_suffix(1);
-    return text;
-}
-
 std::vector<std::string> wordsOf(std::string_view text)
 {
     std::vector<std::string> words;
@@ -63,15 +55,6 @@ bool standsAlone(std::string_view text)
 bool ColumnTitle::has(std::string_view word) const
 {
     return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-std::string lowerCase(std::string_view text)
-{
-    std::string lower(text);
-    for (char& c : lower)
-        if (c >= 'A' && c <= 'Z')
-            c = static_cast<char>(c - 'A' + 'a');
-    return lower;
 }
 
 std::string withoutBrackets(std::string_view text)

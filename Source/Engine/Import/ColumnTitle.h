@@ -37,7 +37,4 @@ std::optional<double> timeUnit(std::string_view);
 std::optional<double> angleUnit(std::string_view);
 std::optional<double> resistanceUnit(std::string_view);
 
-/// ASCII letters in lower case; other bytes as they are.
-std::string lowerCase(std::string_view);
-
 }  // namespace excursion

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/ImportText.h"
 
+#include "Engine/Document/TextFile.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
 #include "Engine/Import/PlainText.h"
@@ -71,7 +73,7 @@ Measurement timeSignals(const TextTable& table, const ImportOptions& options, co
 /// What a file whose content does not say it holds by the convention of its ending.
 std::optional<ResponseName> conventionOf(const std::string& source)
 {
-    const auto ending = lowerCase(std::filesystem::path(source).extension().string());
+    const auto ending = endingOf(source);
     if (ending == ".zma")
         return responseNamed("impedance");
     return ending == ".frd" ? responseNamed("response") : std::nullopt;

@@ -2,6 +2,7 @@
 #include "Engine/Import/Loopback.h"
 
 #include "Engine/Import/PeriodDelays.h"
+#include "Engine/Signal/Median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,7 @@ InterfaceResponse interfaceResponse(const PlanPeriods& plan, std::span<const dou
         sizes.push_back(std::abs(value));
         direction += value;
     }
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-    const double gain = sizes[sizes.size() / 2] * (direction.real() < 0 ? -1.0 : 1.0);
+    const double gain = medianOf(std::move(sizes)) * (direction.real() < 0 ? -1.0 : 1.0);
 
     const double halfWidth = std::exp2(1.0 / 24.0);
     InterfaceResponse result;

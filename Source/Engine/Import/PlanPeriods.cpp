@@ -45,16 +45,4 @@ PlanPeriods periodsOf(const Measurement& plan)
     return result;
 }
 
-std::size_t quickLength(std::size_t n)
-{
-    for (n = std::max<std::size_t>(2, n + n % 2);; n += 2) {
-        auto rest = n;
-        for (const std::size_t prime : {2u, 3u, 5u})
-            while (rest % prime == 0)
-                rest /= prime;
-        if (rest == 1)
-            return n;
-    }
-}
-
 }  // namespace excursion

@@ -32,7 +32,4 @@ struct PlanPeriods {
 /// it says.
 PlanPeriods periodsOf(const Measurement& plan);
 
-/// The smallest number that is at least n, even, and has no prime factor above 5: a length that transforms quickly.
-std::size_t quickLength(std::size_t n);
-
 }  // namespace excursion

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/ResponseName.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Import/ColumnTitle.h"
+#include "Engine/Measurement/Air.h"
 #include "Engine/Measurement/Units.h"
 
 #include <algorithm>
@@ -119,7 +121,7 @@ std::optional<double> responseScale(const ResponseName& response, ResponsePart p
     if (part == ResponsePart::decibels) {
         const bool sound = response.output == Quantity::pressure;
         if (isDecibel(unit) || unit.empty())
-            return sound                                           ? std::optional(hearingThreshold)
+            return sound                                           ? std::optional(referencePressure)
                    : isSoundLevel(unit) || !response.isImpedance() ? std::nullopt
                                                                    : std::optional(1.0);
     }

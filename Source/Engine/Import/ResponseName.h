@@ -45,6 +45,4 @@ bool isSoundLevel(std::string_view unit);
 /// The only ratio whose unit this is: "mm/V" is displacement/voltage. nullopt when it is none, or more than one.
 std::optional<ResponseName> ratioOfUnit(std::string_view);
 
-inline constexpr double hearingThreshold = 20e-6;  ///< Pa
-
 }  // namespace excursion

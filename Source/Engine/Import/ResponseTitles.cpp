@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
 #include "Engine/Import/ResponseColumns.h"

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/RewImpulse.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
 #include "Engine/Import/ResponseName.h"
 #include "Engine/Import/TextTable.h"
+#include "Engine/Measurement/Air.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -69,21 +71,7 @@ std::string_view nextLine(std::string_view& text)
     const auto end = text.find('\n');
     auto line = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    while (!line.empty() && (line.front() == ' ' || line.front() == '\t'))
-        line.remove_prefix(1);
-    while (!line.empty() && (line.back() == ' ' || line.back() == '\t'))
-        line.remove_suffix(1);
-    return line;
-}
-
-std::optional<double> numberOf(std::string_view text)
-{
-    while (!text.empty() && text.back() == ' ')
-        text.remove_suffix(1);
-    std::string decimal(text.substr(0, 64));
-    if (decimal.find('.') == std::string::npos)
-        std::replace(decimal.begin(), decimal.end(), ',', '.');
-    return parseNumber(decimal);
+    return trimmed(line);
 }
 
 }  // namespace
@@ -111,7 +99,7 @@ Spectra rewImpulse(std::string_view text, const std::string& source)
         const auto stroke = line.find("//");
         if (stroke != std::string_view::npos) {
             const auto what = lowerCase(line.substr(stroke));
-            const auto value = numberOf(line.substr(0, stroke));
+            const auto value = parseNumber(trimmed(line.substr(0, stroke)), true);
             if (!value || !std::isfinite(*value))
                 refuse("has no number before '" + std::string(line.substr(stroke, 40)) + "' in line "
                        + std::to_string(number) + ".");
@@ -124,7 +112,7 @@ Spectra rewImpulse(std::string_view text, const std::string& source)
                     *target = *value;
             continue;
         }
-        const auto sample = numberOf(line);
+        const auto sample = parseNumber(line, true);
         if (!sample && h.empty()) {
             readRemark(line, header);
             continue;
@@ -150,7 +138,7 @@ Spectra rewImpulse(std::string_view text, const std::string& source)
     const double offset = header.offset.value_or(0.0), peak = header.normalised ? header.peak.value_or(1.0) : 1.0;
     if (std::abs(offset) > 1000.0 || std::abs(start) > 1e6)
         refuse("has an impossible offset or start time in its header.");
-    const double scale = peak * (header.offset ? hearingThreshold * std::pow(10.0, offset / 20) : 1.0);
+    const double scale = peak * (header.offset ? referencePressure * std::pow(10.0, offset / 20) : 1.0);
     Spectra spectra;
     Spectra::Channel voltage {Quantity::voltage, "V", {}}, pressure {Quantity::pressure, "Pa", {}};
     const auto H = fft(h);

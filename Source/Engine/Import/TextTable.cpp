@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/TextTable.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
 
@@ -11,14 +12,6 @@
 
 namespace excursion {
 namespace {
-
-std::string_view trimmed(std::string_view text)
-{
-    const auto first = text.find_first_not_of(" \t\v\f");
-    if (first == std::string_view::npos)
-        return {};
-    return text.substr(first, text.find_last_not_of(" \t\v\f") - first + 1);
-}
 
 std::string_view unquoted(std::string_view text)
 {
@@ -55,18 +48,6 @@ std::vector<std::string> cellsOf(std::string_view line, char separator)
     return cells;
 }
 
-/// @param separator  a comma between cells is no decimal mark
-std::optional<double> numberIn(std::string_view cell, char separator)
-{
-    if (separator == ',' || cell.find(',') == std::string_view::npos)
-        return parseNumber(cell);
-    if (cell.size() > 64 || cell.find('.') != std::string_view::npos || std::count(cell.begin(), cell.end(), ',') != 1)
-        return std::nullopt;
-    std::string decimal(cell);
-    std::replace(decimal.begin(), decimal.end(), ',', '.');
-    return parseNumber(decimal);
-}
-
 struct Count {
     std::size_t cells = 0, filled = 0, numbers = 0;
     bool firstIsNumber = false;
@@ -79,7 +60,7 @@ Count countOf(std::string_view line, char separator)
         ++count.cells;
         if (cell.empty())
             return true;
-        const bool number = numberIn(cell, separator).has_value();
+        const bool number = parseNumber(cell, separator != ',').has_value();
         count.firstIsNumber = count.firstIsNumber || (count.filled == 0 && number);
         ++count.filled;
         count.numbers += number;
@@ -297,7 +278,7 @@ std::vector<double> TextTable::column(std::size_t index) const
         }
         if (firstEmpty != 0)
             refuse(firstEmpty, "is empty");
-        const auto value = numberIn(text, separator_);
+        const auto value = parseNumber(text, separator_ != ',');
         if (!value || !std::isfinite(*value))
             refuse(row.line, "is '" + std::string(text.substr(0, 40)) + "'");
         points_ = points_ || text.find('.') != std::string_view::npos;
@@ -310,8 +291,14 @@ std::vector<double> TextTable::column(std::size_t index) const
     return values;
 }
 
-std::optional<double> parseNumber(std::string_view text)
+std::optional<double> parseNumber(std::string_view text, bool decimalComma)
 {
+    if (decimalComma && text.size() <= 64 && text.find('.') == std::string_view::npos
+        && std::count(text.begin(), text.end(), ',') == 1) {
+        std::string decimal(text);
+        std::replace(decimal.begin(), decimal.end(), ',', '.');
+        return parseNumber(decimal);
+    }
     if (text.size() > 1 && text.front() == '+' && text[1] != '-')
         text.remove_prefix(1);
     double value = 0.0;

@@ -55,6 +55,7 @@ private:
 
 /// The number that the whole text is, without regard to the locale and with a leading plus allowed; nullopt when it is
 /// something else.
-std::optional<double> parseNumber(std::string_view);
+/// @param decimalComma  whether a comma may be the decimal mark, too
+std::optional<double> parseNumber(std::string_view, bool decimalComma = false);
 
 }  // namespace excursion

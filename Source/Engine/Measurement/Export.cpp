@@ -2,10 +2,9 @@
 #include "Engine/Measurement/Export.h"
 
 #include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Figures.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -13,20 +12,13 @@
 namespace excursion {
 namespace {
 
-void append(std::string& text, double value)
-{
-    std::array<char, 32> digits {};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    text.append(digits.data(), end);
-}
-
 void appendRow(std::string& text, std::initializer_list<double> values, char separator)
 {
     char before = 0;
     for (const double value : values) {
         if (before)
             text += before;
-        append(text, value);
+        text += shortest(value);
         before = separator;
     }
     text += '\n';
@@ -61,9 +53,9 @@ void writeCsv(const Frf& frf, const std::filesystem::path& path)
         appendRow(text, {frf.frequency[k], frf.value[k].real(), frf.value[k].imag()}, ',');
         text.pop_back();
         if (noise)
-            append(text += ',', frf.noiseVariance[k]);
+            (text += ',') += shortest(frf.noiseVariance[k]);
         if (total)
-            append(text += ',', frf.totalVariance[k]);
+            (text += ',') += shortest(frf.totalVariance[k]);
         text += '\n';
     }
     publish(path, text);
@@ -76,9 +68,9 @@ void writeCsv(const Measurement& measurement, const std::filesystem::path& path)
         text.append(",").append(name(channel.quantity)).append(" [").append(channel.unit).append("]");
     text += '\n';
     for (std::size_t n = 0; n < measurement.length(); ++n) {
-        append(text, static_cast<double>(n) / measurement.sampleRate);
+        text += shortest(static_cast<double>(n) / measurement.sampleRate);
         for (const auto& channel : measurement.channels)
-            append(text += ',', channel.samples[n]);
+            (text += ',') += shortest(channel.samples[n]);
         text += '\n';
     }
     publish(path, text);
@@ -97,10 +89,10 @@ void writeCsv(const Spectra& spectra, const std::filesystem::path& path)
             text.append(",").append(name(channel.quantity)).append(part).append(channel.unit);
     text += '\n';
     for (std::size_t k = 0; k < spectra.frequency.size(); ++k) {
-        append(text, spectra.frequency[k]);
+        text += shortest(spectra.frequency[k]);
         for (const auto& channel : spectra.channels) {
-            append(text += ',', channel.values[k].real());
-            append(text += ',', channel.values[k].imag());
+            (text += ',') += shortest(channel.values[k].real());
+            (text += ',') += shortest(channel.values[k].imag());
         }
         text += '\n';
     }

@@ -3,6 +3,7 @@
 
 #include "Engine/Measurement/Periods.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,15 +64,6 @@ double shareLeft(double frequency, const Measurement& take)
     return std::max(0.1, 1.0 - std::norm(sum));
 }
 
-double medianOf(std::vector<double> values)
-{
-    if (values.empty())
-        return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 }  // namespace
 
 std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
@@ -115,7 +107,7 @@ std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
                 }
             }
             const double floor = medianOf(beside);
-            const double standsOut = 10.0 * std::log10(peak / std::max(floor, 1e-30 * signal));
+            const double standsOut = 10.0 * std::log10(peak / std::max(1e-30 * signal, floor));
             if (standsOut < 15.0)
                 continue;
             ++hum.harmonics;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Measurement/ImportOptions.h"
 
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
 #include "Engine/Measurement/ExcitationPlan.h"
@@ -13,15 +14,6 @@
 
 namespace excursion {
 namespace {
-
-std::string trimmed(std::string_view text)
-{
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())))
-        text.remove_prefix(1);
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
-        text.remove_suffix(1);
-    return std::string(text);
-}
 
 /// The quantity of a name without its unit; `unit` tells the two meanings of v apart.
 std::optional<Quantity> quantityOf(const std::string& name, const std::string& unit)
@@ -94,7 +86,7 @@ ColumnQuantity parseColumnQuantity(std::string_view text)
     }
     const auto known = quantityNamed(quantity);
     if (!known)
-        refuse("names no known quantity (voltage, current, displacement, velocity, acceleration, pressure or force)");
+        refuse("names no known quantity (" + joined(quantityNames()) + ")");
     mapped.quantity = *known;
     if (!mapped.unit.empty() && !unitNamed(*known, mapped.unit))
         refuse("gives a unit that is not " + acceptedUnits(*known));

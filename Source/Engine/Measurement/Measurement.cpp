@@ -31,6 +31,14 @@ auto findIn(const Channels& channels, Quantity quantity) -> decltype(&channels.f
 
 }  // namespace
 
+std::vector<std::string> quantityNames()
+{
+    std::vector<std::string> names;
+    for (const auto quantity : quantities)
+        names.emplace_back(name(quantity));
+    return names;
+}
+
 std::string_view name(Quantity quantity) { return entries[static_cast<std::size_t>(quantity)].name; }
 
 std::string_view siUnit(Quantity quantity) { return entries[static_cast<std::size_t>(quantity)].unit; }

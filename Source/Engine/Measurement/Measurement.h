@@ -22,6 +22,7 @@ inline constexpr std::array quantities {Quantity::voltage,  Quantity::current,  
 std::string_view name(Quantity);    ///< "voltage", as in the files
 std::string_view siUnit(Quantity);  ///< "V", "A", "m", "m/s", "m/s^2", "Pa", "N"
 std::optional<Quantity> quantityNamed(std::string_view);
+std::vector<std::string> quantityNames();
 
 /// How the record was excited. Time runs level by level (quiet to loud), in each level realization by
 /// realization, in each realization settlePeriods + periods periods of the same multisine.

@@ -2,6 +2,7 @@
 #include "Engine/Measurement/MeasurementJson.h"
 
 #include "Engine/Document/JsonField.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/Units.h"
 #include "Engine/Signal/Multisine.h"
@@ -151,7 +152,7 @@ DriverInfo parseDriver(const JsonField& field)
 
 Quantity quantityFromJson(const JsonField& field)
 {
-    constexpr auto known = "voltage, current, displacement, velocity, acceleration, pressure or force";
+    const auto known = "one of " + joined(quantityNames());
     const auto quantity = quantityNamed(field.text(known));
     if (!quantity)
         field.refuse(known);

@@ -4,6 +4,7 @@
 #include "Engine/Measurement/Periods.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Signal/Median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -239,9 +240,7 @@ std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& chan
         if (pairs.size() < 3)
             continue;
         // Most pairs are sound; thousands of lines make their differences equal within a few percent.
-        auto sorted = differences;
-        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-        const double typical = sorted[sorted.size() / 2];
+        const double typical = medianOf(differences);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             if (!(differences[i] > 1e-4 && differences[i] > 30.0 * typical))
                 continue;

@@ -2,6 +2,7 @@
 #include "Engine/Measurement/PhysicalDelay.h"
 
 #include "Engine/Measurement/DelayFit.h"
+#include "Engine/Signal/Median.h"
 
 #include <algorithm>
 #include <array>
@@ -159,9 +160,7 @@ double plateauEnd(const std::vector<Line>& lines, double resonance)
     }
     if (reference.size() < 3)
         return lines.back().omega;
-    std::nth_element(reference.begin(), reference.begin() + static_cast<std::ptrdiff_t>(reference.size() / 2),
-                     reference.end());
-    const double plateau = reference[reference.size() / 2];
+    const double plateau = medianOf(reference);
     for (std::size_t i = 0; i + 2 < lines.size(); ++i) {
         if (lines[i].omega < 2.0 * resonance)
             continue;

@@ -6,8 +6,6 @@
 
 namespace excursion {
 
-inline constexpr double speedOfSound = 343.0;  ///< m/s, in air of a room
-
 /// A channel's delay and polarity as the physics of a passive, electrodynamic loudspeaker tell them, without a
 /// model of its nonlinearity and without trusting any of its parameters.
 struct PhysicalDelay {

@@ -91,6 +91,12 @@ void dropConsequences(std::vector<Problem>& problems)
     });
 }
 
+void addAssumptions(const std::vector<std::string>& remarks, std::vector<Problem>& problems)
+{
+    for (const auto& remark : remarks)
+        problems.push_back({"assumption", std::nullopt, 0.0, "", false, remark});
+}
+
 }  // namespace
 
 bool CheckReport::fitForUse() const
@@ -130,7 +136,7 @@ CheckReport check(const Measurement& take)
         alive.push_back(checkWaveform(take, take.channels[c], report.channels[c], problems));
 
     if (take.input().assumed)
-        problems.push_back({"assumed-input", take.input().quantity, 0.0, "", false,
+        problems.push_back({"assumption", take.input().quantity, 0.0, "", false,
                             "The " + std::string(name(take.input().quantity))
                                 + " was not measured but is what was meant to be played: what the amplifier adds will "
                                   "be taken for the loudspeaker's, and levels "
@@ -170,6 +176,14 @@ CheckReport check(const Measurement& take)
     }
     std::stable_sort(problems.begin(), problems.end(),
                      [](const Problem& a, const Problem& b) { return a.fatal && !b.fatal; });
+    addAssumptions(take.remarks, problems);
+    return report;
+}
+
+CheckReport check(const Spectra& spectra)
+{
+    CheckReport report;
+    addAssumptions(spectra.remarks, report.problems);
     return report;
 }
 

@@ -11,8 +11,8 @@
 namespace excursion {
 
 /// Something wrong with a take. Kinds: channel-dead, clipping, dc-offset, not-settled, poor-repeatability, low-snr,
-/// hum, clock-drift, dropout, gain-jump, overload, mislabelled, assumed-input, channel-delay, polarity; and assumption,
-/// of the reader of a foreign file.
+/// hum, clock-drift, dropout, gain-jump, overload, mislabelled, channel-delay, polarity; and assumption: the voltage
+/// was not measured, or the reader of a foreign file had to assume something.
 struct Problem {
     std::string kind;
     std::optional<Quantity> channel;  ///< absent: the take as a whole
@@ -59,5 +59,8 @@ struct CheckReport {
 /// A take without excitation is checked for what its waveforms and coherences tell.
 /// @throws Error (data) when there is neither a voltage nor a force channel, or no sample
 CheckReport check(const Measurement&);
+
+/// A frequency response has no waveforms to check: what its reader had to assume is all there is to tell.
+CheckReport check(const Spectra&);
 
 }  // namespace excursion

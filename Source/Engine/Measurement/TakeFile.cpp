@@ -80,14 +80,6 @@ Measurement readFolder(const fs::path& json)
     return std::move(measurement);
 }
 
-std::string lowerExtension(const fs::path& path)
-{
-    auto text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 void requireWritable(const Measurement& measurement)
 {
     const auto refuse = [](const std::string& why) {
@@ -159,7 +151,7 @@ Take readTake(const fs::path& given)
         const auto plan = given / "plan.json", json = given / "measurement.json";
         return readFolder(!fs::exists(json, error) && fs::exists(plan, error) ? plan : json);
     }
-    const auto extension = lowerExtension(given);
+    const auto extension = endingOf(given);
     if (extension == ".json")
         return readFolder(given);
     if (extension == ".mat")

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <memory>
@@ -214,6 +215,16 @@ void writeWav(const fs::path& path, int sampleRate, std::span<const std::vector<
     sf_write_sync(file.get());
     if (sf_close(file.release()) != 0)
         refuse(path, "cannot be written to its end.");
+}
+
+void requireFinite(const Wav& wav, std::size_t c, const std::filesystem::path& path)
+{
+    const auto& x = wav.channels[c];
+    const auto bad = std::find_if_not(x.begin(), x.end(), [](double v) { return std::isfinite(v); });
+    if (bad != x.end())
+        throw Error(Error::Kind::input, "'" + path.string() + "': sample " + std::to_string(bad - x.begin())
+                                            + " of channel " + std::to_string(c + 1)
+                                            + " is not a finite number; record or export it again.");
 }
 
 }  // namespace excursion

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string_view>
@@ -19,6 +20,9 @@ struct Wav {
 /// samples, or its header claims more than the file has; that is checked before memory is taken.
 /// Samples that are not finite are returned as they are.
 Wav readWav(const std::filesystem::path&);
+
+/// Throws Error (input) when a sample of channel c, counted from 0, is not a finite number.
+void requireFinite(const Wav&, std::size_t c, const std::filesystem::path&);
 
 /// As readWav, and AIFF, CAF and FLAC as well. What a FLAC claims is not believed before it has been read.
 Wav readSound(const std::filesystem::path&);

@@ -2,6 +2,7 @@
 #include "Engine/Ranking/Agreement.h"
 
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/FindExcitation.h"
@@ -69,9 +70,8 @@ Agreement agreement(const Measurement& given, Quantity output,
     found.effects = found.ladder.model().effectIds();
     found.baseDb = errorOf(found.ladder.rungs.front(), output);
     found.leftDb = errorOf(found.ladder.rungs.back(), output);
-    std::string laws;
-    for (const auto& id : found.effects)
-        laws += (laws.empty() ? "" : " and ") + effectNamed(id).title();
+    const auto laws = joined(
+        found.effects, [&](const auto& id) { return effectNamed(id).title(); }, " and ");
     found.sentence = laws.empty() ? "No law of the catalogue is found in this model: " + found.ladder.sentence
                                   : "This model moves as a driver with " + laws + " does.";
     return found;

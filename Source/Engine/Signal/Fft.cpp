@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Signal/Fft.h"
 
+#include <algorithm>
 #include <fftw3.h>
 
 #include <map>
@@ -59,6 +60,18 @@ std::vector<double> inverseFft(std::span<const std::complex<double>> X, std::siz
     for (auto& value : x)
         value /= static_cast<double>(N);
     return x;
+}
+
+std::size_t quickLength(std::size_t n)
+{
+    for (n = std::max<std::size_t>(2, n + n % 2);; n += 2) {
+        auto rest = n;
+        for (const std::size_t prime : {2u, 3u, 5u})
+            while (rest % prime == 0)
+                rest /= prime;
+        if (rest == 1)
+            return n;
+    }
 }
 
 }  // namespace excursion

@@ -18,4 +18,7 @@ std::vector<std::complex<double>> fft(std::span<const double> x);
 /// @param N  length of the record; X.size() must be N/2 + 1
 std::vector<double> inverseFft(std::span<const std::complex<double>> X, std::size_t N);
 
+/// The smallest number that is at least n, even, and has no prime factor above 5: a length that transforms quickly.
+std::size_t quickLength(std::size_t n);
+
 }  // namespace excursion
