@@ -96,13 +96,13 @@ void run(const AddArguments& options, Terminal& terminal)
     requireEffects({effect.id()}, open.take);
     if (model.has(effect.id()))
         throw Error(Error::Kind::usage, "The model already has the effect \"" + effect.id() + "\".");
-    if (!open.report.fitForUse())
+    if (!open.take.report().fitForUse())
         return refuseTake(open, document, terminal);
-    const auto added = open.spectra() ? addTo(model, effect, *open.spectra())
-                                      : addTo(model, effect, recordFor(model, open), terminal.progress());
+    const auto added = open.take.asResponses() ? addTo(model, effect, *open.take.asResponses())
+                                               : addTo(model, effect, recordFor(model, open), terminal.progress());
     writeModel(added.model, options.out);
 
-    sayProblems(open.report.problems, terminal);
+    sayProblems(open.take.report().problems, terminal);
     print(added, effect, terminal);
     terminal.say("");
     terminal.say("Wrote " + options.out + ".");

@@ -10,7 +10,7 @@
 #include "Engine/Measurement/Bla.h"
 #include "Engine/Measurement/Distortion.h"
 #include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Measurement/Welch.h"
 
@@ -254,11 +254,10 @@ void showResponse(const BlaArguments& options, Terminal& terminal)
 void run(const BlaArguments& options, Terminal& terminal)
 {
     checkExtension(options);
-    auto read = readTake(options.take);
-    if (std::holds_alternative<Spectra>(read))
+    const PreparedTake prepared(readTake(options.take));
+    if (prepared.asResponses())
         return showResponse(options, terminal);
-    auto& take = std::get<Measurement>(read);
-    completeExcitation(take);
+    const auto& take = prepared.measurement();
     const auto output = outputOf(take, options.output);
     if (endingOf(options.out) == ".zma" && (output != Quantity::current || take.input().quantity != Quantity::voltage))
         throw Error(Error::Kind::usage, "A .zma holds an impedance: ask for --output current.");

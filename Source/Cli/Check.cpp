@@ -3,7 +3,7 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
-#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Measurement/TakeCheck.h"
 #include "Engine/Measurement/TakeFile.h"
 
@@ -113,11 +113,10 @@ void addCheck(CLI::App& app, Terminal& terminal)
     verb->add_option("TAKE", *take, "the take: a folder, or a .csv of time signals")->required();
     verb->footer("Exit code 0: fit for use; 1: not.");
     verb->callback([take, &terminal] {
-        auto measurement = readMeasurement(*take);
-        completeExcitation(measurement);
-        const auto report = check(measurement);
+        const PreparedTake prepared(readMeasurement(*take));
+        const auto& report = prepared.report();
         print(report, terminal);
-        terminal.document(documentOf(report, *take, measurement.sampleRate));
+        terminal.document(documentOf(report, *take, prepared.measurement().sampleRate));
         if (!report.fitForUse())
             terminal.answer = 1;
     });

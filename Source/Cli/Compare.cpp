@@ -148,19 +148,19 @@ void run(const CompareArguments& options, Terminal& terminal)
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
     requireSameKind(model, open);
-    const auto comparison = open.spectra() ? compare(model, *open.spectra())
-                                           : compare(model, recordFor(model, open), {}, terminal.progress());
-    sayProblems(open.report.problems, terminal);
-    if (open.spectra())
+    const auto comparison = open.take.asResponses() ? compare(model, *open.take.asResponses())
+                                                    : compare(model, recordFor(model, open), {}, terminal.progress());
+    sayProblems(open.take.report().problems, terminal);
+    if (open.take.asResponses())
         printErrors(comparison, terminal);
     else
-        printLevels(comparison, open.measurement().input().unit, terminal);
+        printLevels(comparison, open.take.measurement().input().unit, terminal);
     printSpectrum(comparison, terminal);
     printResiduals(comparison, terminal);
     auto document = toJson(comparison);
     document["take"] = options.take;
     document["model"] = options.model;
-    document["problems"] = toJson(open.report.problems);
+    document["problems"] = toJson(open.take.report().problems);
     terminal.document(document);
 }
 

@@ -23,14 +23,14 @@ struct DiagnoseArguments {
 
 Diagnosis diagnosisOf(const Model& model, const OpenTake& open, Terminal& terminal)
 {
-    if (!open.report.fitForUse()) {
+    if (!open.take.report().fitForUse()) {
         Diagnosis diagnosis;
         diagnosis.verdict = Verdict::badMeasurement;
-        diagnosis.sentence = open.report.verdict();
+        diagnosis.sentence = open.take.report().verdict();
         return diagnosis;
     }
-    return open.spectra() ? diagnose(model, *open.spectra(), {}, terminal.progress())
-                          : diagnose(model, recordFor(model, open), {}, terminal.progress());
+    return open.take.asResponses() ? diagnose(model, *open.take.asResponses(), {}, terminal.progress())
+                                   : diagnose(model, recordFor(model, open), {}, terminal.progress());
 }
 
 /// The error of the model as it is in the first row, then that with each candidate: as a refit confirmed it, else as
@@ -87,7 +87,7 @@ void run(const DiagnoseArguments& options, Terminal& terminal)
     const auto open = openTake(options.take);
     requireSameKind(model, open);
     auto diagnosis = diagnosisOf(model, open, terminal);
-    diagnosis.problems = open.report.problems;
+    diagnosis.problems = open.take.report().problems;
     print(diagnosis, terminal);
     terminal.document(toJson(diagnosis));
     if (diagnosis.verdict == Verdict::badMeasurement)

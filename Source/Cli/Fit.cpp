@@ -30,19 +30,19 @@ void run(const FitArguments& options, Terminal& terminal)
     nlohmann::ordered_json document {{"format", "excursion-fit"}, {"version", 1}};
     const auto open = openTake(options.take);
     requireEffects(options.effects, open.take);
-    if (!open.report.fitForUse())
+    if (!open.take.report().fitForUse())
         return refuseTake(open, document, terminal);
 
     Model model;
     FitSummary summary;
     Comparison comparison;
     std::string caveats;
-    if (open.spectra()) {
-        model = fitEffects(*open.spectra(), options.effects, &summary);
-        comparison = compare(model, *open.spectra());
-        caveats = caveatsOf(model, responsesOf(*open.spectra()));
+    if (open.take.asResponses()) {
+        model = fitEffects(*open.take.asResponses(), options.effects, &summary);
+        comparison = compare(model, *open.take.asResponses());
+        caveats = caveatsOf(model, responsesOf(*open.take.asResponses()));
     } else {
-        auto record = makeRecord(open.measurement());
+        auto record = makeRecord(open.take.measurement());
         const auto progress = terminal.progress();
         model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.95));
         comparison = compare(model, record, {summary.substeps, false}, progress.part(0.95, 1.0));
@@ -50,7 +50,7 @@ void run(const FitArguments& options, Terminal& terminal)
     }
     writeModel(model, options.out);
 
-    sayProblems(open.report.problems, terminal);
+    sayProblems(open.take.report().problems, terminal);
     terminal.say(wrapped("The model: " + effectsText(model) + "." + caveats));
     terminal.say("");
     printParameters(model, terminal);

@@ -48,7 +48,7 @@ void run(const ImproveArguments& options, Terminal& terminal)
     for (const auto& id : options.with)
         effectNamed(id);  // a misspelt name is told before any work
     requireFolderPlace(options.out);
-    const auto take = readTake(options.take);
+    const PreparedTake take(readTake(options.take));
     requireEffects(options.with, take);
     LiveLadder live(terminal);
     ImproveOptions improvement;

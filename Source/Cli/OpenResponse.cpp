@@ -4,7 +4,7 @@
 #include "Engine/Document/JsonField.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/Bla.h"
-#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Measurement/Welch.h"
 
@@ -103,9 +103,9 @@ OpenResponse openResponse(const ResponseChoice& choice)
     if (std::filesystem::path(choice.path).extension() == ".json" && !std::filesystem::is_directory(choice.path)
         && std::filesystem::path(choice.path).filename() != "measurement.json")
         return fromDocument(choice.path);
-    auto take = readTake(choice.path);
+    const PreparedTake take(readTake(choice.path));
     OpenResponse open;
-    if (const auto* spectra = std::get_if<Spectra>(&take)) {
+    if (const auto* spectra = take.asResponses()) {
         const auto [output, input] = portsOf(*spectra, choice);
         open.frf = ratio(*spectra, output, input);
         open.remarks = spectra->remarks;
@@ -113,9 +113,8 @@ OpenResponse openResponse(const ResponseChoice& choice)
         open.input = name(input);
         return open;
     }
-    auto& measurement = std::get<Measurement>(take);
+    const auto& measurement = take.measurement();
     open.remarks = measurement.remarks;
-    completeExcitation(measurement);
     const auto input = choice.input.empty() ? measurement.input().quantity
                                             : chosen(measurement.channels, choice.input, std::nullopt);
     const auto output = chosen(measurement.channels, choice.output, input);

@@ -7,33 +7,25 @@
 #include "Engine/Driver/Fit.h"
 #include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/TakeFile.h"
 
 namespace excursion::cli {
 namespace {
 
-bool hasCoil(const Take& take)
+bool hasCoil(const PreparedTake& take)
 {
-    const auto* spectra = std::get_if<Spectra>(&take);
+    const auto* spectra = take.asResponses();
     return spectra ? spectra->find(Quantity::voltage) != nullptr
-                   : std::get<Measurement>(take).input().quantity == Quantity::voltage;
+                   : take.measurement().input().quantity == Quantity::voltage;
 }
 
 }  // namespace
 
-OpenTake openTake(const std::string& path)
-{
-    OpenTake open {path, readTake(path), {}};
-    if (auto* measurement = std::get_if<Measurement>(&open.take))
-        completeExcitation(*measurement);
-    open.report = std::visit([](const auto& take) { return check(take); }, open.take);
-    return open;
-}
+OpenTake openTake(const std::string& path) { return {path, readTake(path)}; }
 
-void requireEffects(const std::vector<std::string>& ids, const Take& take)
+void requireEffects(const std::vector<std::string>& ids, const PreparedTake& take)
 {
-    const auto seen = std::visit([](const auto& t) { return seenIn(t); }, take);
+    const auto seen = take.asResponses() ? seenIn(*take.asResponses()) : seenIn(take.measurement());
     for (const auto& id : ids)
         if (const auto why = whyUnseen(effectNamed(id), seen); !why.empty())
             throw Error(Error::Kind::usage, why);
@@ -51,7 +43,7 @@ void requireSameKind(const Model& model, const OpenTake& open)
 
 Record recordFor(const Model& model, const OpenTake& open)
 {
-    auto record = makeRecord(open.measurement());
+    auto record = makeRecord(open.take.measurement());
     adapt(record, model);
     return record;
 }
@@ -64,14 +56,14 @@ void sayProblems(const std::vector<Problem>& problems, Terminal& terminal)
 
 void refuseTake(const OpenTake& open, nlohmann::ordered_json document, Terminal& terminal)
 {
-    sayProblems(open.report.problems, terminal);
+    sayProblems(open.take.report().problems, terminal);
     terminal.say("");
     terminal.say("The take is not fit for use: a model of it would explain the fault, not the loudspeaker. Nothing was "
                  "written.");
     document["take"] = open.path;
     document["verdict"] = name(Verdict::badMeasurement);
-    document["sentence"] = open.report.verdict();
-    document["problems"] = toJson(open.report.problems);
+    document["sentence"] = open.take.report().verdict();
+    document["problems"] = toJson(open.take.report().problems);
     terminal.document(document);
     terminal.answer = 1;
 }

@@ -3,8 +3,7 @@
 
 #include "Engine/Driver/Model.h"
 #include "Engine/Driver/Record.h"
-#include "Engine/Measurement/Measurement.h"
-#include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Measurement/PreparedTake.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -15,22 +14,17 @@ namespace excursion::cli {
 
 class Terminal;
 
-/// A take that a model is fitted to or judged by: read, its excitation completed, and checked.
+/// A take that a model is fitted to or judged by.
 struct OpenTake {
     std::string path;
-    Take take;
-    /// fit for use, of a frequency response: it has no waveforms to check; with what its reader had to assume
-    CheckReport report;
-
-    const Spectra* spectra() const { return std::get_if<Spectra>(&take); }
-    const Measurement& measurement() const { return std::get<Measurement>(take); }
+    PreparedTake take;
 };
 
 OpenTake openTake(const std::string& path);
 
 /// Throws Error (usage) when an effect cannot be part of a model of this take: it needs a coil that is not there, or is
 /// nonlinear and the take is a frequency response.
-void requireEffects(const std::vector<std::string>& ids, const Take&);
+void requireEffects(const std::vector<std::string>& ids, const PreparedTake&);
 
 /// Throws Error (data) when one of model and take has a coil and the other has none.
 void requireSameKind(const Model&, const OpenTake&);

@@ -14,7 +14,7 @@
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Plots/Engineering.h"
 
@@ -156,11 +156,10 @@ void runOnTake(const ParametersArguments& options, Terminal& terminal)
     if (options.zma.empty() && options.frd.empty())
         throw Error(Error::Kind::usage,
                     "'" + options.from + "' is a take: say with --zma or --frd what to write, or fit a model to it.");
-    auto take = readMeasurement(options.from);
-    completeExcitation(take);
+    const PreparedTake take(readMeasurement(options.from));
     Json document {
         {"format", "excursion-parameters"}, {"version", 1}, {"take", options.from}, {"wrote", Json::array()}};
-    writeCurves(options, nullptr, &take, document["wrote"], terminal);
+    writeCurves(options, nullptr, take.inTime(), document["wrote"], terminal);
     sayWritten(document["wrote"], terminal);
     terminal.document(document);
 }

@@ -7,7 +7,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/Identify.h"
-#include "Engine/Measurement/FindExcitation.h"
+#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Polynomial/PnlssFile.h"
 #include "Engine/Ranking/Agreement.h"
@@ -111,8 +111,7 @@ void run(PnlssArguments options, Terminal& terminal)
 {
     require(options);
     PnlssTake data;
-    data.take = readMeasurement(options.response.path);
-    completeExcitation(data.take);
+    data.take = PreparedTake(readMeasurement(options.response.path)).measurement();
     const auto levels = data.take.excitation ? static_cast<int>(data.take.excitation->levels.size()) : 0;
     if (options.response.level >= std::max(levels, 1))
         throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");

@@ -53,13 +53,13 @@ void run(const WhatIfArguments& options, Terminal& terminal)
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
     requireSameKind(model, open);
-    if (open.spectra())
+    if (open.take.asResponses())
         throw Error(Error::Kind::data,
                     "'" + options.take
                         + "' is a frequency response: it has no stimulus that could be played. Give a take or a plan.");
     const auto result = whatIf(model, recordFor(model, open), terminal.progress());
     terminal.say("Stimulus: the loudest of the take, " + significant(result.distortion.level, 3) + " "
-                 + open.measurement().input().unit + " rms.");
+                 + open.take.measurement().input().unit + " rms.");
     for (std::size_t c = 0; c < result.distortion.whole.size(); ++c)
         printChannel(result.distortion, c, terminal);
     terminal.say("Gain: the level against that of the linear part. Alone: the effect beside the linear ones only.");

@@ -142,7 +142,7 @@ void MeasurePage::choose()
 void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)
 {
     const auto& findings = *fresh;
-    const bool spectra = std::holds_alternative<Spectra>(*findings.take);
+    const bool spectra = findings.take->asResponses() != nullptr;
     verdict_.setText(spectra ? juce::String("A frequency response: its linear effects can be told.")
                              : words(findings.report.verdict()),
                      juce::dontSendNotification);

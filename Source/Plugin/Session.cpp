@@ -147,19 +147,19 @@ void Session::publishLadder()
     say(improvement_->ladder().sentence);
 }
 
-void Session::begin(Take take, const std::string& source, const std::string& truth, const Progress& progress)
+void Session::begin(PreparedTake take, const std::string& source, const std::string& truth, const Progress& progress)
 {
     Improvement work(take, {}, progress.part(0.0, 0.05));
     auto fresh = std::make_shared<Findings>();
     fresh->source = source;
     fresh->truth = truth;
-    fresh->report = work.report();
+    fresh->report = take.report();
     fresh->file = makeLadderFile(work.ladder(), take, source);
-    fresh->take = std::make_shared<const Take>(std::move(take));
+    fresh->take = std::move(take);
     publish(fresh);
     improvement_.emplace(std::move(work));
-    if (!improvement_->report().fitForUse()) {
-        say(improvement_->report().verdict());
+    if (!improvement_->take().report().fitForUse()) {
+        say(improvement_->take().report().verdict());
         return;
     }
     improvement_->begin(progress.part(0.05, 1.0));
@@ -228,7 +228,7 @@ void Session::saveTake(const std::string& folder)
 {
     order([this, folder](const Progress& progress) {
         const auto now = findings();
-        const auto* measurement = now ? std::get_if<Measurement>(now->take.get()) : nullptr;
+        const auto* measurement = now ? now->take->inTime() : nullptr;
         if (measurement == nullptr)
             throw Error(Error::Kind::usage, "There is no take of time signals to save.");
         progress.at(0.0, "writing the take");

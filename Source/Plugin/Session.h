@@ -4,7 +4,7 @@
 #include "Engine/Diagnosis/Improvement.h"
 #include "Engine/Diagnosis/LadderFile.h"
 #include "Engine/Measurement/Measurement.h"
-#include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Measurement/PreparedTake.h"
 
 #include <condition_variable>
 #include <cstdint>
@@ -20,9 +20,9 @@ namespace excursion::plugin {
 
 /// What the pages show of a take and its ladder. It does not change once it is handed out.
 struct Findings {
-    std::string source;  ///< where the take is from, in words
-    std::string truth;   ///< what the virtual loudspeaker hides; empty for a real one
-    std::shared_ptr<const Take> take;
+    std::string source;                ///< where the take is from, in words
+    std::string truth;                 ///< what the virtual loudspeaker hides; empty for a real one
+    std::optional<PreparedTake> take;  ///< always there
     CheckReport report;
     LadderFile file;                               ///< without rungs until the first fit is done
     std::vector<std::vector<Waveform>> waveforms;  ///< [level][channel], of the last rung
@@ -68,7 +68,7 @@ private:
     using Work = std::function<void(const Progress&)>;
     void order(Work);
     void run(const std::stop_token&);
-    void begin(Take, const std::string& source, const std::string& truth, const Progress&);
+    void begin(PreparedTake, const std::string& source, const std::string& truth, const Progress&);
     void publish(std::shared_ptr<Findings>);
     void publishLadder();
     void say(const std::string&);

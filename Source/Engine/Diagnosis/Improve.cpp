@@ -51,7 +51,7 @@ void withdrawDoubtful(Ladder& ladder)
 
 }  // namespace
 
-Ladder improve(const Take& take, const ImproveOptions& options, const Progress& progress)
+Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Progress& progress)
 {
     Improvement work(take, options, progress.part(0.0, 0.02));
     if (work.ladder().verdict == Verdict::badMeasurement)
@@ -64,7 +64,7 @@ Ladder improve(const Take& take, const ImproveOptions& options, const Progress& 
     };
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
-    const bool inTime = std::holds_alternative<Measurement>(take);
+    const bool inTime = take.inTime() != nullptr;
     const double searched = inTime ? begun : 0.7;
     if (!inTime && work.addTogether(progress.part(begun, searched)))
         tell();

@@ -7,6 +7,6 @@ namespace excursion {
 
 /// Fits the base (with `with`), then diagnoses and adds until the verdict is no longer missing-effect. A take with a
 /// fatal problem gives bad-measurement and no rung.
-Ladder improve(const Take&, const ImproveOptions& = {}, const Progress& = {});
+Ladder improve(const PreparedTake&, const ImproveOptions& = {}, const Progress& = {});
 
 }  // namespace excursion

@@ -12,7 +12,6 @@
 #include "Engine/Driver/ShownMotions.h"
 #include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/FindExcitation.h"
 
 #include <algorithm>
 #include <utility>
@@ -66,31 +65,26 @@ FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const
 
 }  // namespace
 
-Improvement::Improvement(const Take& take, const ImproveOptions& options, const Progress& progress) : options_(options)
+Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const Progress& progress)
+    : take_(std::move(take)), options_(options)
 {
-    if (const auto* spectra = std::get_if<Spectra>(&take)) {
-        data_ = *spectra;
-        report_ = check(*spectra);
-        ladder_.problems = report_.problems;
-        return;
-    }
-    Measurement measurement = std::get<Measurement>(take);
     progress.at(0.0, "checking the take");
-    completeExcitation(measurement);
-    report_ = check(measurement);
-    ladder_.problems = report_.problems;
-    if (report_.fitForUse()) {
-        data_ = makeRecord(measurement);
+    const auto& report = take_.report();
+    ladder_.problems = report.problems;
+    if (const auto* spectra = take_.asResponses()) {
+        data_ = *spectra;
+    } else if (report.fitForUse()) {
+        data_ = makeRecord(take_.measurement());
     } else {
         ladder_.verdict = Verdict::badMeasurement;
-        ladder_.sentence = report_.verdict();
+        ladder_.sentence = report.verdict();
     }
 }
 
 void Improvement::begin(const Progress& progress)
 {
-    if (!report_.fitForUse())
-        throw Error(Error::Kind::data, "The take is not fit for use: " + report_.verdict());
+    if (!take_.report().fitForUse())
+        throw Error(Error::Kind::data, "The take is not fit for use: " + take_.report().verdict());
     Rung rung;
     auto data = data_;  // is adapted to the model; should the work be cancelled, nothing has happened
     rung.model = std::visit([&](auto& d) { return first(d, options_, rung.fit, progress.part(0.0, 0.4)); }, data);
@@ -211,7 +205,7 @@ Rung Improvement::judged(Rung rung, const Progress& progress) const
 
 void Improvement::keep(Rung rung)
 {
-    rung.diagnosis.problems = report_.problems;
+    rung.diagnosis.problems = take_.report().problems;
     ladder_.rungs.push_back(std::move(rung));
     concludeFromLast();
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/Ladder.h"
-#include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Measurement/PreparedTake.h"
 
 #include <functional>
 #include <string>
@@ -22,10 +22,10 @@ struct ImproveOptions {
 /// work reports and may be cancelled; the ladder then is what it was before.
 class Improvement {
 public:
-    /// Checks the take and makes it ready. Throws Error (data) when it has no channel to compare.
-    explicit Improvement(const Take&, const ImproveOptions& = {}, const Progress& = {});
+    /// Cuts the take into what a model is compared with. Throws Error (data) when it has no channel to compare.
+    explicit Improvement(PreparedTake, const ImproveOptions& = {}, const Progress& = {});
 
-    const CheckReport& report() const { return report_; }  ///< of a frequency response what its reader assumed
+    const PreparedTake& take() const { return take_; }
     const Ladder& ladder() const { return ladder_; }
 
     /// The first rung: the base, with the effects asked for in ImproveOptions::with. Not for a take that is unfit for
@@ -55,9 +55,9 @@ private:
     void keep(Rung);
     void concludeFromLast();  ///< verdict and sentence, as the last rung's diagnosis says
 
+    PreparedTake take_;
     ImproveOptions options_;
     std::variant<Record, Spectra> data_;
-    CheckReport report_;
     Ladder ladder_;
 };
 

@@ -7,7 +7,6 @@
 #include "Engine/Diagnosis/RemainderFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/ModelFile.h"
-#include "Engine/Measurement/FindExcitation.h"
 
 #include <algorithm>
 
@@ -194,11 +193,11 @@ std::optional<WhatIf> whatIfOn(const Model& model, const Record& record, const P
 
 }  // namespace
 
-TakeSummary summarize(const Take& take, const std::string& path)
+TakeSummary summarize(const PreparedTake& take, const std::string& path)
 {
     TakeSummary summary;
     summary.path = path;
-    if (const auto* measurement = std::get_if<Measurement>(&take)) {
+    if (const auto* measurement = take.inTime()) {
         summary.driver = measurement->driver.name;
         summary.sampleRate = measurement->sampleRate;
         summary.seconds = static_cast<double>(measurement->length()) / measurement->sampleRate;
@@ -210,7 +209,7 @@ TakeSummary summarize(const Take& take, const std::string& path)
             summary.periods = measurement->excitation->periods;
         }
     } else {
-        const auto& spectra = std::get<Spectra>(take);
+        const auto& spectra = *take.asResponses();
         summary.driver = spectra.driver.name;
         for (const auto& channel : spectra.channels)
             summary.channels.emplace_back(name(channel.quantity));
@@ -218,30 +217,23 @@ TakeSummary summarize(const Take& take, const std::string& path)
     return summary;
 }
 
-std::optional<WhatIf> whatIfOf(const Model& model, const Take& given, const Progress& progress)
+std::optional<WhatIf> whatIfOf(const Model& model, const PreparedTake& take, const Progress& progress)
 {
-    const auto* measurement = std::get_if<Measurement>(&given);
-    if (!measurement)
-        return std::nullopt;
-    auto take = *measurement;
-    completeExcitation(take);
-    return whatIfOn(model, makeRecord(take), progress);
+    const auto* measurement = take.inTime();
+    return measurement ? whatIfOn(model, makeRecord(*measurement), progress) : std::nullopt;
 }
 
-LadderFile makeLadderFile(Ladder ladder, const Take& given, const std::string& path)
+LadderFile makeLadderFile(Ladder ladder, const PreparedTake& take, const std::string& path)
 {
-    Take take = given;
-    if (auto* measurement = std::get_if<Measurement>(&take))
-        completeExcitation(*measurement);  // as the ladder was made of it
     LadderFile file;
     file.take = summarize(take, path);
     if (!ladder.rungs.empty()) {
-        if (const auto* measurement = std::get_if<Measurement>(&take)) {
+        if (const auto* measurement = take.inTime()) {
             const auto record = makeRecord(*measurement);
             file.responses = responsesOf(record, record.levels.empty() ? -1 : 0, 24);
             file.whatIf = whatIfOn(ladder.model(), record, {});
         } else {
-            file.responses = responsesOf(std::get<Spectra>(take));
+            file.responses = responsesOf(*take.asResponses());
         }
         for (auto& response : file.responses)
             response = asImpedance(std::move(response));

@@ -4,6 +4,7 @@
 #include "Engine/Design/WhatIf.h"
 #include "Engine/Diagnosis/Ladder.h"
 #include "Engine/Driver/FitResponse.h"
+#include "Engine/Measurement/PreparedTake.h"
 
 #include <nlohmann/json.hpp>
 
@@ -24,7 +25,7 @@ struct TakeSummary {
     std::vector<double> levels;         ///< V rms
     int realizations = 0, periods = 0;  ///< 0 when the take has no such structure
 };
-TakeSummary summarize(const Take&, const std::string& path);
+TakeSummary summarize(const PreparedTake&, const std::string& path);
 
 /// A ladder with all that a report needs, so that `report` can be run again without the take. Format
 /// "excursion-ladder", version 1 (Docs/Formats.md).
@@ -39,10 +40,10 @@ struct LadderFile {
 
 /// What the model's effects make of a take: of its loudest level. Nothing where no effect distorts, the take is a
 /// frequency response, or the model cannot be played.
-std::optional<WhatIf> whatIfOf(const Model&, const Take&, const Progress& = {});
+std::optional<WhatIf> whatIfOf(const Model&, const PreparedTake&, const Progress& = {});
 
 /// @throws Error (data) when the take has no channel to compare
-LadderFile makeLadderFile(Ladder, const Take&, const std::string& path);
+LadderFile makeLadderFile(Ladder, const PreparedTake&, const std::string& path);
 
 nlohmann::ordered_json toJson(const LadderFile&);
 LadderFile ladderFromJson(const nlohmann::json&, const std::string& where);

@@ -34,8 +34,8 @@ void requireUnclipped(const RecordedChannel& a, const std::vector<RecordedFile>&
     const auto& x = files[a.file].sound.channels[a.channel];
     const auto size = static_cast<double>(x.size());
     Channel part;
-    part.samples.recordedChannels(x.begin() + static_cast<std::ptrdiff_t>(std::clamp(begin, 0.0, size)),
-                                  x.begin() + static_cast<std::ptrdiff_t>(std::clamp(end, 0.0, size)));
+    part.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(std::clamp(begin, 0.0, size)),
+                        x.begin() + static_cast<std::ptrdiff_t>(std::clamp(end, 0.0, size)));
     if (const auto clipped = clippedSamples(part); clipped > 0)
         throw Error(Error::Kind::data,
                     labelOf(a, files) + " clips: " + std::to_string(clipped)
@@ -283,8 +283,8 @@ private:
             Channel voltage;
             voltage.fullScale = options_.gain;
             voltage.assumed = true;
-            voltage.samples.recordedChannels(played.samples.begin(),
-                                             played.samples.begin() + static_cast<std::ptrdiff_t>(length_));
+            voltage.samples.assign(played.samples.begin(),
+                                   played.samples.begin() + static_cast<std::ptrdiff_t>(length_));
             for (double& u : voltage.samples)
                 u *= options_.gain / played.fullScale;
             take.channels.insert(take.channels.begin(), std::move(voltage));
@@ -340,8 +340,8 @@ ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<
                                             "out of the calibration for this recording.");
         Channel channel {*a.quantity, std::string(siUnit(*a.quantity)), std::abs(a.factor), {}};
         const auto& x = source.sound.channels[a.channel];
-        channel.samples.recordedChannels(x.begin() + static_cast<std::ptrdiff_t>(options.from),
-                                         x.begin() + static_cast<std::ptrdiff_t>(to));
+        channel.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(options.from),
+                               x.begin() + static_cast<std::ptrdiff_t>(to));
         for (double& value : channel.samples)
             value *= a.factor;
         result.take.channels.push_back(std::move(channel));

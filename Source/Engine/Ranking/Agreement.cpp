@@ -5,7 +5,6 @@
 #include "Engine/Document/Words.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/Periods.h"
 
 #include <algorithm>
@@ -43,11 +42,10 @@ double errorOf(const Rung& rung, Quantity output)
 
 }  // namespace
 
-Agreement agreement(const Measurement& given, Quantity output,
+Agreement agreement(const PreparedTake& given, Quantity output,
                     const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& play, const Progress& progress)
 {
-    auto take = given;
-    completeExcitation(take);
+    auto take = given.measurement();
     const auto* explained = take.find(output);
     if (!explained || explained == &take.input())
         throw Error(Error::Kind::data, "The take has no such channel beside its input.");
@@ -64,7 +62,7 @@ Agreement agreement(const Measurement& given, Quantity output,
     take.channels = {take.input(), played};
 
     Agreement found;
-    found.ladder = improve(take, {}, progress);
+    found.ladder = improve(std::move(take), {}, progress);
     if (found.ladder.rungs.empty())
         throw Error(Error::Kind::data, found.ladder.sentence);
     found.effects = found.ladder.model().effectIds();

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/Ladder.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Progress.h"
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ struct Agreement {
 /// @param output  the channel that the model explains
 /// What the periods of the take scatter is added to what the model plays, so the diagnosis knows how far to trust it.
 /// Throws Error (data) where the take lacks the channel or is not fit for use, (numerical) where the model runs away.
-Agreement agreement(const Measurement&, Quantity output,
+Agreement agreement(const PreparedTake&, Quantity output,
                     const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& play, const Progress& = {});
 
 }  // namespace excursion

@@ -53,8 +53,9 @@ FractionalPnlss fractionalStart(const RankedTake& data, int degree)
 
 FractionalGrid gridOf(const RankedTake& data, const FractionalPnlss& model)
 {
-    return gridFor(model, data.take.sampleRate, data.response.frequency,
-                   static_cast<double>(data.records.estimation.front().input.rows()) / data.take.sampleRate, 1e-3);
+    return gridFor(
+        model, data.take.measurement().sampleRate, data.response.frequency,
+        static_cast<double>(data.records.estimation.front().input.rows()) / data.take.measurement().sampleRate, 1e-3);
 }
 
 FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& grid, int degree, int parameters)
@@ -93,8 +94,8 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
 {
     HammersteinFitOptions fitting;
     fitting.degree = data.options.degree;
-    const auto fit = fitHammerstein(data.take.sampleRate, data.records.estimation, data.records.validation, fitting,
-                                    progress);
+    const auto fit = fitHammerstein(data.take.measurement().sampleRate, data.records.estimation,
+                                    data.records.validation, fitting, progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
             static_cast<int>(fit.model.parameters()), true};
@@ -120,7 +121,8 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
     fitting.outputLags = fitting.inputLags = data.order;
     fitting.degree = data.options.degree;
     fitting.maximumIterations = data.options.iterations;
-    const auto fit = fitNarx(data.take.sampleRate, data.records.estimation, data.records.validation, fitting, progress);
+    const auto fit = fitNarx(data.take.measurement().sampleRate, data.records.estimation, data.records.validation,
+                             fitting, progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree "
                 + std::to_string(fitting.degree),
@@ -130,7 +132,7 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
 FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
 {
     IdentifyOptions identifying;
-    identifying.sampleRate = data.take.sampleRate;
+    identifying.sampleRate = data.take.measurement().sampleRate;
     PnlssFitOptions fitting;
     fitting.maximumIterations = data.options.iterations;
     fitting.enoughDb = data.records.enoughDb();

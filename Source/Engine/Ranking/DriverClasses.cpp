@@ -20,7 +20,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
     for (const auto& component : model.components)
         if (&component != &model.components.front())
             description += (description.empty() ? "" : ", ") + component.effect->title();
-    const auto play = [model, rate = data.take.sampleRate,
+    const auto play = [model, rate = data.take.measurement().sampleRate,
                        output = data.output.quantity](const PnlssRecord& record) -> Eigen::MatrixXd {
         const Eigen::VectorXd u = record.input.col(0);
         const auto played = simulate(model, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())), rate,
@@ -37,7 +37,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
 
 FittedClass fitDriverClass(const RankedTake& data, const Progress& progress)
 {
-    auto record = makeRecord(data.take);
+    auto record = makeRecord(data.take.measurement());
     return driverClass(fitEffects(record, {}, {}, nullptr, progress), data);
 }
 

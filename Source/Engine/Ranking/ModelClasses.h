@@ -11,7 +11,7 @@ namespace excursion {
 
 /// What every class is fitted to.
 struct RankedTake {
-    const Measurement& take;
+    const PreparedTake& take;
     const Channel& input;
     const Channel& output;
     int level;

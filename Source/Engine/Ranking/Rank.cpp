@@ -4,7 +4,6 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Measurement/Bla.h"
-#include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Measurement/Welch.h"
 #include "Engine/Ranking/ModelClasses.h"
 #include "Engine/Validity.h"
@@ -73,7 +72,8 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
         double samples = 0.0;
         for (const auto& record : judges)
             samples += static_cast<double>(record.input.rows());
-        model.load = static_cast<double>(std::clock() - playing) / CLOCKS_PER_SEC * data.take.sampleRate / samples;
+        model.load = static_cast<double>(std::clock() - playing) / CLOCKS_PER_SEC * data.take.measurement().sampleRate
+                     / samples;
         model.validationDb = data.records.validation.empty() ? std::numeric_limits<double>::quiet_NaN() : judged;
         model.stable = fitted.stable && std::isfinite(model.estimationDb) && std::isfinite(judged);
     } catch (const Error& e) {
@@ -105,13 +105,12 @@ const std::vector<ModelClass>& modelClasses()
     return all;
 }
 
-Ranking rank(const Measurement& given, const RankOptions& options, const Progress& progress)
+Ranking rank(const PreparedTake& given, const RankOptions& options, const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "Models cannot be ranked: " + reason + ".");
-    auto take = given;
-    completeExcitation(take);
+    const auto& take = given.measurement();
     const auto& input = take.input();
     const Channel* output = nullptr;
     for (const auto& channel : take.channels)
@@ -134,7 +133,7 @@ Ranking rank(const Measurement& given, const RankOptions& options, const Progres
     const auto sweep = sweepOrders(response, sweeping);
     const auto linear = sweep.entries[sweep.chosen].found.model;
     const int order = options.order > 0 ? options.order : std::min(4, static_cast<int>(linear.order()));
-    const RankedTake data {take,     input,   *output, level, recordsOf(take, input, *output, level),
+    const RankedTake data {given,    input,   *output, level, recordsOf(take, input, *output, level),
                            response, options, order,   linear};
 
     Ranking ranking;

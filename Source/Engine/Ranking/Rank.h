@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Polynomial/TakeRecords.h"
 #include "Engine/Progress.h"
 
@@ -59,6 +59,6 @@ const std::vector<ModelClass>& modelClasses();
 /// All classes on the same records of one take (recordsOf), errors by simulation. The physical driver is fitted to all
 /// channels and levels of the take, as always; the others see the one channel and level alone. Throws Error (usage) for
 /// options, (data) for a take without the channel or too short to be cut.
-Ranking rank(const Measurement&, const RankOptions& = {}, const Progress& = {});
+Ranking rank(const PreparedTake&, const RankOptions& = {}, const Progress& = {});
 
 }  // namespace excursion
