@@ -97,9 +97,9 @@ struct HungPart {
 };
 
 /// A loudspeaker in free air, or in a vented box, as the bench knows it:
-///     u = Re(T) i + d/dt [ lambda(x, i) + lambda_eddy ] + Bl(x) v,     lambda = Le(x, i) i,     lambda_eddy = k(x)
-///     G(s) k(x) i m x'' = Bl(x) i - Rms(v) v - F_suspension - F_friction - F_box - F_parts + d/dx (integral of lambda
-///     di)
+///     u = Re(T) i + d/dt [ lambda(x, i) + lambda_eddy ] + Bl(x) v,     lambda = Le(x, i) i,
+///         lambda_eddy = k(x) G(s) k(x) i
+///     m x'' = Bl(x) i - Rms(v) v - F_suspension - F_friction - F_box - F_parts + d/dx (integral of lambda di)
 /// where the last term is the reluctance force, 1/2 i^2 dLe/dx when Le does not depend on i, and with k'(x) i times the
 /// loops' flux G(s) k(x) i where the loops' coupling k moves. Signs: positive current moves the cone to positive x,
 /// towards the microphone.

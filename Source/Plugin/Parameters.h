@@ -13,8 +13,8 @@
 namespace excursion::plugin {
 
 /// The parameters that a host sees and automates: those of a Recipe, and a switch for every effect of the catalogue.
-///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V), trim
-///     (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects
+///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V),
+///     trim (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects
 /// No listener hangs at them, as those are called on the audio thread: who wants to know reads them, now and then.
 class Parameters {
 public:

@@ -100,7 +100,7 @@ struct Reached {
 /// @param from   sample at which these limits came; asked for from a fifth of a second later on, as the cone has to
 /// come back by itself. A mean
 ///               of the heat that is above its limit has to fall, from half a second later on, nearly as fast as
-///               silence would let it
+///                   silence would let it
 Reached reachedBy(const Model& driver, const std::vector<double>& voltage, const LinearizationControls& limits,
                   std::size_t from)
 {

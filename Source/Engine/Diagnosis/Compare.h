@@ -95,7 +95,8 @@ struct Waveform {
 };
 
 /// The first validation section of that level, one waveform a channel. Lines that are not compared are left out of
-/// both. Throws Error (numerical) when the simulation runs away.
+/// both.
+/// Throws Error (numerical) when the simulation runs away.
 std::vector<Waveform> waveforms(const Model&, const Record&, int level);
 
 /// Compares the linear part of a model with a take that is a frequency response only; one level, no noise, spectra

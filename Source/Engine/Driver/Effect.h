@@ -202,8 +202,7 @@ public:
 ///                                   T* memoryRate, Balance<T>&) const;
 /// and, if it is heard or seen otherwise than through the cone's motion,
 ///     template <class T> void radiate(const Extent&, const T* coefficients, const Motion<T>&, const T& acceleration,
-///     const T* memory,
-///                                     const T* memoryRate, Emission<T>&) const;
+///                                     const T* memory, const T* memoryRate, Emission<T>&) const;
 template <class Self>
 class EffectOf : public Effect {
 public:

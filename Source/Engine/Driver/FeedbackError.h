@@ -19,9 +19,9 @@ namespace excursion {
 /// `options` count as far as they are not about steps.
 /// @param motions  one a section of `sections`
 /// @param played   when given, what a simulation left of these sections, with spectra: the residuals are its own, and
-/// only the slopes are those of fed laws.
-///                 These differ from a simulation's by what a law's change does to the motion that it is fed. With the
-///                 residuals being exact the search arrives where they are noise all the same.
+///                 only the slopes are those of fed laws. These differ from a simulation's by what a law's change does
+///                 to the motion that it is fed. With the residuals being exact the search arrives where they are
+///                 noise all the same.
 std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                       const ShownMotions& motions, const std::vector<Eigen::Index>& active,
                                       const OutputErrorOptions& options, const Progress& = {},

@@ -13,8 +13,8 @@ namespace excursion {
 /// A smaller model of commensurate fractional order by editing poles and zeros in lambda = s^alpha (seed 6.2.6
 /// with 6.1.2 and 6.1.3). What decides whether a root is remote, or a pair cancels, is its distance to the two rays
 /// (+-j w)^alpha, on which the frequencies lie, and not to the imaginary axis:
-///     remote   ripple 20 log10(most / least), the largest and the least distance to the rays' part that belongs to the
-///     band pair     |eps| <= |p - q| / least(p),  ripple <= 20 log10((1 + eps_sup) / (1 - eps_sup))
+///     remote   ripple 20 log10(most / least), the largest and the least distance to the rays' part in the band
+///     pair     |eps| <= |p - q| / least(p),  ripple <= 20 log10((1 + eps_sup) / (1 - eps_sup))
 /// The bounds are those of PoleZeroReduction.h, as they know lambda alone. A stable model stays stable: poles go, none
 /// moves.
 struct FractionalReduction {
@@ -28,8 +28,9 @@ struct FractionalReduction {
 FractionalReduction reduceByPolesAndZeros(const FractionalStateSpace&, PoleZeroReductionOptions options);
 
 /// Takes out the section whose loss costs least and refits all others to the data, with poles outside of the sector:
-/// prune() in lambda. Throws Error (usage) when the model is not valid, (data) when it is not stable or the data is not
-/// one of its input and outputs.
+/// prune() in lambda.
+/// Throws Error (usage) when the model is not valid, (data) when it is not stable or the data is not one of its input
+/// and outputs.
 struct FractionalPruning {
     FractionalStateSpace model;
     std::vector<PruningStep> steps;

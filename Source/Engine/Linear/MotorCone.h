@@ -77,7 +77,8 @@ struct MotorCone {
 
 /// @param displacement  voltage to displacement, m/V, one input and output
 /// @param pressure      voltage to pressure (Pa/V), or to acceleration, at the same frequencies, which are all above 0
-/// Hz Throws Error (usage) for options that make no sense, (data) for responses that do not go together, or when fewer
+/// Hz
+/// Throws Error (usage) for options that make no sense, (data) for responses that do not go together, or when fewer
 /// lines are told than the cone's order asks for, and as identify() does.
 MotorCone identifyMotorCone(const FrequencyData& displacement, const FrequencyData& pressure,
                             const MotorConeOptions& = {}, const Progress& = {});

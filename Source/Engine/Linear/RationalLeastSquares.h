@@ -8,8 +8,9 @@ namespace excursion {
 /// Fits of a quotient of polynomials N/D by linear least squares: the classical ways, here for comparison (the
 /// seed's 4.4.2 has Levy's as "complex LS", MATLAB's invfreqz), not as estimators.
 ///     Levy (1959)                   minimize sum |w (N - G D)|^2: the error counts |D|^2 as much as it should, most
-///     where D is large Sanathanan & Koerner (1963)   again, divided by the |D| found before, until D stays; with noise
-///     its limit is close to, and not, the least error
+///         where D is large
+///     Sanathanan & Koerner (1963)   again, divided by the |D| found before, until D stays; with noise its limit is
+///         close to, and not, the least error
 /// D has a leading coefficient of 1 (a constant one of 1 gives another answer where nothing fits exactly). N and D are
 /// written in polynomials that are orthonormal on the lines (OrthogonalPowers.h), not in powers of the frequency, which
 /// are what both methods are known to fail of; the roots of D are eigenvalues of the recurrence. Several outputs share

@@ -12,8 +12,8 @@ namespace excursion {
 
 /// The poles of a model with one input as quadratic and linear factors, and the partial fractions over them that carry
 /// its response:
-///     G(lambda) = D + sum_i (c_1i + c_2i (mu + b_i/2)) / (mu^2 + b_i mu + e_i)  [+ c / (mu + a)],   mu = lambda /
-///     scale
+///     G(lambda) = D + sum_i (c_1i + c_2i (mu + b_i/2)) / (mu^2 + b_i mu + e_i)  [+ c / (mu + a)],
+///         mu = lambda / scale
 /// with lambda = z - 1, s or, of fractional order, s^alpha (see Response.h). Real pairs and complex pairs pass into one
 /// another smoothly, and poles far apart do not disturb each other's digits as the coefficients of one long polynomial
 /// would.

@@ -11,7 +11,8 @@ namespace excursion {
 Eigen::MatrixXd simulate(const StateSpace&, const Eigen::MatrixXd& input, const Eigen::VectorXd& initial = {});
 
 /// The state from which a periodic input, N x m, one period, gives a periodic response: x = (I - A^N)^-1 (state after
-/// one period from rest). Throws Error (numerical) when the model has a pole whose N-th power is 1.
+/// one period from rest).
+/// Throws Error (numerical) when the model has a pole whose N-th power is 1.
 Eigen::VectorXd periodicState(const StateSpace&, const Eigen::MatrixXd& input);
 
 }  // namespace excursion

@@ -25,7 +25,8 @@ namespace excursion {
 ///     continuous  F = -B^T X                          M = (A + B F, B, F, I)
 ///     discrete    F = -(I + B^T X B)^-1 B^T X A       M = (A + B F, B W, F, W),  W = (I + B^T X B)^-1/2
 /// W is the gain |p| by which the seed's (6.27) corrects. Poles on the border have no image: they are pushed out by
-/// 1e-9 first and land as far inside. Throws as decomposed() does.
+/// 1e-9 first and land as far inside.
+/// Throws as decomposed() does.
 StateSpace mirroredByAllPass(const StateSpace&);
 
 /// The same in lambda = s^alpha, of models with one input and output: unstable poles are reflected at the border of the

@@ -11,7 +11,7 @@ namespace excursion {
 /// Where a linear cone will be, at times of a grid ahead: it coasts from its state, and is driven by an input that is
 /// constant on steps,
 ///     x(t_i) = c exp(A t_i) z + sum_k h_ik p_k,   h_ik = the integral of c exp(A (t_i - s)) B over the part of step k
-///     before t_i and after now.
+///         before t_i and after now.
 struct Foresight {
     Eigen::MatrixXd coasting;  ///< times x state of the Reference, m
     Eigen::MatrixXd driven;    ///< times x steps, m/V

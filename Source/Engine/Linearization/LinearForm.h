@@ -12,8 +12,8 @@
 namespace excursion {
 
 /// What a base or an effect adds to the balance when that is linear in current, motion and memory,
-///     drop = d . (i, x, v) + D . m,   force = f . (i, x, v) + F . m,   with constant inductance and mass and no flux
-///     slope.
+///     drop = d . (i, x, v) + D . m,   force = f . (i, x, v) + F . m,
+///         with constant inductance and mass and no flux slope.
 /// Asked of the effect itself, once, so that an audio thread need not ask it at every sample.
 struct LinearForm {
     double inductance = 0.0, mass = 0.0;

@@ -8,8 +8,8 @@ namespace excursion {
 
 /// The voltage with which a driver moves as a linear one would, and at any time the state of a cone that was given what
 /// came out, whatever that was:
-///     u -> Reference (x, v, a, j of the linear driver) -> Inverse -> u',   out = u + amount (u' - u), kept to the
-///     limit of the voltage.
+///     u -> Reference (x, v, a, j of the linear driver) -> Inverse -> u',
+///         out = u + amount (u' - u), kept to the limit of the voltage.
 /// With all of the amount the cone moves as the reference does. Where the limit stands in the way the reference's input
 /// is corrected until the inverse asks for the limit itself: the reference falls back with the cone, goes on from where
 /// that is, and asks for nothing that would make up for it. With less of the amount the cone is not where the reference

@@ -15,8 +15,7 @@ namespace excursion {
 /// LinearMemory does not do it. How it is stepped is found out by asking r:
 ///   - dm/dt = A m + b (i, x, v): exact for cubic motions;
 ///   - dm/dt = -diag(p) m + N(i, x, v), in which m hardly changes N within a step (what is slow, like heat): exact in
-///   m, with N a
-///     cubic through its values at the latest four samples. It is asked once a step;
+///     m, with N a cubic through its values at the latest four samples. It is asked once a step;
 ///   - anything else: the classical Runge-Kutta method.
 class Memory {
 public:

@@ -23,11 +23,10 @@ namespace excursion {
 /// each of three bands (Bands.h), and the gain of a band is these factors through a smooth window that is shorter than
 /// the look-ahead. The factors are, multiplied:
 ///  - what keeps the motion of the wish within the limit of the excursion: the lowest band first. Judged is how far a
-///  cone would coast that
-///    were left alone at any instant; a factor is held for 0.1 s at least and released slowly, so a steady tone has a
-///    steady gain;
+///    cone would coast that were left alone at any instant; a factor is held for 0.1 s at least and released slowly, so
+///    a steady tone has a steady gain;
 ///  - what keeps the peaks of the voltage, as they are after that, within the limit, with what linearizing has lately
-///  added to them;
+///    added to them;
 ///  - what keeps the heat of the coil within a bound that falls to the limit as the running mean comes near it;
 ///  - silence around a sample that is not finite.
 /// The last word has a plan: from the state of a cone that was given what came out, under the inputs that are known,

@@ -13,7 +13,7 @@ namespace excursion {
 /// With F(d) the number of samples within d of the extreme, w the width of the bump, and tops the separate stretches in
 /// it:
 ///     2 F(w) / (F(3w) - F(w) + 3) > 6 (1 + 1.5 / tops), or 3.2 (1 + 0.6 / tops) where 60 samples or more are noise
-///     beyond doubt
+///         beyond doubt
 /// A rounded top has F ~ d^(1/2) and reaches 2.7, less when noise blurs it; a single top may be flat by chance, hence
 /// the more the fewer there are. For the flat tops of signals that saturate smoothly, F ~ d^p with a small p, the
 /// counts of the next intervals, each 3 times as wide, grow by 3^p; they must grow by more than 1.5 (evenly spread

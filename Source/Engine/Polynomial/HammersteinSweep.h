@@ -35,9 +35,9 @@ struct HarmonicResponses {
 };
 
 /// @param output  sampled with the sweep, from its first sample on; with what comes after it, else the last frequencies
-/// are cut short Throws Error (usage) for options that make no sense, (data) for an output that is shorter than the
-/// sweep or not finite, or where the responses would overlap: then the sweep has to last longer, or degree or length be
-/// lower.
+/// are cut short
+/// Throws Error (usage) for options that make no sense, (data) for an output that is shorter than the sweep or not
+/// finite, or where the responses would overlap: then the sweep has to last longer, or degree or length be lower.
 HarmonicResponses harmonicResponses(const ExponentialSweep&, std::span<const double> output,
                                     const HammersteinSweepOptions& = {});
 
@@ -57,8 +57,8 @@ struct HammersteinSweepFit {
 
 /// The whole of it: harmonic responses, branch responses, and filters that fit branch n by least squares on the lines
 /// where it is known,
-///     sum_f |G_n(f) - sum_k g_n(k) exp(-2 pi j f k / fs)|^2 + r lines sum_k g_n(k)^2 -> min,   M f1' + 1/edge <= f <=
-///     n f2' - 1/edge,
+///     sum_f |G_n(f) - sum_k g_n(k) exp(-2 pi j f k / fs)|^2 + r lines sum_k g_n(k)^2 -> min,
+///         M f1' + 1/edge <= f <= n f2' - 1/edge,
 /// M <= N the last harmonic of n's parity, f1' and f2' the frequencies between which the sweep is not faded, f2' also
 /// earlier than the end by what a response lasts: the end rings at all frequencies that were played so shortly before.
 /// Outside nothing is asked of a filter but to be small, so what the model says there is a guess. The constant that

@@ -57,7 +57,7 @@ public:
     /// J^T w along a run, one number a parameter and then one a state of the beginning, by the adjoint recursion
     /// backwards in time:
     ///     lambda(t) = M(t)^T lambda(t+1) + G(t)^T w(t),  by the coefficient of r_j in state row i: sum_t lambda_i(t+1)
-    ///     r_j(t), in output row o: sum_t w_o(t) r_j(t)
+    ///         r_j(t), in output row o: sum_t w_o(t) r_j(t)
     /// at the cost of a few simulations, whatever the number of parameters.
     /// @param weights  w, N x p
     Eigen::VectorXd pullBack(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states,

@@ -10,8 +10,8 @@ namespace excursion {
 
 /// The Volterra kernels of a PNLSS model, exactly, around the state x0 in which it rests without input (0, unless it
 /// has constant terms):
-///     y(t) = y0 + sum_n sum_{t1 .. tn} h_n(t1 .. tn) u(t - t1) .. u(t - tn),   H_n(f1 .. fn) = sum h_n exp(-j (w1 t1 +
-///     .. + wn tn))
+///     y(t) = y0 + sum_n sum_{t1 .. tn} h_n(t1 .. tn) u(t - t1) .. u(t - tn),
+///         H_n(f1 .. fn) = sum h_n exp(-j (w1 t1 + .. + wn tn))
 /// symmetrized: h_n and H_n do not change when their arguments change places (with their inputs, where there are
 /// several).
 ///

@@ -30,8 +30,9 @@ struct VolterraSeries {
 Eigen::MatrixXd simulate(const VolterraSeries&, const Eigen::MatrixXd& input);
 
 /// The kernels of a PNLSS model of one input and one output, cut off after T1, T2 and T3 samples; 0 leaves the second
-/// or the third out. Throws Error (usage) for models with several inputs or outputs, T1 below 1, or memories above
-/// 65536, 2048 and 128 samples; and as Volterra does.
+/// or the third out.
+/// Throws Error (usage) for models with several inputs or outputs, T1 below 1, or memories above 65536, 2048 and 128
+/// samples; and as Volterra does.
 VolterraSeries volterraSeries(const Pnlss&, Eigen::Index memory1, Eigen::Index memory2, Eigen::Index memory3 = 0);
 
 }  // namespace excursion

@@ -31,7 +31,8 @@ FractionalPnlss expand(const Model&, Quantity output, const TaylorOptions& = {})
 /// The same in discrete time, held inputs assumed: with S = int_0^T exp(A t) dt,
 ///     A_d = exp(A T), B_d = S B, E_d = S E, C, D and F as they are.
 /// Exact for the linear part under a held input; what the monomials do is held over a step: an error of order T. A
-/// start for a fit. Throws Error (usage) for a model with states of fractional order.
+/// start for a fit.
+/// Throws Error (usage) for a model with states of fractional order.
 Pnlss discretized(const FractionalPnlss&, double sampleRate);
 
 }  // namespace excursion
