@@ -6,6 +6,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Linear/MotorCone.h"
 #include "Engine/Linear/StateSpaceFile.h"
+#include "Engine/Measurement/Air.h"
 #include "Engine/Measurement/PhysicalDelay.h"
 
 #include <nlohmann/json.hpp>

@@ -141,7 +141,7 @@ bool isTake(const std::string& path)
 
 void sayWritten(const Json& written, Terminal& terminal)
 {
-    const auto list = joined(written, [&](const auto& file) { return file.get<std::string>(); });
+    const auto list = joined(written.get<std::vector<std::string>>());
     if (!list.empty())
         terminal.say("Wrote " + list + ".");
 }

@@ -34,7 +34,7 @@ std::vector<std::complex<double>> blockedImpedance(const Model& model, const std
     const auto linear = linearize(linearPart(model));
     const auto states = statesWithout(linear.A.rows(), {1, velocity});
     BalancedResolvent resolvent(linear.A(states, states));
-    const Eigen::VectorXd B = linear.B(states);
+    const Eigen::VectorXcd B = linear.B(states).cast<std::complex<double>>();
     std::vector<std::complex<double>> impedance;
     for (const double f : frequency) {
         resolvent.moveTo({0.0, 2.0 * std::numbers::pi * f});
@@ -73,7 +73,8 @@ OpenCoilMechanics::At OpenCoilMechanics::at(double omega) const
 {
     BalancedResolvent resolvent(A_);
     resolvent.moveTo({0.0, omega});
-    const Eigen::VectorXcd z = resolvent.times(B_), dz = -resolvent.times(z);  // d/ds (s I - A)^-1 B
+    const Eigen::VectorXcd z = resolvent.times(B_.cast<std::complex<double>>()),
+                           dz = -resolvent.times(z);  // d/ds (s I - A)^-1 B
     constexpr Eigen::Index cone = velocity - 1;
     return {1.0 / z[cone], -dz[cone] / (z[cone] * z[cone])};
 }

@@ -52,10 +52,10 @@ public:
                 line('L', from, to, part.kind == Network::Kind::cell ? part.inductance : part.value);
             from = to;
         }
-        text += "* Motor: u = Bl v and F = Bl i, Bl = " + shortest(network_.forceFactor)
+        text += "* Motor: u = Bl v and F = Bl i, Bl = " + shortestText(network_.forceFactor)
                 + " N/A. Vi measures the current.\n";
-        text += "Vi " + from + " motor 0\nEbl motor minus cone 0 " + shortest(network_.forceFactor) + "\nFbl 0 cone Vi "
-                + shortest(network_.forceFactor) + "\n";
+        text += "Vi " + from + " motor 0\nEbl motor minus cone 0 " + shortestText(network_.forceFactor)
+                + "\nFbl 0 cone Vi " + shortestText(network_.forceFactor) + "\n";
     }
 
     void mechanics()
@@ -93,7 +93,7 @@ private:
     }
     void line(char letter, const std::string& from, const std::string& to, double value)
     {
-        text += letter + std::to_string(++parts_) + " " + from + " " + to + " " + shortest(value) + "\n";
+        text += letter + std::to_string(++parts_) + " " + from + " " + to + " " + shortestText(value) + "\n";
     }
 
     const Network& network_;

@@ -100,7 +100,7 @@ struct Leaner {
 };
 
 /// What a search keeps at hand.
-struct Search {
+struct ResponseSearch {
     const Model& base;
     const std::vector<ResponseTarget>& targets;
     Sets sets;
@@ -110,7 +110,7 @@ struct Search {
 /// Without each of the effects that the base does not have; what is missed least first. What is left is fitted from
 /// where it is, and from the best that was found without the effect before: one that carries much of the stiffness or
 /// the mass leaves the others far from where they would be.
-std::vector<Leaner> withoutEach(const Found& whole, const Search& search, const Progress& progress)
+std::vector<Leaner> withoutEach(const Found& whole, const ResponseSearch& search, const Progress& progress)
 {
     std::vector<Leaner> each;
     std::vector<std::pair<std::size_t, Model>> starts;  // of which Leaner
@@ -148,7 +148,7 @@ std::vector<Leaner> withoutEach(const Found& whole, const Search& search, const 
 
 /// Takes out what the others can do without, and then what stands for something else, which may be due to what was not
 /// needed.
-void takeOut(Found& whole, const Search& search, const Progress& progress)
+void takeOut(Found& whole, const ResponseSearch& search, const Progress& progress)
 {
     for (;;) {
         auto each = withoutEach(whole, search, progress);
@@ -171,7 +171,7 @@ std::vector<Step> stepsByResponse(const Model& base, const Spectra& spectra, uns
     for (const auto* effect : catalogue())
         if (!base.has(effect->id()) && whyUnseen(*effect, seenIn(spectra)).empty())
             effects.push_back(effect);
-    Search search {base, targets, {}, threads};
+    ResponseSearch search {base, targets, {}, threads};
     auto whole = withAll(base, effects, thinned(targets, coarse), threads, search.sets, progress.part(0.0, 0.7));
     const auto settle = [&] {
         refineByResponse(whole.model, targets);

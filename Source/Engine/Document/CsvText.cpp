@@ -7,7 +7,7 @@
 
 namespace excursion {
 
-std::string csvNumber(double value) { return std::isfinite(value) ? shortest(value) : std::string(); }
+std::string csvNumber(double value) { return std::isfinite(value) ? shortestText(value) : std::string(); }
 
 std::string csvText(const std::string& text)
 {

@@ -7,7 +7,7 @@
 
 namespace excursion {
 
-std::string shortest(double value)
+std::string shortestText(double value)
 {
     std::array<char, 32> text {};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;

@@ -6,7 +6,7 @@
 namespace excursion {
 
 /// The shortest text that reads back as the same double.
-std::string shortest(double);
+std::string shortestText(double);
 
 /// Numbers within a sentence, in plain ASCII.
 std::string figure(double value, const char* format = "%.1f");

@@ -16,10 +16,10 @@ using Json = nlohmann::json;
 std::string expectedWithin(double least, double most)
 {
     if (least > std::numeric_limits<double>::lowest() && most < std::numeric_limits<double>::max())
-        return "a number from " + shortest(least) + " to " + shortest(most);
+        return "a number from " + shortestText(least) + " to " + shortestText(most);
     if (least > std::numeric_limits<double>::lowest())
-        return "a number of at least " + shortest(least);
-    return "a number of at most " + shortest(most);
+        return "a number of at least " + shortestText(least);
+    return "a number of at most " + shortestText(most);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ void appendRow(std::string& text, std::initializer_list<double> values, char sep
     for (const double value : values) {
         if (before)
             text += before;
-        text += shortest(value);
+        text += shortestText(value);
         before = separator;
     }
     text += '\n';
@@ -53,9 +53,9 @@ void writeCsv(const Frf& frf, const std::filesystem::path& path)
         appendRow(text, {frf.frequency[k], frf.value[k].real(), frf.value[k].imag()}, ',');
         text.pop_back();
         if (noise)
-            (text += ',') += shortest(frf.noiseVariance[k]);
+            (text += ',') += shortestText(frf.noiseVariance[k]);
         if (total)
-            (text += ',') += shortest(frf.totalVariance[k]);
+            (text += ',') += shortestText(frf.totalVariance[k]);
         text += '\n';
     }
     publish(path, text);
@@ -68,9 +68,9 @@ void writeCsv(const Measurement& measurement, const std::filesystem::path& path)
         text.append(",").append(name(channel.quantity)).append(" [").append(channel.unit).append("]");
     text += '\n';
     for (std::size_t n = 0; n < measurement.length(); ++n) {
-        text += shortest(static_cast<double>(n) / measurement.sampleRate);
+        text += shortestText(static_cast<double>(n) / measurement.sampleRate);
         for (const auto& channel : measurement.channels)
-            (text += ',') += shortest(channel.samples[n]);
+            (text += ',') += shortestText(channel.samples[n]);
         text += '\n';
     }
     publish(path, text);
@@ -89,10 +89,10 @@ void writeCsv(const Spectra& spectra, const std::filesystem::path& path)
             text.append(",").append(name(channel.quantity)).append(part).append(channel.unit);
     text += '\n';
     for (std::size_t k = 0; k < spectra.frequency.size(); ++k) {
-        text += shortest(spectra.frequency[k]);
+        text += shortestText(spectra.frequency[k]);
         for (const auto& channel : spectra.channels) {
-            (text += ',') += shortest(channel.values[k].real());
-            (text += ',') += shortest(channel.values[k].imag());
+            (text += ',') += shortestText(channel.values[k].real());
+            (text += ',') += shortestText(channel.values[k].imag());
         }
         text += '\n';
     }

@@ -54,10 +54,11 @@ std::optional<ColumnQuantity> understood(std::string_view column, const std::str
 
 std::optional<ColumnQuantity> columnNamed(std::string_view column)
 {
-    const auto text = trimmed(column);
+    const std::string text(trimmed(column));
     for (const auto& [open, close] : {std::pair {'[', ']'}, std::pair {'(', ')'}})
         if (const auto at = text.find(open); at != std::string::npos && text.back() == close)
-            return understood(column, text.substr(0, at), trimmed(text.substr(at + 1, text.size() - at - 2)));
+            return understood(column, text.substr(0, at),
+                              std::string(trimmed(text.substr(at + 1, text.size() - at - 2))));
     if (const auto read = columnTitle(text); !read.unit.empty())  // "U/V", "x / mm", "current mA"
         if (auto found = understood(column, read.name, read.unit))
             return found;
