@@ -56,7 +56,7 @@ TEST_CASE("Nothing is added to a driver without effects, and its parameters are 
 TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is cancelled", "[improve][slow]")
 {
     Improvement work(seedTake({{"stiffness", 0.3}}));
-    REQUIRE(work.report().fitForUse());
+    REQUIRE(work.take().report().fitForUse());
     CHECK(work.ladder().rungs.empty());
     work.begin();
     REQUIRE(work.ladder().rungs.size() == 1);
@@ -89,6 +89,32 @@ TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is ca
     REQUIRE(work.ladder().rungs.size() == 1);
     CHECK(work.ladder().verdict == Verdict::missingEffect);
     CHECK(work.ladder().rungs[0].comparison.chi == chi);
+}
+
+TEST_CASE("Effects that are added in another order end in the same model", "[improve][slow]")
+{
+    const PreparedTake take(seedTake({{"stiffness", 0.3}, {"force-factor", 0.3}}));
+    const auto climbed = [&take](const std::vector<std::string>& order) {
+        Improvement work(take);
+        work.begin();
+        for (const auto& effect : order)
+            work.add(effect);
+        return work.ladder();
+    };
+    const auto one = climbed({"stiffness", "force-factor"}), other = climbed({"force-factor", "stiffness"});
+    CHECK(one.verdict == other.verdict);
+    for (const auto& component : one.model().components)
+        for (const auto& p : component.parameters) {
+            const auto& components = other.model().components;
+            const auto same = std::find_if(components.begin(), components.end(),
+                                           [&](const Component& c) { return c.effect == component.effect; });
+            REQUIRE(same != components.end());
+            REQUIRE(same->parameters.size() == component.parameters.size());
+            const auto& q = same->parameters[static_cast<std::size_t>(&p - component.parameters.data())];
+            INFO(component.effect->id() << ", " << p.name << ": " << p.value << " and " << q.value << " +- "
+                                        << p.standardError);
+            CHECK(std::abs(p.value - q.value) <= 0.2 * p.standardError + 1e-6 * std::abs(p.value));
+        }
 }
 
 TEST_CASE("One hidden effect is named, added, and the error falls to the noise", "[improve][slow]")
