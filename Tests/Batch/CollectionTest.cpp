@@ -3,6 +3,7 @@
 #include "Engine/Batch/CollectionFile.h"
 #include "Engine/Batch/Statistics.h"
 #include "Engine/Error.h"
+#include "Engine/Signal/Median.h"
 #include "Measurement/Scratch.h"
 
 #include <catch2/catch.hpp>

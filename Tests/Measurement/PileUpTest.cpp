@@ -2,6 +2,7 @@
 #include "Engine/Measurement/PileUp.h"
 
 #include "Engine/Measurement/TakeCheck.h"
+#include "Measurement/SoundTake.h"
 #include "Measurement/SyntheticTake.h"
 
 #include <catch2/catch.hpp>
@@ -22,13 +23,6 @@ Measurement quietTake(std::uint64_t seed)
     plan.realizations = 2;
     plan.outputs = {Quantity::current, Quantity::displacement, Quantity::pressure};
     return synthetic::record(synthetic::Loudspeaker {}, plan, random);
-}
-
-std::vector<double>& samplesOf(Measurement& take, Quantity quantity)
-{
-    return std::find_if(take.channels.begin(), take.channels.end(),
-                        [&](const Channel& c) { return c.quantity == quantity; })
-        ->samples;
 }
 
 /// The value that a share of the samples of the loudest level exceeds.
