@@ -57,7 +57,7 @@ Pnlss model()
     return result;
 }
 
-/// The seed's way: every parameter runs through the record by itself.
+/// [B appendix C]'s way: every parameter runs through the record by itself.
 double plainLoops(const Pnlss& m, const MatrixXd& u, const MatrixXd& states)
 {
     const Index n = 3, K = m.terms();

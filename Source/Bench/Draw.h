@@ -50,7 +50,7 @@ const std::vector<std::string>& driverClasses();
 const std::vector<std::string>& drawnEffects();
 
 /// A linear driver of the class: mass, resonance, Bl, Re, Le, Qms (2 .. 8), area and xmax are drawn log-uniformly
-/// within what such drivers have. "seed" is Brunet's driver.
+/// within what such drivers have. "seed" is the driver of [B 2.2].
 Loudspeaker drawLinear(const std::string& driverClass, Random&);
 
 /// Excitation, channels and noise that suit a driver: low edge 0.2 to 0.5 f0, high edge 2 to 10 kHz, f0/10 or finer

@@ -16,7 +16,7 @@ namespace excursion {
 /// discrete time s = fs ln z.
 Plot rootsPlot(const StateSpace&, double alpha = 1.0);
 
-/// 20 log10 |G| over the complex plane (seed appendix D), cut along rays s = r exp(j theta) from the frequency axis,
+/// 20 log10 |G| over the complex plane [B appendix D], cut along rays s = r exp(j theta) from the frequency axis,
 /// theta = 90 degrees, to the negative real one: the first cut is the frequency response. One input, one output: the
 /// first of each.
 Plot gainSurfacePlot(const StateSpace&, double alpha = 1.0);

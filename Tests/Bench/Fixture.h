@@ -11,7 +11,7 @@
 
 namespace excursion::bench {
 
-/// A short, noise-free take of the seed's driver with every sensor.
+/// A short, noise-free take of the dissertation's driver with every sensor.
 inline BenchSetup quietSetup()
 {
     BenchSetup setup;

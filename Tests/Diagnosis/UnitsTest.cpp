@@ -56,7 +56,7 @@ std::string text(const Factors& factors)
     return result;
 }
 
-/// A short take of the seed's driver with one effect hidden (or none).
+/// A short take of the dissertation's driver with one effect hidden (or none).
 Measurement benchTake(const std::string& effect, std::vector<Quantity> channels)
 {
     bench::DrawOptions options;

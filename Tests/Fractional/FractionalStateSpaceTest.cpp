@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fractional models against closed forms: the circuit and the loudspeaker of seed chapter 5, Matignon's sector against
+// Fractional models against closed forms: the circuit and the loudspeaker of [B 5], Matignon's sector against
 // the theorems' matrices.
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
 #include "Engine/Fractional/TimeResponse.h"
@@ -19,7 +19,7 @@ using std::numbers::pi;
 
 namespace {
 
-/// R and a fractance 1/(C s^alpha): H = 1/(1 + RC s^alpha) (seed 5.19), RC such that (RC)^(-1/alpha) = 2000 pi.
+/// R and a fractance 1/(C s^alpha): H = 1/(1 + RC s^alpha) [B 5.19], RC such that (RC)^(-1/alpha) = 2000 pi.
 FractionalStateSpace circuit(double alpha)
 {
     const double rc = std::pow(2000.0 * pi, -alpha);
@@ -33,11 +33,11 @@ FractionalStateSpace circuit(double alpha)
 }
 
 constexpr double mass = 14.35e-3, drag = 0.786, stiffness = 1852.0, force = 4.95, resistance = 3.3;
-// ohm s^1/2. The seed prints 0.1197 microhenry: 450 times the 266 microhenry of its chapter 2
+// ohm s^1/2. [B 5.2] prints 0.1197 microhenry: 450 times the 266 microhenry of [B 2.2]
 constexpr double semiInductance = 0.1197;
 
-/// The admittance of seed 5.2, states x, D^1/2 x, D x, D^3/2 x, i. The seed's A (5.39) prints the drag r/m in the
-/// column of D^1/2 x; the force is -r D x.
+/// The admittance of [B 5.2], states x, D^1/2 x, D x, D^3/2 x, i. The equations ahead of [B 5.39] print the drag
+/// r/m with D^1/2 x; the force is -r D x, as the matrix has it.
 FractionalStateSpace loudspeaker()
 {
     FractionalStateSpace model;
@@ -68,8 +68,8 @@ TEST_CASE("The seed's circuit answers as 1/(1 + RC s^alpha)")
             const Complex truth = 1.0 / (1.0 + std::pow(Complex(0.0, f / 1000.0), alpha));
             CHECK(std::abs(respond(model, {f})[0](0, 0) - truth) < 1e-14 * std::abs(truth));
         }
-        // At the cut-off 1/(1 + j^alpha): |H| = 1/sqrt(2 + 2 cos(alpha pi/2)), arg = -alpha pi/4 (the seed prints
-        // cos(alpha pi) and -alpha pi/2).
+        // At the cut-off 1/(1 + j^alpha): |H| = 1/sqrt(2 + 2 cos(alpha pi/2)), arg = -alpha pi/4 ([B 5.1.4]
+        // prints cos(alpha pi) and -alpha pi/2).
         const Complex cut = respond(model, {1000.0})[0](0, 0);
         CHECK(std::abs(cut) == Approx(1.0 / std::sqrt(2.0 + 2.0 * std::cos(0.5 * alpha * pi))).epsilon(1e-13));
         CHECK(std::arg(cut) == Approx(-0.25 * alpha * pi).epsilon(1e-12));
@@ -80,7 +80,7 @@ TEST_CASE("The seed's circuit answers as 1/(1 + RC s^alpha)")
 TEST_CASE("The step of the seed's circuit is that of erfc, by Mittag-Leffler, ladder and difference")
 {
     const auto model = circuit(0.5);
-    // seed 5.32
+    // [B 5.32]
     const auto truth = [](double t) { return 1.0 - std::exp(2000.0 * pi * t) * std::erfc(std::sqrt(2000.0 * pi * t)); };
     const double fs = 1e6;
     std::vector<double> times;
@@ -99,7 +99,7 @@ TEST_CASE("The step of the seed's circuit is that of erfc, by Mittag-Leffler, la
         CHECK((coarse(n / 2, 0) - y) / (fine(n, 0) - y) == Approx(2.0).margin(0.1));
         CHECK(std::abs(fine(n, 0) - y) < 2e-3);
     }
-    // Its impulse (seed 5.28) is the derivative of the step.
+    // Its impulse [B 5.28] is the derivative of the step.
     const auto impulse = impulseResponse(model, {4.995e-4, 5e-4, 5.005e-4});
     CHECK(impulse[1](0, 0) == Approx((truth(5.005e-4) - truth(4.995e-4)) / 1e-6).epsilon(1e-5));
 }

@@ -92,7 +92,7 @@ TEST_CASE("With noise the delay lies where its standard error says", "[slow]")
 TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, and the error falls to the noise",
           "[slow]")
 {
-    // The output was recorded 0.6427 samples early, as in seed 6.2.4.
+    // The output was recorded 0.6427 samples early, as in [B 6.2.4].
     const auto data = late(-0.6427 / rate, 0.01, 3);
     IdentifyOptions free;
     free.order = 6;

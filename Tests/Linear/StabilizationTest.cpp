@@ -217,7 +217,7 @@ TEST_CASE("Mirrored poles are the images of the unstable ones; magnitudes and ze
         for (std::size_t k = 0; k < before.size(); ++k)
             CHECK(std::abs(before[k] - after[k]) < 1e-7 * std::abs(before[k]));
     }
-    // Seed eqs 6.25 to 6.27: H = 1/(1 - p/z), whose image is p^-1/(1 - 1/(p z)) up to sign.
+    // [B 6.25 to 6.27]: H = 1/(1 - p/z), whose image is p^-1/(1 - 1/(p z)) up to sign.
     const double p = 1.25;
     const auto single = known({{p, 0}}, {{p, 0}}, 1.0, 1.0, normal);  // z/(z - p) = 1 + p/(z - p)
     for (const double f : {0.0, 0.1, 0.37, 0.5}) {

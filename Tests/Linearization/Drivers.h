@@ -17,7 +17,7 @@ namespace excursion {
 inline constexpr double xmax = 4e-3;  ///< m, of midbass()
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Brunet's driver.
+/// The dissertation's driver.
 inline Model midbass()
 {
     auto model = makeModel("electrodynamic");

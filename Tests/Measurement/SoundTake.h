@@ -44,7 +44,7 @@ inline std::vector<double>& samplesOf(Measurement& take, Quantity quantity)
     throw std::logic_error("no such channel");
 }
 
-/// A sound take of the seed's driver with some distortion, noise at -70 dB.
+/// A sound take of the dissertation's driver with some distortion, noise at -70 dB.
 inline Measurement soundTake(std::uint64_t seed = 1)
 {
     std::mt19937_64 random(seed);

@@ -10,7 +10,7 @@
 namespace excursion::synthetic {
 
 /// A loudspeaker in steady state, solved line by line in the frequency domain; nonlinear forces and voltages
-/// enter by Picard iteration. Shares no code with the engine but the DFT. The defaults are the seed's driver (2.2).
+/// enter by Picard iteration. Shares no code with the engine but the DFT. The defaults are the driver of [B 2.2].
 struct Loudspeaker {
     double m = 14.35e-3, r = 0.786, k = 1852.0, Bl = 4.95, L = 266e-6, R = 3.3;
     double semiK = 0.0, semiExponent = 0.7;  ///< adds semiK s^a to the blocked impedance

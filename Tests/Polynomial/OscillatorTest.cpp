@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Duffing's and Van der Pol's oscillators (seed 4.1.3), integrated here by Runge and Kutta's rule, as polynomial
+// Duffing's and Van der Pol's oscillators [B 4.1.3], integrated here by Runge and Kutta's rule, as polynomial
 // state-space models.
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Linear/Problem.h"
@@ -202,8 +202,8 @@ TEST_CASE(
     "Duffing's oscillator in chaos: the model predicts ten periods and has the oscillator's exponent and amplitudes",
     "[slow]")
 {
-    // The seed drives with 100 N and integrates by Euler's rule at 44.1 kHz, whose error is a negative damping as large
-    // as the oscillator's own. The equation itself answers 100 N with a period of its own, and 110 N with chaos.
+    // [B 4.1.3] drives with 100 N and integrates by Euler's rule at 44.1 kHz, whose error is a negative damping as
+    // large as the oscillator's own. The equation itself answers 100 N with a period of its own, and 110 N with chaos.
     const double T = 1.0 / 16000.0, f = 56.0;
     const auto flow = duffing();
     const auto truth = [&](const Vector2d& z, double u) { return advanced(flow, z, u, T, 4); };
@@ -290,7 +290,7 @@ TEST_CASE("Van der Pol's oscillator in chaos: the model predicts, and has the os
     const double T = 0.02, f = 2.466 / (2.0 * pi);
     const auto flow = vanDerPol(5.0);
     const auto truth = [&](const Vector2d& z, double u) { return advanced(flow, z, u, T, 4); };
-    // The seed's 8.53, 1.2 and 2 pi/10 is at most quasi-periodic.
+    // The dissertation's 8.53, 1.2 and 2 pi/10 is at most quasi-periodic.
     const auto seed = vanDerPol(8.53);
     CHECK(std::abs(lyapunov([&](const Vector2d& z, double u) { return advanced(seed, z, u, T, 8); }, Vector2d(1.0, 0.0),
                             sine(1.2, 0.1, T, 400000), T, 50000))

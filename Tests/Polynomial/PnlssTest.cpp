@@ -210,8 +210,8 @@ TEST_CASE("A model that runs away is stopped at its bound")
 
 namespace {
 
-/// The Duffing oscillator of seed 4.10 with its example's figures, by Euler's rule. The cubic term belongs to the
-/// displacement, where the seed's printed state-space form has the velocity.
+/// The Duffing oscillator of [B 4.10] with its example's figures, by Euler's rule. The cubic term belongs to the
+/// displacement, where the state-space form printed there has the velocity.
 struct Duffing {
     double Ts, m = 14.35e-3, r = 0.786, k = 1852.0, q2 = 3.33e5;
 
@@ -278,7 +278,7 @@ TEST_CASE("The Duffing oscillator of the seed is such a model")
 
 namespace {
 
-/// The Van der Pol oscillator of seed 4.11 by Euler's rule.
+/// The Van der Pol oscillator of [B 4.11] by Euler's rule.
 Pnlss vanDerPol(double e, double Ts)
 {
     StateSpace linear;
@@ -315,7 +315,7 @@ TEST_CASE("The Van der Pol oscillator of the seed is such a model, unstable at r
     const double period = (3.0 - 2.0 * std::log(2.0)) * e + 7.01432 / std::cbrt(e) - 22.0 / 9.0 * std::log(e) / e;
     CHECK(measured == Approx(period).epsilon(0.02));
 
-    // Driven as in the seed's example: bounded, though its linear part grows without bound.
+    // Driven as in the example of [B 4.1.3]: bounded, though its linear part grows without bound.
     const auto driven = vanDerPol(e, 0.01);
     Eigen::MatrixXd u(60000, 1);
     for (Index t = 0; t < u.rows(); ++t)

@@ -11,7 +11,7 @@
 
 namespace excursion {
 
-/// How far a model's channel is from the measurement: relative rms error (seed 4.26) and the rms of the noise against
+/// How far a model's channel is from the measurement: relative rms error [B 4.26] and the rms of the noise against
 /// the same reference, dB. `chi` is the mean of |error|^2/sigma^2 over the lines: 1 when only noise is left.
 struct ErrorLevel {
     double db = 0.0;

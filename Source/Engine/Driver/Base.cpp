@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear loudspeaker of seed 2.1-2.2, in the same form as an effect, so that a model is one sum.
+// The linear loudspeaker of [B 2.1, 2.2], in the same form as an effect, so that a model is one sum.
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Driver/Network.h"
 

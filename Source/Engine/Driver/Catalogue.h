@@ -16,7 +16,7 @@ const std::vector<const Effect*>& catalogue();
 const Effect& effectNamed(std::string_view id);
 
 /// What every driver has, as an effect that is always present:
-///   "electrodynamic"  u = Re i + Le di/dt + Bl v,  m dv/dt = Bl i - Rms v - K x   (seed 2.1, 2.2)
+///   "electrodynamic"  u = Re i + Le di/dt + Bl v,  m dv/dt = Bl i - Rms v - K x   [B 2.1, 2.2]
 ///   "mechanical"      m dv/dt = F - Rms v - K x
 const Effect& electrodynamicBase();
 const Effect& mechanicalBase();

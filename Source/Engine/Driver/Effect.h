@@ -24,7 +24,7 @@ struct Motion {
 };
 
 /// What the base and the effects add up to. With the flux phi(i, x) of the coil these close the two
-/// equations of the driver (seed 2.1, 2.2, extended):
+/// equations of the driver ([B 2.1, 2.2], extended):
 ///     u            = drop + d(phi)/dt = drop + inductance di/dt + fluxSlope v
 ///     mass dv/dt   = force
 template <class T>

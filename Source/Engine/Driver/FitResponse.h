@@ -43,7 +43,7 @@ std::vector<ResponseTarget> responsesOf(const Spectra&, int pointsPerOctave = 48
 ResponseTarget thinned(const ResponseTarget&, int pointsPerOctave);
 std::vector<ResponseTarget> thinned(const std::vector<ResponseTarget>&, int pointsPerOctave);
 
-/// Relative rms error of a model's response over the whole curve, dB (seed 4.26), weighted as the target says:
+/// Relative rms error of a model's response over the whole curve, dB [B 4.26], weighted as the target says:
 ///     10 log10( sum |G - G_measured|^2/sigma^2 / sum |G_measured|^2/sigma^2 ).
 /// For an impedance of a frequency-response take that is the rms of |Z - Z_measured|/|Z_measured| over log f.
 double responseErrorDb(const Model&, const ResponseTarget&);

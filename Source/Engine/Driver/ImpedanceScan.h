@@ -20,7 +20,7 @@ struct ImpedanceShape {
 /// Fits
 ///     Z = Re + L s + E s^1/2 + H s (w0/Q) / (s^2 + s w0/Q + w0^2),   all coefficients >= 0,
 /// by linear least squares on a grid of resonance and quality, so that no start value is needed and the peak is found
-/// even where a simple inductance is far off (seed chapter 5). nullopt when no grid point has a positive Re and peak.
+/// even where a simple inductance is far off [B 5]. nullopt when no grid point has a positive Re and peak.
 /// @param target  of the current: an impedance or its reciprocal
 std::optional<ImpedanceShape> scanImpedance(const ResponseTarget& target);
 

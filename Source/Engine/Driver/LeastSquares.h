@@ -31,7 +31,7 @@ struct LeastSquaresSummary {
 /// (a simulation that runs away); the search then shortens its step.
 using NormalEvaluation = std::function<bool(const Eigen::VectorXd& theta, bool gradient, NormalEquations&)>;
 
-/// Bounded Levenberg-Marquardt (seed 4.3.1, by Ceres) on a problem that is only known through its normal equations, so
+/// Bounded Levenberg-Marquardt ([B 4.3.1], by Ceres) on a problem that is only known through its normal equations, so
 /// that long records never stand in memory as one Jacobian. With N = V L V^T the residuals handed to the solver are
 /// L^-1/2 V^T g, and the remaining cost as one more; their Gauss-Newton step and cost are those of the long problem.
 /// @param theta  start, then result

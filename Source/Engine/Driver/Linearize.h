@@ -14,7 +14,7 @@ namespace excursion {
 /// cone by a force.
 enum class Drives { terminals, cone };
 
-/// The model's linear part, dz/dt = A z + B u, with z as in Dynamics (seed 2.3, extended by the memories), and what
+/// The model's linear part, dz/dt = A z + B u, with z as in Dynamics ([B eq. 2.3], extended by the memories), and what
 /// leaves it,
 ///     (area acceleration, spot) = C z + D u     (Emission).
 /// Laws are zero at rest and have no part in it. Neither have their memories, which stand still here: friction is a

@@ -10,8 +10,8 @@
 
 namespace excursion {
 
-/// Identification of a commensurate fractional model from a frequency response (seed 5.3): that of Engine/Linear in
-/// lambda = s^alpha, on lambda_k = (j w_k)^alpha. The seed takes powers of lambda_k and no weights, and finds models
+/// Identification of a commensurate fractional model from a frequency response [B 5.3]: that of Engine/Linear in
+/// lambda = s^alpha, on lambda_k = (j w_k)^alpha. [B 5.3] takes powers of lambda_k and no weights, and finds models
 /// that are unstable; here the lines are weighted by their standard deviation, the polynomials are orthonormal on them,
 /// the start is refined to maximum likelihood, and its poles stay out of Matignon's sector.
 ///
@@ -53,7 +53,7 @@ struct FractionalIdentification {
 /// Throws Error (usage, data, numerical) as identify() does, and for an alpha or a search outside of (0, 2).
 FractionalIdentification identifyFractional(const FrequencyData&, const FractionalOptions&, const Progress& = {});
 
-/// The same for several orders. Order and alpha trade for one another (seed 5.5): many poles imitate any power of s.
+/// The same for several orders. Order and alpha trade for one another [B 5.5]: many poles imitate any power of s.
 struct FractionalSweep {
     struct Entry {
         int order = 0;

@@ -10,8 +10,8 @@
 
 namespace excursion {
 
-/// A smaller model of commensurate fractional order by editing poles and zeros in lambda = s^alpha (seed 6.2.6
-/// with 6.1.2 and 6.1.3). What decides whether a root is remote, or a pair cancels, is its distance to the two rays
+/// A smaller model of commensurate fractional order by editing poles and zeros in lambda = s^alpha [B 6.2.6
+/// with 6.1.2 and 6.1.3]. What decides whether a root is remote, or a pair cancels, is its distance to the two rays
 /// (+-j w)^alpha, on which the frequencies lie, and not to the imaginary axis:
 ///     remote   ripple 20 log10(most / least), the largest and the least distance to the rays' part in the band
 ///     pair     |eps| <= |p - q| / least(p),  ripple <= 20 log10((1 + eps_sup) / (1 - eps_sup))

@@ -7,10 +7,10 @@
 namespace excursion {
 
 /// A stable model of commensurate fractional order in place of an unstable one: that of Engine/Linear in lambda =
-/// s^alpha, the border being Matignon's sector |arg lambda| = alpha pi/2 (seed 6.2.6 and theorem 2).
+/// s^alpha, the border being Matignon's sector |arg lambda| = alpha pi/2 [B 6.2.6, theorem 2].
 ///     mirror       poles in the sector are reflected at its border, zeros and gain stay (mirroredAtSector()), then a
 ///                  fit outside of it
-///     project      the part G- of G = G- + G+ with all poles outside of the sector (seed eqs 6.29 to 6.32 in lambda),
+///     project      the part G- of G = G- + G+ with all poles outside of the sector ([B 6.29 to 6.32] in lambda),
 ///                  then such a fit
 ///     decompose    that part alone; `parts` holds both
 /// A delay is not fitted: exp(-s tau) is no function of lambda.

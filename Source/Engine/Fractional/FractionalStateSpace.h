@@ -5,7 +5,7 @@
 
 namespace excursion {
 
-/// A linear system of commensurate fractional order (seed 5.9),
+/// A linear system of commensurate fractional order [B 5.9],
 ///     D^alpha x = A x + B u,  y = C x + D u,     0 < alpha < 2,  time in seconds,
 /// D^alpha Caputo's derivative. Its response is that of an ordinary model in lambda = s^alpha in place of s,
 ///     G(s) = C (s^alpha I - A)^-1 B + D.
@@ -21,7 +21,7 @@ struct FractionalStateSpace {
 /// valid.
 std::vector<Eigen::MatrixXcd> respond(const FractionalStateSpace&, const std::vector<double>& frequency);
 
-/// How far the eigenvalues are from Matignon's sector in which they make the system unstable (seed theorem 2, eq 5.18):
+/// How far the eigenvalues are from Matignon's sector in which they make the system unstable [B theorem 2, 5.18]:
 ///     min |arg eig(A)| - alpha pi/2,  radians,
 /// for both ranges of alpha (theorem 3 for 1 <= alpha < 2, theorem 4 for 0 < alpha <= 1). Above 0 exactly when the
 /// system is stable; 0 for an eigenvalue of 0, which stands at the sector's apex; infinite without states.

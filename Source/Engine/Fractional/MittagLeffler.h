@@ -5,9 +5,9 @@
 
 namespace excursion {
 
-/// The Mittag-Leffler function of two parameters (seed 5.10),
+/// The Mittag-Leffler function of two parameters [B 5.10],
 ///     E_{alpha,beta}(z) = sum_{k>=0} z^k / Gamma(alpha k + beta),     alpha > 0, beta real,
-/// what the exponential function is to fractional orders: Theorem 1 of the seed writes every response of a fractional
+/// what the exponential function is to fractional orders: [B theorem 1] writes every response of a fractional
 /// system with it.
 ///
 /// The series serves while |z| or |z|^(1/alpha) is no more than about 1: beyond it loses digits as exp(|z|^(1/alpha)).

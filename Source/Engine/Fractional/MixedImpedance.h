@@ -10,10 +10,10 @@
 
 namespace excursion {
 
-/// The electrical impedance of an electrodynamic driver with a semi-inductance (seed 5.37), fractional and integer
-/// orders side by side as seed 5.5 asks for:
+/// The electrical impedance of an electrodynamic driver with a semi-inductance [B 5.37], fractional and integer
+/// orders side by side as [B 5.5] asks for:
 ///     Z(s) = R + L s^alpha + K s/(s^2 + (w0/Q) s + w0^2),     K = Bl^2/m,  w0 = sqrt(k/m),  w0/Q = r/m
-/// The seed prints L in henry for any alpha; its unit is ohm s^alpha.
+/// [B 5.2] prints L in henry for any alpha; its unit is ohm s^alpha.
 struct MixedImpedance {
     double resistance = 0.0;      ///< R, ohm
     double semiInductance = 0.0;  ///< L, ohm s^alpha
@@ -47,7 +47,7 @@ struct MixedImpedanceOptions {
 struct MixedImpedanceFit {
     MixedImpedance model;
     MixedImpedance deviation;  ///< standard error of each parameter; of a given alpha 0
-    double errorDb = 0.0;      ///< unweighted relative rms error (seed 4.26)
+    double errorDb = 0.0;      ///< unweighted relative rms error [B 4.26]
     /// sum |e|^2/sigma^2, about 1 a line when all but noise is explained; NaN without deviations
     double likelihood = 0.0;
     bool converged = false;

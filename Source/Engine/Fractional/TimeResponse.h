@@ -8,7 +8,7 @@ namespace excursion {
 
 /// Responses in time of a fractional model, at rest before t = 0.
 
-/// The response to a unit step, exact up to rounding: from seed theorem 1 (5.11, 5.13), integrated,
+/// The response to a unit step, exact up to rounding: from [B theorem 1, 5.11, 5.13], integrated,
 ///     y(t) = C t^alpha E_{alpha,alpha+1}(A t^alpha) B + D,
 /// the function of A by its eigenvectors. One p x m matrix a time (s, at least 0).
 /// Throws Error (numerical) when A has not enough eigenvectors for that.

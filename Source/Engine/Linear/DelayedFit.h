@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// A stable model and a delay, fitted together (seed 6.2.4, which names the task, quotes another work for it, and
+/// A stable model and a delay, fitted together ([B 6.2.4], which names the task, quotes another work for it, and
 /// leaves it undone): the channels of a measurement may be apart by part of a sample, and a response to which that
 /// delay is wrongly attributed has no good causal stable model.
 ///     minimize over tau, stable poles, C and D:  sum |w (G exp(-j w tau) - model)|^2

@@ -11,7 +11,7 @@
 
 namespace excursion {
 
-/// Linear identification of a frequency response (seed chapters 4.2 and 4.3.2): starts by subspace and by vector
+/// Linear identification of a frequency response [B 4.2, 4.3.2]: starts by subspace and by vector
 /// fitting, refined to maximum likelihood, the best one kept.
 ///
 /// A continuous-time model is identified by subspace through the bilinear transform, at several warpings, since what
@@ -21,7 +21,7 @@ namespace excursion {
 struct IdentifyOptions {
     int order = 4;
     double sampleRate = 0.0;  ///< Hz; 0: a model of continuous time
-    /// order of differentiation, of models of continuous time: the model is one in lambda = s^alpha (seed 5.3)
+    /// order of differentiation, of models of continuous time: the model is one in lambda = s^alpha [B 5.3]
     double alpha = 1.0;
     bool refine = true;  ///< maximum likelihood after the starts
     /// below the true order, where no start reaches the noise: more of them, also by pruning a larger model
@@ -35,7 +35,7 @@ struct IdentifyOptions {
 struct LinearIdentification {
     StateSpace model;
     double cost = 0.0;     ///< weighted relative squared error, as PartialFractionFit::cost
-    double errorDb = 0.0;  ///< unweighted relative rms error of all entries (seed 4.26)
+    double errorDb = 0.0;  ///< unweighted relative rms error of all entries [B 4.26]
     /// sum of |model - measured|^2 / deviation^2; NaN without deviations. About 1 a value when all but noise is
     /// explained
     double likelihood = 0.0;

@@ -17,7 +17,7 @@ enum class ConeFrom {
     motor      ///< P/(s^2 motor)
 };
 
-/// A loudspeaker as two linear systems in cascade (seed 4.5, which proposes it and goes no further): the motor turns
+/// A loudspeaker as two linear systems in cascade ([B 4.5], which proposes it and goes no further): the motor turns
 /// voltage into displacement, the cone turns the displacement into pressure, or into the acceleration of some point of
 /// it. Each is of lower order than the whole, and the states of the motor are physical ones, so that laws along the
 /// displacement can be put where they belong.
@@ -59,7 +59,7 @@ struct MotorCone {
     StateSpace cone;     ///< continuous time, m/s^2 to the unit of the pressure
     StateSpace cascade;  ///< V to the unit of the pressure, without the delay
 
-    double motorErrorDb = 0.0;  ///< unweighted relative rms errors (seed 4.26): of the displacement,
+    double motorErrorDb = 0.0;  ///< unweighted relative rms errors [B 4.26]: of the displacement,
     double coneErrorDb = 0.0;   ///< of the cone to its response,
     double errorDb = 0.0;       ///< of the cascade to the pressure
     /// as LinearIdentification's, of motor and cascade; NaN without deviations

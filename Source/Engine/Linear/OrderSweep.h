@@ -7,7 +7,7 @@
 
 namespace excursion {
 
-/// Models of several orders on the same data (seed 4.4.2 plots their error against the order), and which one to take.
+/// Models of several orders on the same data ([B 4.4.2] plots their error against the order), and which one to take.
 ///
 /// From the largest order down: besides its own starts each order is offered the next larger model without its least
 /// section, so the error never rises with the order except by what a local minimum hides.

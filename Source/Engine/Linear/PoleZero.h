@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// A model with one input and one output as gain, poles and zeros (seed 6.1.2):
+/// A model with one input and one output as gain, poles and zeros [B 6.1.2]:
 ///     G = gain prod_k (lambda - zero_k) / prod_l (lambda - pole_l)
 /// with lambda = z - 1 in discrete time, s in continuous time (see Response.h): poles and zeros are kept as their
 /// distance from z = 1, which tells low frequencies apart. Both lists are closed under conjugation, partners next to

@@ -8,21 +8,21 @@
 
 namespace excursion {
 
-/// Smaller models by editing poles and zeros, each edit with a bound of what it does to the response (seed 6.1.2
-/// and 6.1.3).
+/// Smaller models by editing poles and zeros, each edit with a bound of what it does to the response [B 6.1.2,
+/// 6.1.3].
 ///
 /// Remote poles and zeros. |e^jw - r| of a root r lies between least = |1 - |r|| and most = 1 + |r| on the circle, so
 /// leaving it out changes the gain by no more than a ripple, peak to peak, of
-///     20 log10(most / least)                                        (eq. 6.2)
-/// Here least and most are taken over the band alone, which is the seed's for the whole circle, and gives continuous
+///     20 log10(most / least)                                        [B eq. 6.2]
+/// Here least and most are taken over the band alone, which [B eq. 6.2] has for the whole circle, and gives continuous
 /// time a meaning, where no root is remote from all of the axis. What is left out is the factor 1 - r/z (|r| < 1) or 1
-/// - z/r, so the gain stays; z itself is a sample of delay, which the result tells and the seed calls a phase that is
+/// - z/r, so the gain stays; z itself is a sample of delay, which the result tells and [B 6.1.2] calls a phase that is
 /// to be verified case by case.
 ///
 /// Pairs of a pole p and a zero q that nearly cancel: their factor is 1 + eps(w),
-///     |eps| <= eps_sup = |p - q| / least(p)                         (eq. 6.7)
-///     ripple <= 20 log10((1 + eps_sup) / (1 - eps_sup))             (eq. 6.9)
-/// The angle is bounded by asin(eps_sup); the seed's (6.10) prints the arc tangent, which is a little less than what
+///     |eps| <= eps_sup = |p - q| / least(p)                         [B 6.7]
+///     ripple <= 20 log10((1 + eps_sup) / (1 - eps_sup))             [B 6.9]
+/// The angle is bounded by asin(eps_sup); [B 6.10] prints the arc tangent, which is a little less than what
 /// can happen.
 ///
 /// Conjugates go together, their ripples added. The relative change of the complex response, delay apart, is bounded,
@@ -37,7 +37,7 @@ struct PoleZeroReductionOptions {
     bool remote = true, pairs = true;  ///< which kinds to use
     /// Hz, the band that counts; both 0: up to half the sample rate. Continuous time needs one
     double low = 0.0, high = 0.0;
-    /// order of differentiation: the model is one in lambda = s^alpha, seen on (j w)^alpha (seed 6.2.6)
+    /// order of differentiation: the model is one in lambda = s^alpha, seen on (j w)^alpha [B 6.2.6]
     double alpha = 1.0;
 
     bool isValid(std::string* reason = nullptr) const;

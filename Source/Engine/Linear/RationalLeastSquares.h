@@ -5,8 +5,8 @@
 
 namespace excursion {
 
-/// Fits of a quotient of polynomials N/D by linear least squares: the classical ways, here for comparison (the
-/// seed's 4.4.2 has Levy's as "complex LS", MATLAB's invfreqz), not as estimators.
+/// Fits of a quotient of polynomials N/D by linear least squares: the classical ways, here for comparison ([B 4.4.2]
+/// has Levy's as "complex LS", MATLAB's invfreqz), not as estimators.
 ///     Levy (1959)                   minimize sum |w (N - G D)|^2: the error counts |D|^2 as much as it should, most
 ///         where D is large
 ///     Sanathanan & Koerner (1963)   again, divided by the |D| found before, until D stays; with noise its limit is

@@ -8,9 +8,9 @@
 
 namespace excursion {
 
-/// Smaller models in place of large ones (seed 6.1).
+/// Smaller models in place of large ones [B 6.1].
 
-/// A model whose states are as well reached as they are seen: both Gramians are diag(sigma) (seed 6.11 to 6.21), sigma
+/// A model whose states are as well reached as they are seen: both Gramians are diag(sigma) [B 6.11 to 6.21], sigma
 /// descending.
 struct Balanced {
     StateSpace model;
@@ -24,13 +24,13 @@ struct Balanced {
 Balanced balanced(const StateSpace&);
 
 enum class Truncation {
-    /// the states with small sigma are left out (seed's method 1): exact at infinite frequency, or z = infinity
+    /// the states with small sigma are left out (method 1 of [B 6.1.4]): exact at infinite frequency, or z = infinity
     direct,
-    singularPerturbation  ///< they are taken as settled at once (its method 2): exact at frequency 0
+    singularPerturbation  ///< they are taken as settled at once (method 2): exact at frequency 0
 };
 
 /// The first `order` states of a balanced model; fewer where it has no more. |G - G_reduced| <= 2 (sigma_{order+1} + ..
-/// + sigma_n) at every frequency. Singular perturbation in discrete time settles x2 = A21 x1 + A22 x2 + B2 u; the seed
+/// + sigma_n) at every frequency. Singular perturbation in discrete time settles x2 = A21 x1 + A22 x2 + B2 u; [B 6.23]
 /// prints A22^-1 where (I - A22)^-1 is meant, and leaves out what D gains, C2 (I - A22)^-1 B2.
 StateSpace truncated(const Balanced&, Eigen::Index order, Truncation);
 

@@ -37,7 +37,7 @@ std::vector<Eigen::MatrixXcd> respond(const StateSpace&, const std::vector<doubl
 /// The response of one input and output, as an Frf without variances.
 Frf frfOf(const StateSpace&, const std::vector<double>& frequency, Eigen::Index output = 0, Eigen::Index input = 0);
 
-/// 20 log10(|model - measured| / |measured|), rms over the lines of the Frf (seed 4.26).
+/// 20 log10(|model - measured| / |measured|), rms over the lines of the Frf [B 4.26].
 double relativeErrorDb(const Frf& measured, const Frf& model);
 
 }  // namespace excursion

@@ -6,7 +6,7 @@
 namespace excursion {
 
 /// Where a pole or zero lies beside the points that a response is taken at: an arc of the unit circle and its
-/// conjugate, or (+-j w)^alpha, which lie on the two rays at angles +-alpha pi/2 (seed figure 6.9) and for alpha = 1 on
+/// conjugate, or (+-j w)^alpha, which lie on the two rays at angles +-alpha pi/2 [B figure 6.9] and for alpha = 1 on
 /// one axis. Roots are lambda, see PoleZero.h; frequencies are in Hz.
 
 /// The least and the largest distance to the points of a band.

@@ -38,7 +38,7 @@ Sections sectionsOf(const std::vector<std::complex<double>>& poles, double sampl
 std::vector<std::complex<double>> poles(const Sections&);
 
 /// All roots within the stable region: the unit circle, the left half-plane, or outside of the sector |arg| <= alpha
-/// pi/2 (Matignon 1996; seed 5.18).
+/// pi/2 (Matignon 1996) [B 5.18].
 bool isStable(const Sections&);
 
 /// Unstable roots mirrored: 1/conj(z), -conj(s), or at the border of the sector, but no further than the middle of what

@@ -12,25 +12,24 @@
 
 namespace excursion {
 
-/// Stable models in place of unstable ones (seed 6.2). A loudspeaker is stable, but noise and nonlinearity can put
+/// Stable models in place of unstable ones [B 6.2]. A loudspeaker is stable, but noise and nonlinearity can put
 /// poles of an unconstrained fit outside (6.2.1).
 
-/// The model times an all-pass that moves each unstable pole to its mirror image 1/conj(p) or -conj(p) (seed eqs 6.24
-/// to 6.28). Zeros stay where they are, and so do the magnitudes of all responses: of a model with no more inputs than
+/// The model times an all-pass that moves each unstable pole to its mirror image 1/conj(p) or -conj(p) [B 6.24
+/// to 6.28]. Zeros stay where they are, and so do the magnitudes of all responses: of a model with no more inputs than
 /// outputs G M with M M^H = I on the frequency axis, which keeps every magnitude where there is one input; else M G,
 /// which does so where there is one output.
 ///
-/// No poles, zeros and gains, as in the seed's appendix D, whose polynomials lose all digits at high order, but a state
+/// No poles, zeros and gains, as in [B appendix D], whose polynomials lose all digits at high order, but a state
 /// feedback on the unstable part (A, B): with A Y + Y A^T = B B^T, or A Y A^T - Y = B B^T, and X = Y^-1
 ///     continuous  F = -B^T X                          M = (A + B F, B, F, I)
 ///     discrete    F = -(I + B^T X B)^-1 B^T X A       M = (A + B F, B W, F, W),  W = (I + B^T X B)^-1/2
-/// W is the gain |p| by which the seed's (6.27) corrects. Poles on the border have no image: they are pushed out by
-/// 1e-9 first and land as far inside.
-/// Throws as decomposed() does.
+/// Of one pole W is 1/|p|, which undoes the gain that [B 6.27] tells. Poles on the border have no image: they are
+/// pushed out by 1e-9 first and land as far inside. Throws as decomposed() does.
 StateSpace mirroredByAllPass(const StateSpace&);
 
 /// The same in lambda = s^alpha, of models with one input and output: unstable poles are reflected at the border of the
-/// sector, |arg| = theta = alpha pi/2 (seed 6.2.6), as mirrored(Sections) does; zeros and gain stay. There is no
+/// sector, |arg| = theta = alpha pi/2 [B 6.2.6], as mirrored(Sections) does; zeros and gain stay. There is no
 /// all-pass any more: for p = rho e^(j phi), phi in [0, theta], the reflection p' is as far from the upper ray as p
 /// was, but its conjugate is not. That changes the magnitude at lambda = r e^(j theta) by
 ///     |lambda - conj(p)| / |lambda - conj(p')|
@@ -40,11 +39,11 @@ StateSpace mirroredByAllPass(const StateSpace&);
 StateSpace mirroredAtSector(const StateSpace&, double alpha);
 
 /// The causal and stable part of z^-d G: of all stable models with that delay the nearest to the response of z^-d G in
-/// the mean square over the whole axis. With d = 0 it is the stable part alone (seed eq. 6.32); with d samples of delay
+/// the mean square over the whole axis. With d = 0 it is the stable part alone [B 6.32]; with d samples of delay
 /// the response that the unstable part has ahead of time,
 ///     C (zI - A)^-1 B = -sum_{k>=0} z^k C A^-(k+1) B,
-/// comes in as d + 1 taps, and what is left out falls as |p|^-d (seed 6.2.2 and 6.2.4 name the method, and give no
-/// equation). The seed calls the stable part as such optimal; in discrete time that takes the tap at k = 0, -C A^-1 B,
+/// comes in as d + 1 taps, and what is left out falls as |p|^-d ([B 6.2.2 and 6.2.4] name the method, and give no
+/// equation). [B 5.1.3] calls the stable part as such optimal; in discrete time that takes the tap at k = 0, -C A^-1 B,
 /// which belongs into D.
 /// @param delay  samples; has to be 0 in continuous time, where no finite order shifts a response
 StateSpace stableProjection(const StateSpace&, Eigen::Index delay = 0);
@@ -73,7 +72,7 @@ struct StabilizationStep {
     std::string what;  ///< "as it came", "mirrored", "projected", "delayed", "stable part", "refitted"
     Eigen::Index order = 0;
     bool stable = false;
-    double errorDb = 0.0;          ///< unweighted relative rms error to the response (seed 4.26)
+    double errorDb = 0.0;          ///< unweighted relative rms error to the response [B 4.26]
     double weightedErrorDb = 0.0;  ///< 10 log10 of PartialFractionFit::cost
 };
 

@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// A linear state-space model (seed 4.2.1) with n states, m inputs and p outputs.
+/// A linear state-space model [B 4.2.1] with n states, m inputs and p outputs.
 ///     discrete time    x(t+1) = A x(t) + B u(t),  y(t) = C x(t) + D u(t),  t counts samples
 ///     continuous time  dx/dt  = A x + B u,        y = C x + D u,           time in seconds
 /// A is n x n, B n x m, C p x n, D p x m; n may be 0. Inputs and outputs are in SI units, states in whatever basis.

@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// Frequency-domain subspace identification (seed 4.2.3 and appendix B; McKelvey, Akcay & Ljung 1996). From
+/// Frequency-domain subspace identification ([B 4.2.3 and appendix B]; McKelvey, Akcay & Ljung 1996). From
 ///     p_i(z_k) G_k = C p_i(A) (z_k I - A)^-1 B + (a polynomial of degree i - 1 in z_k)
 /// for i = 0 .. q-1, the second term is projected out; what is left has the range of the extended observability matrix
 /// [C p_0(A); ..; C p_{q-1}(A)], whose shift property is the recurrence of the p_i and yields A.
@@ -24,8 +24,8 @@ struct ObservabilityRange {
 };
 
 /// Algorithm 2: any grid, weighted by the variance. The lines are divided by their deviation and the p_i made
-/// orthonormal under those weights, so the projected noise is white by construction and needs no further weighting (the
-/// seed takes a Cholesky factor there).
+/// orthonormal under those weights, so the projected noise is white by construction and needs no further weighting
+/// ([B 4.2.3] takes the square root of a covariance matrix there).
 /// @param data  frequencies up to sampleRate / 2
 /// @param q     block rows, above order; fewer come out where the lines do not carry so many. Far more than the order
 /// cost little and

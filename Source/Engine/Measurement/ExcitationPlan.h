@@ -19,7 +19,7 @@ struct ExcitationPlanOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// What is to be played, in V, and what it is (seed appendix A, `Excitation_signal`, for several levels).
+/// What is to be played, in V, and what it is ([B appendix A], `Excitation_signal`, for several levels).
 /// Realization m has the same phases at all levels, so that levels can be compared line by line.
 /// The result is a take of one voltage channel, the take that an ideal amplifier and sensor would give;
 /// its full scale is the smallest power of two above the peak.

@@ -7,7 +7,7 @@
 namespace excursion {
 
 /// A frequency response function G = output/input on a grid of frequencies, with its sample variances
-/// (seed 4.2.2 and appendix A). Variances are of the complex estimate: E|G - E G|^2. All vectors that
+/// [B 4.2.2, appendix A]. Variances are of the complex estimate: E|G - E G|^2. All vectors that
 /// are not empty have the same length.
 struct Frf {
     std::vector<double> frequency;            ///< Hz, ascending, never 0

@@ -10,7 +10,7 @@
 
 namespace excursion {
 
-/// The steady state of a periodic excitation (seed 4.2.2; Pintelon & Schoukens 2012, 2.5): the settling periods are
+/// The steady state of a periodic excitation ([B 4.2.2]; Pintelon & Schoukens 2012, 2.5): the settling periods are
 /// dropped, the others repeat but for noise. Spectra are unnormalized DFTs of one period (Fft.h), lines
 /// k = 0 .. period/2 at k * sampleRate / period Hz.
 

@@ -34,7 +34,7 @@ int segmentFor(std::size_t length, int count, int longest = 8192, int shortest =
 /// their mean removed. Spectra are one-sided densities in unit^2/Hz on lines 1 .. segment/2 - 1.
 ///     G = Syu / Suu                   (H1: no noise on the input)
 ///     gamma^2 = |Syu|^2 / (Suu Syy)
-///     Snn = (1 - gamma^2) Syy n / (n - 1)    the non-coherent output power of seed 2.3: noise and added distortion
+///     Snn = (1 - gamma^2) Syy n / (n - 1)    the non-coherent output power of [B 2.3]: noise and added distortion
 ///     var(G) = |G|^2 (1 - gamma^2) / (gamma^2 n), n being the effective number of independent averages
 /// n/(n-1) makes Snn unbiased: n averages explain 1/n of pure noise by chance.
 struct WelchResult {

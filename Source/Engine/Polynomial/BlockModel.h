@@ -19,9 +19,9 @@ enum class BlockBranch {
 std::string_view name(BlockBranch);  ///< "hammerstein", "wiener", "feedback"
 std::vector<BlockBranch> blockBranches();
 
-/// The generic block model of seed 4.1.1 (figure 4.2), of one input and one output, in discrete time:
+/// The generic block model of [B 4.1.1, figure 4.2], of one input and one output, in discrete time:
 ///     w = G[u],   y = y0 + w + P_W(w) + G[P_H(u) + P_F(w)],   P(v) = c_2 v^2 + c_3 v^3 + ..
-/// with the same linear G in all branches. The gain c of the seed's linear branch is 1 here: it is the same model with
+/// with the same linear G in all branches. The gain c of the linear branch there is 1 here: it is the same model with
 /// G, c_k other by powers of c. No branch closes a loop, so the model is stable where G is. It is a PNLSS model with
 /// two copies of G's states.
 struct BlockModel {

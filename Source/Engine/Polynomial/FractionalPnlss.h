@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// A polynomial state-space model of fractional order (seed 7.1, 7.2), in continuous time:
+/// A polynomial state-space model of fractional order [B 7.1, 7.2], in continuous time:
 ///     D^a_i zeta_i = (A zeta + B u + E p(zeta, u))_i,   y = C zeta + D u + F p(zeta, u)
 /// where some states have the order a_i = alpha, 0 < alpha < 1, and the others 1. So the same model carries a
 /// loudspeaker's semi-inductance and its nonlinearities: D x = v, D v = .., D^alpha i = .. .

@@ -21,7 +21,7 @@ struct FractionalPnlssFit {
     FractionalPnlss model;
     /// standard error of alpha, what is left taken for white noise; 0 where alpha was given
     double alphaDeviation = 0.0;
-    /// relative rms error (seed 4.26) of the model that is returned; validation NaN without records
+    /// relative rms error [B 4.26] of the model that is returned; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
     int iterations = 0;
     bool converged = false;
@@ -33,7 +33,7 @@ struct FractionalPnlssFit {
 /// As relativeErrorDb() of a PNLSS model, on a grid.
 double relativeErrorDb(const FractionalPnlss&, const FractionalGrid&, const std::vector<PnlssRecord>&);
 
-/// Identification of the fractional polynomial model in the time domain, which the seed leaves to the future (7.2): the
+/// Identification of the fractional polynomial model in the time domain, which [B 7.2] leaves to the future: the
 /// simulation error of the ladder realization is lowered as that of a PNLSS model is (see fitPnlss), with the exact
 /// Jacobian, by alpha too. Records start from rest; `skip` lets the transient die. Where there are validation records
 /// the model with the least error on them is returned. Throws Error (usage, data) for options, a model or records that

@@ -21,7 +21,7 @@ struct HammersteinFitOptions {
 struct HammersteinFit {
     ParallelHammerstein model;
     double regularization = 0.0;  ///< r that was taken
-    /// relative rms error (seed 4.26); validation NaN without records
+    /// relative rms error [B 4.26]; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
     std::string reason = "the fit was not run";
 };

@@ -50,7 +50,7 @@ Eigen::MatrixXcd branchResponses(const HarmonicResponses&, double peak);
 
 struct HammersteinSweepFit {
     ParallelHammerstein model;
-    /// relative rms error (seed 4.26) while the sweep runs where all branches are known; means removed
+    /// relative rms error [B 4.26] while the sweep runs where all branches are known; means removed
     double estimationDb = 0.0;
     std::string reason = "the model was not identified";
 };

@@ -8,10 +8,10 @@
 
 namespace excursion {
 
-/// Exponents of monomials in z = (x_1 .. x_n, u_1 .. u_m), one row each: row a is z_1^a1 z_2^a2 ... (seed 4.4 to 4.8).
+/// Exponents of monomials in z = (x_1 .. x_n, u_1 .. u_m), one row each: row a is z_1^a1 z_2^a2 ... [B 4.4 to 4.8].
 using Exponents = Eigen::MatrixXi;
 
-/// All monomials of degree lowest .. highest in `variables` variables, graded, then lexicographic (seed 4.6):
+/// All monomials of degree lowest .. highest in `variables` variables, graded, then lexicographic [B 4.6]:
 /// z1^2, z1 z2, z2^2, z1^3, z1^2 z2, z1 z2^2, z2^3 for 2 variables and degrees 2 .. 3.
 /// Throws Error (usage) for degrees below 1 or in the wrong order, or more than a million monomials.
 Exponents monomials(int variables, int lowest, int highest);

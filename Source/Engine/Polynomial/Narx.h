@@ -7,7 +7,7 @@
 
 namespace excursion {
 
-/// A polynomial NARX model of one input and one output (seed 3.2, without its noise model; Billings 2013), in discrete
+/// A polynomial NARX model of one input and one output ([B 3.2], without its noise model; Billings 2013), in discrete
 /// time:
 ///     y(t) = sum_k c_k m_k(y(t-1) .. y(t-na), u(t-1) .. u(t-nb), u(t))
 /// with monomials m_k of any degree, 0 (a constant) and 1 among them. Its past outputs are its own: a simulation, not a

@@ -35,7 +35,7 @@ struct NarxFit {
     Narx model;
     /// in the order in which terms were chosen; the model has the first of them
     std::vector<NarxStep> steps;
-    /// relative rms error of a simulation (seed 4.26); validation NaN without records
+    /// relative rms error of a simulation [B 4.26]; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
     int iterations = 0;      ///< of the refinement that gave the model
     bool converged = false;  ///< the same

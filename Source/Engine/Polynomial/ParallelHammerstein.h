@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// A parallel Hammerstein model of one input and one output (seed 3.3; Novak, Lotton & Simon 2015), in discrete time:
+/// A parallel Hammerstein model of one input and one output ([B 3.3]; Novak, Lotton & Simon 2015), in discrete time:
 ///     y(t) = y0 + sum_{n=1..N} sum_{k=0..K-1} g_n(k) u(t - k)^n
 /// Branch n filters the n-th power of the input by a finite impulse response, so the model is stable whatever its
 /// coefficients. It is the Volterra series whose kernels are zero off their diagonals, and knows no feedback: of a

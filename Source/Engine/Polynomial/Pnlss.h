@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// A polynomial nonlinear state-space model (seed 4.3; Paduart et al. 2010), in discrete time:
+/// A polynomial nonlinear state-space model [B eq. 4.3] (Paduart et al. 2010), in discrete time:
 ///     x(t+1) = A x(t) + B u(t) + E p(x(t), u(t)),  y(t) = C x(t) + D u(t) + F p(x(t), u(t))
 /// with one vector p of K monomials in (x, u), of degree 2 and above or 0, for both equations: E is n x K, F is p x K.
 /// A monomial that a row does not use has the coefficient 0 and is not `free` there.
@@ -36,7 +36,7 @@ struct Pnlss {
 Pnlss withTerms(const StateSpace&, int degree, TermMask = TermMask::full, bool offset = false);
 
 /// The linear model with a chosen list of monomials, all free in every row, at coefficients of zero: for models of high
-/// order, where even the monomials without cross products are too many (seed 4.4.2), and for terms that physics tells.
+/// order, where even the monomials without cross products are too many [B 4.4.2], and for terms that physics tells.
 /// What a row is not to use is taken out of `free`.
 /// @param chosen  their exponents, K x (n + m), of degree 2 and above, or one row of zeros for an offset; in this order
 /// Throws Error (usage) when the model is continuous, and for a list with another number of columns, negative

@@ -45,7 +45,7 @@ struct PnlssFitOptions {
 struct PnlssFit {
     Pnlss model;
     std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they were estimated
-    /// relative rms error (seed 4.26), of the model that is returned; validation NaN without records
+    /// relative rms error [B 4.26], of the model that is returned; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
     int iterations = 0;  ///< of all ways
     bool converged = false;
@@ -60,11 +60,11 @@ struct PnlssFit {
 double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
                        const std::vector<Eigen::VectorXd>& initialStates = {});
 
-/// Levenberg-Marquardt on the simulation error (seed 4.3.1 and appendix C), columns scaled to unit length, singular
+/// Levenberg-Marquardt on the simulation error [B 4.3.1, appendix C], columns scaled to unit length, singular
 /// values truncated, steps bent along the error's valleys (see Search.h).
 ///
 /// Only the triangular factor of [J, r] is kept, gathered block by block by orthogonal transformations, so memory stays
-/// bounded and no condition number is squared: what the seed loses to its normal equations. A step that lets a
+/// bounded and no condition number is squared: what [B] loses to its normal equations. A step that lets a
 /// simulation run away is refused. Where there are validation records the model with the least error on them is
 /// returned.
 ///

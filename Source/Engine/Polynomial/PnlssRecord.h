@@ -58,7 +58,7 @@ double judgedPower(const std::vector<PnlssRecord>&);
 void foldJudged(TallQr&, const PnlssRecord&, Eigen::Index first, const Eigen::MatrixXd& derivatives,
                 const Eigen::VectorXd& error);
 
-/// 20 log10(|modelled - measured| / |measured|) over all records, samples after `skip` (seed 4.26); +infinity where the
+/// 20 log10(|modelled - measured| / |measured|) over all records, samples after `skip` [B 4.26]; +infinity where the
 /// model ran away, NaN without records.
 /// @param modelled  one a record, N x p
 double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<PnlssRecord>&);

@@ -14,7 +14,7 @@ namespace excursion {
 /// The recursion of a PNLSS model and of its derivatives, compiled once for a structure and run often: by every step of
 /// a fit.
 ///
-/// The sensitivities X = dx/dtheta obey a linear recursion that varies in time (seed 4.22):
+/// The sensitivities X = dx/dtheta obey a linear recursion that varies in time [B 4.22]:
 ///     X(t+1) = M(t) X(t) + e_i r_j(t),  dy/dtheta = G(t) X(t) [+ e_o r_j(t)],   M = A + E dp/dx,  G = C + F dp/dx
 /// where a parameter is the coefficient of regressor r_j, r = (x, u, p), in row i of the state or row o of the output
 /// equation. M and G are computed for a block of time steps at once, vectorized along time, from products that

@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// A Volterra series of one input and one output to order 3 with finite memory (seed 3.2), in discrete time:
+/// A Volterra series of one input and one output to order 3 with finite memory [B 3.2], in discrete time:
 ///     y(t) = h0 + sum_i h1(i) u(t-i) + sum_ij h2(i,j) u(t-i) u(t-j) + sum_ijk h3(i,j,k) u(t-i) u(t-j) u(t-k)
 /// with symmetric kernels. It has no feedback, so it is stable whatever its coefficients.
 struct VolterraSeries {

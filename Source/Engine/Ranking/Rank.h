@@ -27,7 +27,7 @@ struct RankedModel {
     std::string name;           ///< of modelClasses()
     std::string description;    ///< "order 3, degree 3", "Bl(x), K(x)"
     int parameters = 0;         ///< that the fit moved
-    double estimationDb = 0.0;  ///< relative rms error of a simulation (seed 4.26); +infinity: it ran away
+    double estimationDb = 0.0;  ///< relative rms error of a simulation [B 4.26]; +infinity: it ran away
     double validationDb = 0.0;  ///< the same; NaN without validation records
     /// core time to simulate over the signal's length; the physical driver's run with half the step, which tells its
     /// accuracy, included

@@ -17,7 +17,7 @@ struct TaylorOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// The physical driver as a polynomial state-space model in continuous time (seed 4.12): dz/dt = A z + B u + E p(z, u),
+/// The physical driver as a polynomial state-space model in continuous time [B 4.12]: dz/dt = A z + B u + E p(z, u),
 /// y = C z + D u + F p(z, u), the states those of Dynamics, z = (i, x, v, memories of the effects), all of order 1.
 ///
 /// The equations of any model of the catalogue are affine in the input and in the memories: dz/dt = f_0(w) + sum_a

@@ -27,7 +27,7 @@ struct DelayEstimate {
 };
 
 /// The delay of `output` against `input`, to a small part of a sample.
-/// First the peak of the magnitude of the analytic impulse response (seed appendix A, `IOdelay`), then
+/// First the peak of the magnitude of the analytic impulse response ([B appendix A], `IOdelay`), then
 /// weighted least squares of the slope of the phase that is left,
 ///     arg(S_yu(w_k) exp(j w_k d)) = -w_k (delay - d),  weights |S_yu|^2 / S_uu,
 /// which are the inverse variances of the phases when the noise of the output is white. What is not

@@ -21,7 +21,7 @@ struct ExponentialSweepOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// A synchronized exponential sweep (Novak, Lotton & Simon 2015; seed 3.3 has Farina's, which is not synchronized)
+/// A synchronized exponential sweep (Novak, Lotton & Simon 2015; [B 3.3] has Farina's, which is not synchronized)
 ///     x(t) = a sin(2 pi f1 L exp(t/L)),  0 <= t < T = L ln(f2/f1),  instantaneous frequency f1 exp(t/L),
 /// with f1 L whole. Then the m-th harmonic is the sweep itself, earlier by L ln m, whatever m: sin(m phi(t)) = x(t + L
 /// ln m) / a, so harmonics are told apart in time and keep their phases.

@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// Which DFT lines k of one period may be excited (seed appendix A, `multisine`).
+/// Which DFT lines k of one period may be excited ([B appendix A], `multisine`).
 enum class Grid {
     full,       ///< every k
     odd,        ///< k = 1, 3, 5, ...

@@ -14,7 +14,7 @@ namespace excursion {
 namespace {
 
 /// Currents in the iron, Z(s) = sum_k R_k s/(s + p_k) with R_k > 0: resistors in parallel with inductors, as any set of
-/// passive loops that couple to the coil. Beforehand it is a semi-inductance Z(s) = K s^a (seed chapter 5). From
+/// passive loops that couple to the coil. Beforehand it is a semi-inductance Z(s) = K s^a [B 5]. From
 ///     s^a = (sin(pi a)/pi) int_0^inf p^(a-1) s/(s + p) dp,     0 < a < 1,
 /// the trapezoidal rule in log p gives one resistor in parallel with one inductor per cell,
 ///     R_k s/(s + p_k),   R_k = K (sin(pi a)/pi) p_k^a ln q,   p_k = p_0 q^k,
