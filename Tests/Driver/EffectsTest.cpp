@@ -121,6 +121,44 @@ TEST_CASE("The reluctance force is the slope of the coenergy 1/2 i^2 L(x)", "[ef
     }
 }
 
+TEST_CASE("Loops that the coil moves against take from terminals and cone what they store and lose", "[effects]")
+{
+    // u i - F v = d/dt (c i^2/2 + sum L_n (h_n^2 - j_n^2)/2) + sum L_n ((dh_n/dt)^2 - (dj_n/dt)^2)/p_n, where the
+    // current stands still; L_n and p_n are asked of the effect: a loop alone is heard as L_n dh_n/dt at rest.
+    Alone alone(effectNamed("inductance-position"));
+    const auto names = alone.effect.parameters(alone.extent);
+    std::vector<std::size_t> loops;
+    for (std::size_t p = 0; p < names.size(); ++p)
+        if (names[p].name.front() == 'g')
+            loops.push_back(p);
+    REQUIRE(loops.size() * 2 == alone.rest().size());
+    std::vector<double> L, rate;
+    for (std::size_t n = 0; n < loops.size(); ++n) {
+        alone.parameters[loops[n]] = 0.2 + 0.3 * static_cast<double>(n);
+        L.push_back(alone.parameters[loops[n]] * alone.extent.scale);
+        auto memory = alone.rest(), moved = alone.rest();
+        memory[2 * n] = 1.0;
+        alone.at(0.0, 0.0, 0.0, memory, &moved);
+        rate.push_back(-moved[2 * n]);
+    }
+    alone.prepare();
+    std::vector<double> memory(alone.rest().size()), moved(memory.size());
+    for (std::size_t k = 0; k < memory.size(); ++k)
+        memory[k] = std::sin(1.0 + 3.0 * static_cast<double>(k));
+    for (const auto& [i, x, v] : somePoints(alone.extent)) {
+        const auto sum = alone.at(i, x, v, memory, &moved);
+        const double dx = 1e-4 * alone.extent.displacement;
+        const double cSlope = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance) / (2.0 * dx);
+        double balance = 0.5 * cSlope * v * i * i;
+        for (std::size_t n = 0; n < loops.size(); ++n) {
+            const double h = memory[2 * n], j = memory[2 * n + 1], hRate = moved[2 * n], jRate = moved[2 * n + 1];
+            balance += L[n] * (h * hRate - j * jRate + (hRate * hRate - jRate * jRate) / rate[n]);
+        }
+        const double given = i * (sum.drop + sum.fluxSlope * v) - sum.force * v;
+        CHECK(given == Approx(balance).epsilon(1e-5).margin(1e-9));
+    }
+}
+
 TEST_CASE("The force factor converts without loss: force times velocity is voltage times current", "[effects]")
 {
     const Alone alone(effectNamed("force-factor"));

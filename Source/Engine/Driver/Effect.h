@@ -168,8 +168,6 @@ public:
     /// affine in it.
     virtual bool slow() const { return false; }
     virtual bool relaxes() const { return false; }  ///< yields in the course of time
-    /// No parameter moves the memory: what a motion leaves in it is known before any fit.
-    virtual bool remembersMotionAlone() const { return false; }
     virtual int coefficientCount(const Extent&) const = 0;
 
     /// Turns parameters into coefficients: all that depends on the parameters alone, once a run.

@@ -119,14 +119,6 @@ LawHistories lawHistories(const Model& model, const Record& record, const std::v
     return histories;
 }
 
-void rememberMotion(const Model& model, const Section& section, double sampleRate, ShownMotion& motion)
-{
-    for (const auto& component : model.components)
-        if (isLaw(component) && component.effect->remembersMotionAlone())
-            motion.memories[component.effect->id()] = memoryAlong(
-                component, motion, startOf(component, section, motion, sampleRate), sampleRate);
-}
-
 Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion,
          const LawHistories& histories, std::size_t place, const std::vector<std::vector<bool>>& wanted)
 {
@@ -137,10 +129,7 @@ Fed feed(const Model& model, const Record& record, const Section& section, const
         const auto& law = model.components[k];
         if (!isLaw(law))
             continue;
-        const auto start = law.effect->slow() ? histories[k][place]
-                           : motion.memories.contains(law.effect->id())
-                               ? atRest(law)
-                               : startOf(law, section, motion, record.sampleRate);
+        const auto start = law.effect->slow() ? histories[k][place] : startOf(law, section, motion, record.sampleRate);
         auto drive = driveOf(law, motion, start, record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
         for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
             if (model.electrical())

@@ -37,11 +37,7 @@ using LawHistories = std::vector<std::vector<MemoryStart>>;
 LawHistories lawHistories(const Model&, const Record&, const std::vector<std::size_t>& sections,
                           const std::vector<ShownMotion>&, bool withGradient);
 
-/// Adds to the motion of a section the memories of laws that no parameter moves.
-void rememberMotion(const Model&, const Section&, double sampleRate, ShownMotion&);
-
-/// The laws of a model, fed the motion of a section. A memory that is neither slow nor held by the motion is settled
-/// there.
+/// The laws of a model, fed the motion of a section. A memory that is not slow is settled there.
 /// @param place   of the section among those of `histories`
 /// @param wanted  by component, parameters to differentiate by; empty: none
 Fed feed(const Model&, const Record&, const Section&, const ShownMotion&, const LawHistories&, std::size_t place,

@@ -125,21 +125,15 @@ Answers<T> ask(const Component& law, const std::vector<T>& parameters, const Sho
     Answers<T> answers;
     answers.voltage.reserve(length / fine);
     answers.force.reserve(length / fine);
-    const auto known = motion.memories.find(law.effect->id());
-    if (size > 0 && known == motion.memories.end()) {
+    if (size > 0) {
         follow(along, start, length, steps, sampleRate,
                [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory, const std::vector<T>& rate) {
                    along.answer(n, sum, memory.data(), rate.data(), answers);
                });
         return answers;
     }
-    std::vector<T> memory(size), rate(size);
-    for (std::size_t n = 0; n < length; n += fine) {
-        for (std::size_t k = 0; k < size; ++k)
-            memory[k] = T(known->second[n / fine * size + k]);
-        const auto sum = along.ask(static_cast<double>(n), memory.data(), rate.data());
-        along.answer(n, sum, memory.data(), rate.data(), answers);
-    }
+    for (std::size_t n = 0; n < length; n += fine)
+        along.answer(n, along.ask(static_cast<double>(n), nullptr, nullptr), nullptr, nullptr, answers);
     return answers;
 }
 
@@ -153,25 +147,12 @@ std::vector<double> series(const std::vector<T>& samples, const Read& read)
 
 }  // namespace
 
-std::vector<double> memoryAlong(const Component& law, const ShownMotion& motion, const MemoryStart& start,
-                                double sampleRate)
-{
-    std::vector<double> track;
-    track.reserve(motion.i.size() / fine * static_cast<std::size_t>(start.value.size()));
-    follow(Along<double>(law, valuesOf(law), motion), {start.value.begin(), start.value.end()}, motion.i.size(),
-           stepsFor(law, motion, sampleRate), sampleRate,
-           [&](std::size_t, const Balance<double>&, const std::vector<double>& memory, const std::vector<double>&) {
-               track.insert(track.end(), memory.begin(), memory.end());
-           });
-    return track;
-}
-
 LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate,
                  const std::vector<bool>& wanted)
 {
     const auto count = law.parameters.size();
     const auto size = static_cast<std::size_t>(start.value.size());
-    const int steps = size > 0 && !motion.memories.contains(law.effect->id()) ? stepsFor(law, motion, sampleRate) : 1;
+    const int steps = size > 0 ? stepsFor(law, motion, sampleRate) : 1;
     LawDrive drive;
     const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, steps,
                                    sampleRate);

@@ -20,13 +20,8 @@ struct LawDrive {
     std::vector<std::vector<double>> latenessSlopes;
 };
 
-/// The memory of a law along the motion, by the fourth-order Runge-Kutta method: all states of a sample, then those of
-/// the next.
-/// @param start   a quarter of a period before the window
-std::vector<double> memoryAlong(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate);
-
-/// Asks the law, which is no linear effect, along the motion. Its memory is the one that the motion holds for the
-/// effect; where there is none it is followed, and differentiated, from its start.
+/// Asks the law, which is no linear effect, along the motion. Its memory is followed, and differentiated, from its
+/// start by the fourth-order Runge-Kutta method.
 /// @param start      of its memory, a quarter of a period before the window
 /// @param wanted     parameters to differentiate by: one flag each
 LawDrive driveOf(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate,

@@ -5,8 +5,6 @@
 #include "Engine/Driver/Record.h"
 
 #include <complex>
-#include <map>
-#include <string>
 #include <vector>
 
 namespace excursion {
@@ -17,8 +15,6 @@ using Spectrum = std::vector<std::complex<double>>;  ///< unnormalized DFT of a 
 struct ShownMotion {
     static constexpr std::size_t fine = 2;  ///< values a sample of the record
     std::vector<double> i, slope, x, v, a;  ///< A, A/s, m, m/s, m/s^2; `fine` values a sample
-    /// by effect, of those that no parameter moves: all states of a sample, then the next
-    std::map<std::string, std::vector<double>> memories;
 };
 
 /// One value a sample of the motion.

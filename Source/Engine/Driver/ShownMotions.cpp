@@ -43,7 +43,6 @@ ShownMotions shownMotions(const Model& model, const Record& record, const std::v
             expected[q][0] = expected[q][0].real();
         }
         motions[s] = shownMotion(record, section, expected[0], expected[1]);
-        rememberMotion(model, section, record.sampleRate, motions[s]);
         return true;
     });
     return motions;

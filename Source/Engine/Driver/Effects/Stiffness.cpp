@@ -8,12 +8,15 @@
 namespace excursion {
 namespace {
 
-/// K(x) = K + c(x). Where the suspension creeps, what yields lies in series with the spring that is bent, which so is
-/// stretched by
-///     s = x - sum_k w_k q_k,   dq_k/dt = p_k (x - q_k),   w_k >= 0,
-/// and adds the force -c(s) s; the linear part of the yielding is the creep's. Without yields that is -c(x) x. The
-/// rates are 11, 2 and a third of the band's lower end: around the resonance, where a bent spring makes its distortion.
-/// A suspension that hardens goes on hardening beyond the visited range.
+/// K(x) = K + c(x): the force -c(x) x beside that of the base. Where the suspension creeps, what yields lies in series
+/// with the spring that is bent: it takes from the stretch what the force of the whole, K x + ..., makes of it, and so
+/// delays and filters what the bend adds. With the linear yields W of a force K x (the creep's own, of which
+/// sum_k w_k p_k/(s + p_k) is a picture within the band),
+///     s = x - sum_k w_k h_k,   force -c(s) s + K sum_k w_k (h_k - q_k),
+///     dh_k/dt = p_k (x + c(s) s/K - h_k),   dq_k/dt = p_k (x - q_k),   w_k >= 0,
+/// as 1/(1 + K Y) = 1 - W for a compliance Y in series with K. The rates are 11, 2 and a third of the band's lower end:
+/// around the resonance, where a bent spring makes its distortion. A suspension that hardens goes on hardening beyond
+/// the visited range.
 class Stiffness final : public EffectOf<Stiffness> {
 public:
     std::string id() const override { return "stiffness"; }
@@ -52,8 +55,7 @@ public:
         return curve::valueAt(e.degree, p, x, e.displacement)
                + curve::beyond(p[0], e.degree > 1 ? p[1] : 0.0, x, e.displacement);
     }
-    int memorySize(const Extent& e) const override { return e.relaxed ? yields : 0; }
-    bool remembersMotionAlone() const override { return true; }
+    int memorySize(const Extent& e) const override { return e.relaxed ? 2 * yields : 0; }
     int coefficientCount(const Extent& e) const override { return e.degree + 3 + 2 * yields; }
 
     /// The curve's, its two ends', then each yield's rate and weight.
@@ -74,15 +76,23 @@ public:
     template <class T>
     void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
     {
-        T stretch = at.x;
+        const int n = memorySize(e) / 2;
         const T* yield = c + e.degree + 3;
-        for (int k = 0; k < memorySize(e); ++k, yield += 2) {
-            rate[k] = yield[0] * (at.x - memory[k]);
-            stretch -= yield[1] * memory[k];
+        T stretch = at.x, yielded = T(0.0);
+        for (int k = 0; k < n; ++k) {
+            const T &h = memory[k], &q = memory[n + k];
+            stretch -= yield[2 * k + 1] * h;
+            yielded += yield[2 * k + 1] * (h - q);
         }
         const T difference = curve::at(e.degree, c, stretch, e.displacement).value
                              + curve::beyond(c[e.degree + 1], c[e.degree + 2], stretch, e.displacement);
-        sum.force -= difference * stretch;
+        const T bent = difference * stretch;
+        for (int k = 0; k < n; ++k) {
+            const T &h = memory[k], &q = memory[n + k];
+            rate[k] = yield[2 * k] * (at.x + bent / e.scale - h);
+            rate[n + k] = yield[2 * k] * (at.x - q);
+        }
+        sum.force += e.scale * yielded - bent;
     }
 
 private:
