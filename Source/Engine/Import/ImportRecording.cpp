@@ -3,6 +3,7 @@
 
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
+#include "Engine/Import/AssignChannels.h"
 #include "Engine/Measurement/Clipping.h"
 #include "Engine/Measurement/TakeCheck.h"
 #include "Engine/Measurement/WavFile.h"
@@ -17,28 +18,19 @@ namespace {
 
 constexpr double plainLikeness = 0.97;  // of a response to a gain and a delay, from which on it tells the time
 
-/// A channel of a file, and what it holds.
-struct Assigned {
-    std::size_t file = 0, channel = 0;  ///< from 0
-    std::optional<Quantity> quantity;   ///< absent: loopback
-    double factor = 1.0;                ///< quantity at a sample of 1.0
-    std::filesystem::path curve;
-    double referenceFrequency = 1000.0;
-};
-
 struct Source {
     std::filesystem::path path;
     Wav sound;
 };
 
-std::string labelOf(const Assigned& a, const std::vector<Source>& sources)
+std::string labelOf(const AssignedChannel& a, const std::vector<Source>& sources)
 {
     return "channel " + std::to_string(a.channel + 1) + " of '" + sources[a.file].path.string() + "' ("
            + (a.quantity ? std::string(name(*a.quantity)) : std::string("loopback")) + ")";
 }
 
 /// How well a channel tells the time of what was played: the less lies between, the better.
-int trust(const Assigned& a)
+int trust(const AssignedChannel& a)
 {
     if (!a.quantity)
         return 0;
@@ -53,102 +45,20 @@ std::vector<Source> readSources(const RecordingOptions& options)
     std::vector<Source> sources;
     for (const auto& path : options.files)
         sources.push_back({path, readSound(path)});
+    for (const auto& recorded : options.sounds)
+        sources.push_back({recorded.name, recorded.sound});
     return sources;
 }
 
-/// Where a mapping points to. Numbers without a file count through all files.
-Assigned locate(const ChannelMapping& mapping, const std::vector<Source>& sources)
+std::vector<RecordingShape> shapesOf(const std::vector<Source>& sources)
 {
-    const auto refuse = [&](const std::string& why) {
-        throw Error(Error::Kind::usage, "--map " + mapping.text + ": " + why);
-    };
-    Assigned place;
-    place.quantity = mapping.quantity;
-    auto number = static_cast<std::size_t>(mapping.channel - 1);
-    if (!mapping.file.empty()) {
-        std::vector<std::size_t> matching;
-        for (std::size_t f = 0; f < sources.size(); ++f)
-            if (const auto& path = sources[f].path;
-                path == mapping.file || path.filename() == mapping.file || path.stem() == mapping.file)
-                matching.push_back(f);
-        if (matching.size() != 1)
-            refuse(matching.empty()
-                       ? "none of the recordings is '" + mapping.file + "'."
-                       : "more than one of the recordings is '" + mapping.file + "'; give its whole path.");
-        place.file = matching.front();
-    } else {
-        while (place.file + 1 < sources.size() && number >= sources[place.file].sound.channels.size())
-            number -= sources[place.file++].sound.channels.size();
-    }
-    if (number >= sources[place.file].sound.channels.size()) {
-        std::size_t all = 0;
-        for (const auto& source : sources)
-            all += source.sound.channels.size();
-        const bool one = !mapping.file.empty() || sources.size() == 1;
-        refuse((one ? "'" + sources[place.file].path.string() + "' has "
-                          + std::to_string(sources[place.file].sound.channels.size())
-                    : "the recordings have " + std::to_string(all))
-               + " channels; they are counted from 1.");
-    }
-    place.channel = number;
-    return place;
+    std::vector<RecordingShape> shapes;
+    for (const auto& source : sources)
+        shapes.push_back({source.path, source.sound.channels.size()});
+    return shapes;
 }
 
-std::vector<ChannelMapping> mappingsOf(const RecordingOptions& options)
-{
-    if (!options.map.empty())
-        return options.map;
-    std::vector<ChannelMapping> mappings;
-    if (options.calibration)
-        for (const auto& c : options.calibration->channels)
-            if (c.quantity)
-                mappings.push_back(
-                    {"", c.channel, c.quantity, {}, std::to_string(c.channel) + "=" + std::string(name(*c.quantity))});
-    if (mappings.empty())
-        throw Error(Error::Kind::usage, "A recording does not say what its channels hold; give --map, for example "
-                                        "--map 1=voltage:16 --map 2=current:4.");
-    return mappings;
-}
-
-std::vector<Assigned> assign(const RecordingOptions& options, const std::vector<Source>& sources)
-{
-    std::vector<Assigned> assigned;
-    for (const auto& mapping : mappingsOf(options)) {
-        auto place = locate(mapping, sources);
-        for (const auto& other : assigned) {
-            if (other.file == place.file && other.channel == place.channel)
-                throw Error(Error::Kind::usage, "--map " + mapping.text + ": that channel is mapped already.");
-            if (other.quantity == place.quantity && (place.quantity || other.file == place.file))
-                throw Error(Error::Kind::usage, "--map " + mapping.text + ": there is a "
-                                                    + (place.quantity ? std::string(name(*place.quantity)) : "loopback")
-                                                    + " already; a take holds each quantity once.");
-        }
-        if (place.quantity) {
-            int number = static_cast<int>(place.channel) + 1;
-            for (std::size_t f = 0; f < place.file; ++f)
-                number += static_cast<int>(sources[f].sound.channels.size());
-            const auto* calibrated = options.calibration ? options.calibration->find(number) : nullptr;
-            if (!mapping.fullScale && !calibrated)
-                throw Error(
-                    Error::Kind::usage,
-                    "--map " + mapping.text
-                        + ": what a sample of 1.0 stands for is not known; write it behind a colon, for example "
-                        + mapping.text + ":4, or give a --calibration that has channel " + std::to_string(number)
-                        + ".");
-            place.factor = mapping.fullScale
-                               ? *mapping.fullScale
-                               : calibrated->quantityAtFullScale(*place.quantity, options.calibrationFile);
-            if (calibrated && !calibrated->curve.empty()) {
-                place.curve = options.calibration->folder / calibrated->curve;
-                place.referenceFrequency = calibrated->referenceFrequency;
-            }
-        }
-        assigned.push_back(place);
-    }
-    return assigned;
-}
-
-void requireFinite(const std::vector<Assigned>& assigned, const std::vector<Source>& sources)
+void requireFinite(const std::vector<AssignedChannel>& assigned, const std::vector<Source>& sources)
 {
     for (const auto& a : assigned) {
         const auto& x = sources[a.file].sound.channels[a.channel];
@@ -162,7 +72,7 @@ void requireFinite(const std::vector<Assigned>& assigned, const std::vector<Sour
 }
 
 /// Samples that were clipped cannot be seen as such once they are resampled.
-void requireUnclipped(const Assigned& a, const std::vector<Source>& sources, double begin, double end)
+void requireUnclipped(const AssignedChannel& a, const std::vector<Source>& sources, double begin, double end)
 {
     const auto& x = sources[a.file].sound.channels[a.channel];
     const auto size = static_cast<double>(x.size());
@@ -191,14 +101,15 @@ double levelOf(const std::vector<double>& x, const Excitation& e, std::size_t le
 /// Files on the clock of a plan, one take.
 class Assembly {
 public:
-    Assembly(const RecordingOptions& options, const std::vector<Source>& sources, const std::vector<Assigned>& assigned)
+    Assembly(const RecordingOptions& options, const std::vector<Source>& sources,
+             const std::vector<AssignedChannel>& assigned)
         : options_(options), sources_(sources), assigned_(assigned), plan_(*options.plan), periods_(periodsOf(plan_))
     {
     }
 
     ImportedRecording build(const Progress& progress)
     {
-        requireVoltage();
+        requireInput(assigned_, options_.gain);
         result_.take.sampleRate = plan_.sampleRate;
         result_.take.excitation = plan_.excitation;
         result_.take.excitation->lines = periods_.lines;
@@ -223,29 +134,13 @@ private:
     bool recorded(Quantity quantity) const
     {
         return std::any_of(assigned_.begin(), assigned_.end(),
-                           [quantity](const Assigned& a) { return a.quantity == quantity; });
-    }
-
-    void requireVoltage() const
-    {
-        if (!recorded(Quantity::voltage) && !(options_.gain > 0))
-            throw Error(Error::Kind::usage, "None of the channels is the voltage at the loudspeaker; map it, or give "
-                                            "--gain, the volts at the loudspeaker for a "
-                                            "played sample of 1.0, to take the plan's.");
-        if (recorded(Quantity::voltage) && options_.gain > 0)
-            throw Error(Error::Kind::usage,
-                        "The voltage was recorded, so --gain has nothing to say; leave one of them out.");
-        if (std::none_of(assigned_.begin(), assigned_.end(),
-                         [](const Assigned& a) { return a.quantity && *a.quantity != Quantity::voltage; })
-            && !recorded(Quantity::voltage))
-            throw Error(Error::Kind::usage,
-                        "No channel but a loopback is mapped, so there is no take in this recording.");
+                           [quantity](const AssignedChannel& a) { return a.quantity == quantity; });
     }
 
     void align(std::size_t file)
     {
         const auto& source = sources_[file];
-        std::vector<const Assigned*> own;
+        std::vector<const AssignedChannel*> own;
         for (const auto& a : assigned_)
             if (a.file == file)
                 own.push_back(&a);
@@ -285,7 +180,7 @@ private:
 
     /// The time of a file that was told by what a loudspeaker had passed: what physics allows no loudspeaker to delay,
     /// as `check` has it, is taken off.
-    void settleTime(const Assigned& witness, ImportedFile& done)
+    void settleTime(const AssignedChannel& witness, ImportedFile& done)
     {
         auto& alignment = done.alignment;
         const auto& samples = sources_[witness.file].sound.channels[witness.channel];
@@ -389,7 +284,7 @@ private:
         }
     }
 
-    Response responseOf(const Assigned& a, const ImportedFile& done) const
+    Response responseOf(const AssignedChannel& a, const ImportedFile& done) const
     {
         std::vector<ResponseCurve> curves;
         if (done.loopback && done.loopback->curve)
@@ -439,7 +334,7 @@ private:
 
     const RecordingOptions& options_;
     const std::vector<Source>& sources_;
-    const std::vector<Assigned>& assigned_;
+    const std::vector<AssignedChannel>& assigned_;
     const Measurement& plan_;
     PlanPeriods periods_;
     std::vector<std::size_t> used_;
@@ -449,7 +344,7 @@ private:
 
 /// One file as it is: nothing is known of what was played.
 ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<Source>& sources,
-                             const std::vector<Assigned>& assigned)
+                             const std::vector<AssignedChannel>& assigned)
 {
     if (sources.size() > 1)
         throw Error(Error::Kind::usage,
@@ -493,10 +388,10 @@ ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<
 
 ImportedRecording importRecording(const RecordingOptions& options, const Progress& progress)
 {
-    if (options.files.empty())
+    if (options.files.empty() && options.sounds.empty())
         throw Error(Error::Kind::usage, "Give a recording.");
     const auto sources = readSources(options);
-    const auto assigned = assign(options, sources);
+    const auto assigned = assignChannels(options, shapesOf(sources));
     requireFinite(assigned, sources);
     if (!options.plan)
         return asRecorded(options, sources, assigned);
