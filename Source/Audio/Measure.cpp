@@ -184,7 +184,8 @@ Measured measure(System& system, const Device& device, const MeasureOptions& opt
             continue;
         }
         if (ending.kind != Ending::Kind::complete)
-            throw Error(Error::Kind::data, sentenceOf(ending, procedureOptions));
+            throw Error(ending.kind == Ending::Kind::frozen ? Error::Kind::input : Error::Kind::data,
+                        sentenceOf(ending, procedureOptions));
         result.attempts = attempt;
         return result;
     }

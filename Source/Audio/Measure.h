@@ -38,8 +38,8 @@ struct Measured {
 /// Plays and records through a device, and once more, without the rise, where samples were lost on the way. The device
 /// is closed when it returns, or throws
 ///     Error (cancelled) when it was told to stop, after the fade;
-///     Error (data) when a limit was reached, an input clipped, nothing was heard or all inputs froze;
-///     Error (input) when the device does not open, is gone, or loses samples at every attempt.
+///     Error (data) when a limit was reached, an input clipped or nothing was heard;
+///     Error (input) when the device does not open, is gone, all inputs froze, or samples are lost at every attempt.
 Measured measure(System&, const Device&, const MeasureOptions&);
 
 /// What ended a procedure before its end, in a sentence; for all kinds but `complete` and `stopped`.

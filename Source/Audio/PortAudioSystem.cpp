@@ -195,12 +195,18 @@ public:
         const auto* version = Pa_GetVersionInfo();
         auto text = "PortAudio " + std::to_string(version->versionMajor) + "." + std::to_string(version->versionMinor)
                     + "." + std::to_string(version->versionSubMinor);
+        bool jack = false;
         for (int k = 0; k < Pa_GetHostApiCount(); ++k) {
             const auto* api = Pa_GetHostApiInfo(k);
+            jack = jack || api->type == paJACK;
             text += std::string(k == 0 ? ": " : ", ") + shortNameOf(api) + " ("
                     + (api->deviceCount == 0 ? "no" : std::to_string(api->deviceCount)) + " device"
                     + (api->deviceCount == 1 ? ")" : "s)");
         }
+#if __has_include(<pa_jack.h>)
+        if (!jack)
+            text += ", JACK (no server is running)";
+#endif
         return text;
     }
 
