@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Audio/Stream.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 #include "Engine/Document/Words.h"
+#include "Engine/Error.h"
 
 #include <Eigen/Core>
 #include <ceres/version.h>
@@ -143,6 +145,18 @@ std::optional<std::string> presets()
     return firstOf(folders, {"presets"});
 }
 
+/// What `measure` reaches devices through.
+Finding audioBackends()
+{
+    Finding finding {"audio", "audio backends", std::nullopt, ""};
+    try {
+        finding.found = audio::openSystem()->description();
+    } catch (const Error& e) {
+        finding.advice = e.what();
+    }
+    return finding;
+}
+
 std::vector<Finding> examine()
 {
     const std::string plugin = "a build with -DEXCURSION_PLUGIN=ON has it";
@@ -153,10 +167,11 @@ std::vector<Finding> examine()
         {"presets", "factory presets", presets(), "they come with cmake --install; in the sources they are in Presets"},
         {"gnuplot", "gnuplot", program({"gnuplot", "gnuplot.exe"}),
          "for the plots of reports: apt install gnuplot-nox"},
-        {"alsa", "ALSA", sharedLibrary("libasound.so.2"), "for measuring in the app: apt install libasound2"},
-        {"sound-cards", "sound cards", soundCards(), "for measuring in the app: connect an interface with two inputs"},
+        audioBackends(),
+        {"alsa", "ALSA", sharedLibrary("libasound.so.2"), "for measuring: apt install libasound2"},
+        {"sound-cards", "sound cards", soundCards(), "for measuring: connect an interface with two inputs"},
         {"jack", "JACK", sharedLibrary("libjack.so.0"),
-         "optional, for measuring in the app: apt install libjack-jackd2-0"},
+         "optional, for measuring through a JACK server: apt install libjack-jackd2-0"},
         {"app", "app", program({"excursion-app"}), plugin},
         {"vst3", "VST3 plugin", firstOf(pluginFolders("vst3", nullptr), {"Excursion.vst3"}), plugin},
         {"lv2", "LV2 plugin", firstOf(pluginFolders("lv2", "LV2_PATH"), {"Excursion.lv2"}), plugin},

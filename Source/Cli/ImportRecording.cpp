@@ -18,7 +18,6 @@
 #include <filesystem>
 
 namespace excursion::cli {
-namespace {
 
 RecordingOptions recordingOptions(const RecordingArguments& arguments)
 {
@@ -40,6 +39,8 @@ RecordingOptions recordingOptions(const RecordingArguments& arguments)
         options.to = arguments.to;
     return options;
 }
+
+namespace {
 
 /// "starts at 1.234567 s, clock +12.34 ppm (+-0.02)": what was found out about the time of a file.
 std::string timeOf(const ImportedFile& file)
@@ -90,45 +91,51 @@ nlohmann::ordered_json documentOf(const ImportedFile& file, bool aligned)
     return document;
 }
 
-void describe(const ImportedRecording& imported, bool aligned, const std::string& out, Terminal& terminal)
+}  // namespace
+
+void sayImported(const ImportedRecording& imported, bool aligned, const std::string& out, Terminal& terminal)
 {
     const auto& take = imported.take;
     std::vector<std::vector<std::string>> rows;
-    nlohmann::ordered_json channels = nlohmann::ordered_json::array(), files = nlohmann::ordered_json::array();
-    for (const auto& channel : take.channels) {
+    for (const auto& channel : take.channels)
         rows.push_back({std::string(name(channel.quantity)) + (channel.assumed ? " (assumed)" : ""), channel.unit,
                         significant(rmsOf(channel.samples)), significant(peakOf(channel.samples)),
                         significant(channel.fullScale)});
-        channels.push_back({{"quantity", name(channel.quantity)},
-                            {"unit", channel.unit},
-                            {"peak", peakOf(channel.samples)},
-                            {"fullScale", channel.fullScale},
-                            {"assumed", channel.assumed}});
-    }
     for (const auto& file : imported.files) {
         if (aligned)
             terminal.say(wrapped(timeOf(file)));
         if (file.loopback)
             terminal.say(wrapped(loopbackText(*file.loopback)));
-        files.push_back(documentOf(file, aligned));
     }
     for (const auto& remark : imported.remarks)
         terminal.say(wrapped("remark  " + remark, 8));
     terminal.table({"channel", "unit", "rms", "peak", "full scale"}, rows);
     terminal.say("Wrote the take " + out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 2)
                  + " s at " + significant(take.sampleRate, 8) + " Hz.");
-    terminal.document({{"format", "excursion-import"},
-                       {"version", 1},
-                       {"take", out},
-                       {"kind", "recording"},
-                       {"sampleRate", take.sampleRate},
-                       {"samples", take.length()},
-                       {"channels", channels},
-                       {"files", files},
-                       {"remarks", imported.remarks}});
 }
 
-}  // namespace
+nlohmann::ordered_json importJson(const ImportedRecording& imported, bool aligned, const std::string& out)
+{
+    const auto& take = imported.take;
+    nlohmann::ordered_json channels = nlohmann::ordered_json::array(), files = nlohmann::ordered_json::array();
+    for (const auto& channel : take.channels)
+        channels.push_back({{"quantity", name(channel.quantity)},
+                            {"unit", channel.unit},
+                            {"peak", peakOf(channel.samples)},
+                            {"fullScale", channel.fullScale},
+                            {"assumed", channel.assumed}});
+    for (const auto& file : imported.files)
+        files.push_back(documentOf(file, aligned));
+    return {{"format", "excursion-import"},
+            {"version", 1},
+            {"take", out},
+            {"kind", "recording"},
+            {"sampleRate", take.sampleRate},
+            {"samples", take.length()},
+            {"channels", channels},
+            {"files", files},
+            {"remarks", imported.remarks}};
+}
 
 bool isRecording(const std::string& file)
 {
@@ -163,7 +170,8 @@ void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
     if (!arguments.name.empty())
         imported.take.driver.name = arguments.name;
     text ? writeCsv(imported.take, arguments.out) : writeMeasurement(imported.take, arguments.out);
-    describe(imported, options.plan.has_value(), arguments.out, terminal);
+    sayImported(imported, options.plan.has_value(), arguments.out, terminal);
+    terminal.document(importJson(imported, options.plan.has_value(), arguments.out));
 }
 
 }  // namespace excursion::cli

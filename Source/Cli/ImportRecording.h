@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Import/ImportRecording.h"
+
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
 #include <string>
@@ -25,6 +28,14 @@ struct RecordingArguments {
 bool isRecording(const std::string& file);
 
 void addRecordingOptions(CLI::App& verb, RecordingArguments&);
+RecordingOptions recordingOptions(const RecordingArguments&);  ///< reads plan and calibration; throws Error
 void importRecordings(const RecordingArguments&, Terminal&);
+
+/// What was found out about the time of each recording, what was assumed, and the channels of the take, for a person.
+/// @param aligned  to a plan
+void sayImported(const ImportedRecording&, bool aligned, const std::string& out, Terminal&);
+
+/// The document "excursion-import", version 1.
+nlohmann::ordered_json importJson(const ImportedRecording&, bool aligned, const std::string& out);
 
 }  // namespace excursion::cli

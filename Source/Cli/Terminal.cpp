@@ -15,6 +15,7 @@
 #ifdef _WIN32
 #include <io.h>
 #else
+#include <sys/ioctl.h>
 #include <unistd.h>
 #endif
 
@@ -37,6 +38,16 @@ bool isStderrATerminal()
 #else
     return isatty(STDERR_FILENO) != 0;
 #endif
+}
+
+std::size_t terminalColumns()
+{
+#if defined(TIOCGWINSZ)
+    winsize size {};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
+        return size.ws_col;
+#endif
+    return 80;
 }
 
 /// Columns that UTF-8 text takes, one a code point.
@@ -166,6 +177,18 @@ void Terminal::drawBar(double fraction, std::string_view what)
         return;
     std::cerr << "\r\x1b[K|" << bar << std::flush;
     lastBar_ = bar;
+    barIsDrawn_ = true;
+}
+
+void Terminal::live(std::string_view line)
+{
+    if (quiet || progressLines)
+        return;
+    if (!stderrIsTerminal_) {
+        std::cerr << line << '\n' << std::flush;
+        return;
+    }
+    std::cerr << "\r\x1b[K" << line.substr(0, terminalColumns() - 1) << std::flush;
     barIsDrawn_ = true;
 }
 

@@ -38,6 +38,11 @@ public:
     Progress progress();
     std::stop_token stop() const { return stop_.get_token(); }
 
+    /// What goes on at the moment, in one line on stderr: in the place of the one before where stderr is a terminal
+    /// (cut at its width), else as a line of its own. Not with --quiet and --progress.
+    void live(std::string_view line);
+    bool livesInPlace() const { return stderrIsTerminal_; }
+
     /// Text for a person, on stdout, ended by a line break.
     void say(std::string_view text);
 

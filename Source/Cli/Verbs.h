@@ -25,6 +25,7 @@ inline constexpr auto around = "Around it";
 void addExcite(CLI::App&, Terminal&);
 void addVirtual(CLI::App&, Terminal&);
 void addCalibrate(CLI::App&, Terminal&);
+void addMeasure(CLI::App&, Terminal&);
 void addImport(CLI::App&, Terminal&);
 void addCheck(CLI::App&, Terminal&);
 void addBla(CLI::App&, Terminal&);

@@ -20,8 +20,10 @@ using namespace excursion;
 constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing.
 
   excursion excite --out plan                 the signal to play, and its plan
+  excursion measure --device 1 --plan plan --map 1=voltage:16 --map 2=current:4 --out take
+                                              play it, record, and make a take of both; or, of what
   excursion import rec.wav --plan plan --map 1=voltage:16 --map 2=current:4 --out take
-                                              a take of what was recorded meanwhile
+                                              another program has recorded meanwhile
   excursion check take                        is the take fit for use?
   excursion bla take                          frequency response, noise and distortion
   excursion fit take --out model.json         a loudspeaker model, the linear one first
@@ -38,7 +40,7 @@ No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with so
 A take is a folder (measurement.json and its WAV), or a file of another program, such as a .zma, .csv or .txt. Each verb has its own --help.)";
 
 constexpr auto footer =
-    R"(Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file that cannot be used,
+    R"(Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file or device that cannot be used,
 4 data that cannot answer the question, 5 a computation that failed, 6 stopped by Ctrl-C.)";
 
 constexpr int internalError = 70;  // as sysexits.h has it; 1 is an answer
@@ -123,6 +125,7 @@ int main(int argc, char** argv)
     // In the order of the method: --help prints them so.
     cli::addExcite(app, terminal);
     cli::addCalibrate(app, terminal);
+    cli::addMeasure(app, terminal);
     cli::addImport(app, terminal);
     cli::addVirtual(app, terminal);
     cli::addCheck(app, terminal);

@@ -123,6 +123,11 @@ TEST_CASE("What is wrong with a recording or its options is told in one sentence
                 {"import", s.scratch.file("text.wav", "no sound").string(), "--plan", plan, "--map", "1=voltage:3",
                  "--out", out},
                 s.scratch, "text.wav");
+    // what libsndfile would take for an MP3, and libmpg123 talk about
+    refusedWith(3,
+                {"import", s.scratch.file("frames.wav", "\xff\xfb\x90\x64" + std::string(100, '\xff')).string(),
+                 "--plan", plan, "--map", "1=voltage:3", "--out", out},
+                s.scratch, "frames.wav");
 
     auto broken = s.channels;
     broken[1][99] = std::numeric_limits<double>::infinity();

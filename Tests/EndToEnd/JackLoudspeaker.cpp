@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A loudspeaker as a client of JACK: what is played to its input "terminals" comes back as voltage (16 V at full
-// scale), current (4 A) and displacement (8 mm). It runs until it is killed.
+// scale), current (4 A) and displacement (8 mm). It runs until SIGTERM, and then writes what it was played, up to five
+// minutes of 32-bit floats, to the file that its argument names.
 #include "Plugin/SampledSpeaker.h"
 
 #include <jack/jack.h>
 
+#include <algorithm>
 #include <array>
-#include <chrono>
+#include <atomic>
+#include <csignal>
 #include <cstdio>
-#include <thread>
+#include <fstream>
+#include <pthread.h>
+#include <vector>
 
 namespace {
 
@@ -16,6 +21,8 @@ struct Client {
     jack_port_t* terminals = nullptr;
     std::array<jack_port_t*, 3> sensors {};
     excursion::plugin::SampledSpeaker speaker {48000.0};
+    std::vector<float> heard = std::vector<float>(300 * 48000);
+    std::atomic<std::size_t> count {0};
 };
 
 int process(jack_nframes_t count, void* data)
@@ -25,6 +32,10 @@ int process(jack_nframes_t count, void* data)
     std::array<float*, 3> out;
     for (std::size_t k = 0; k < out.size(); ++k)
         out[k] = static_cast<float*>(jack_port_get_buffer(client.sensors[k], count));
+    const auto heard = client.count.load();
+    const auto kept = std::min<std::size_t>(count, client.heard.size() - heard);
+    std::copy_n(in, kept, client.heard.begin() + static_cast<std::ptrdiff_t>(heard));
+    client.count = heard + kept;
     for (jack_nframes_t n = 0; n < count; ++n) {
         const auto reading = client.speaker.next(16.0 * static_cast<double>(in[n]));
         out[0][n] = static_cast<float>(reading.voltage / 16.0);
@@ -36,8 +47,12 @@ int process(jack_nframes_t count, void* data)
 
 }  // namespace
 
-int main()
+int main(int argc, char** argv)
 {
+    sigset_t end;
+    sigemptyset(&end);
+    sigaddset(&end, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &end, nullptr);  // of all threads: it is waited for
     Client client;
     auto* jack = jack_client_open("loudspeaker", JackNoStartServer, nullptr);
     if (jack == nullptr) {
@@ -51,6 +66,12 @@ int main()
     jack_set_process_callback(jack, process, &client);
     if (jack_activate(jack) != 0)
         return 1;
-    for (;;)
-        std::this_thread::sleep_for(std::chrono::hours(1));
+    int signal = 0;
+    sigwait(&end, &signal);
+    jack_client_close(jack);
+    if (argc > 1)
+        std::ofstream(argv[1], std::ios::binary)
+            .write(reinterpret_cast<const char*>(client.heard.data()),
+                   static_cast<std::streamsize>(client.count * sizeof(float)));
+    return 0;
 }

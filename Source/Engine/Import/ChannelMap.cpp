@@ -9,10 +9,8 @@
 #include <cmath>
 
 namespace excursion {
-namespace {
 
-/// "16", "-500mA", "20 Pa": a number and maybe a unit.
-std::optional<double> scaled(Quantity quantity, std::string_view text)
+std::optional<double> amountOf(Quantity quantity, std::string_view text)
 {
     const auto digits = text.find_first_not_of("+-0123456789.eE");
     auto number = text.substr(0, digits),
@@ -25,8 +23,6 @@ std::optional<double> scaled(Quantity quantity, std::string_view text)
         return std::nullopt;
     return *value * scale->factor;
 }
-
-}  // namespace
 
 ChannelMapping parseChannelMapping(std::string_view text)
 {
@@ -62,7 +58,7 @@ ChannelMapping parseChannelMapping(std::string_view text)
     if (!mapping.quantity)
         refuse("names no known quantity (" + joined(quantityNames()) + ", or loopback)");
     if (colon != std::string_view::npos) {
-        mapping.fullScale = scaled(*mapping.quantity, meaning.substr(colon + 1));
+        mapping.fullScale = amountOf(*mapping.quantity, meaning.substr(colon + 1));
         if (!mapping.fullScale)
             refuse("gives a full scale that is not a number other than 0, in " + std::string(siUnit(*mapping.quantity))
                    + " or with a unit of the quantity");

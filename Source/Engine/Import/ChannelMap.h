@@ -24,4 +24,8 @@ struct ChannelMapping {
 /// Throws Error (usage).
 ChannelMapping parseChannelMapping(std::string_view);
 
+/// "16", "-500mA", "20 Pa": a number other than 0 and maybe a unit of the quantity, in its SI unit; nullopt when it is
+/// something else.
+std::optional<double> amountOf(Quantity, std::string_view);
+
 }  // namespace excursion

@@ -3,9 +3,10 @@
 
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
-#include "Engine/Import/RecordedChannel.h"
+#include "Engine/Import/AssignChannels.h"
 #include "Engine/Measurement/Clipping.h"
 #include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
@@ -17,8 +18,19 @@ namespace {
 
 constexpr double plainLikeness = 0.97;  // of a response to a gain and a delay, from which on it tells the time
 
+struct Source {
+    std::filesystem::path path;
+    Wav sound;
+};
+
+std::string labelOf(const AssignedChannel& a, const std::vector<Source>& sources)
+{
+    return "channel " + std::to_string(a.channel + 1) + " of '" + sources[a.file].path.string() + "' ("
+           + (a.quantity ? std::string(name(*a.quantity)) : std::string("loopback")) + ")";
+}
+
 /// How well a channel tells the time of what was played: the less lies between, the better.
-int trust(const RecordedChannel& a)
+int trust(const AssignedChannel& a)
 {
     if (!a.quantity)
         return 0;
@@ -28,17 +40,35 @@ int trust(const RecordedChannel& a)
     return 1 + static_cast<int>(std::find(std::begin(order), std::end(order), *a.quantity) - std::begin(order));
 }
 
-/// Samples that were clipped cannot be seen as such once they are resampled.
-void requireUnclipped(const RecordedChannel& a, const std::vector<RecordedFile>& files, double begin, double end)
+std::vector<Source> readSources(const RecordingOptions& options)
 {
-    const auto& x = files[a.file].sound.channels[a.channel];
+    std::vector<Source> sources;
+    for (const auto& path : options.files)
+        sources.push_back({path, readSound(path)});
+    for (const auto& recorded : options.sounds)
+        sources.push_back({recorded.name, recorded.sound});
+    return sources;
+}
+
+std::vector<RecordingShape> shapesOf(const std::vector<Source>& sources)
+{
+    std::vector<RecordingShape> shapes;
+    for (const auto& source : sources)
+        shapes.push_back({source.path, source.sound.channels.size()});
+    return shapes;
+}
+
+/// Samples that were clipped cannot be seen as such once they are resampled.
+void requireUnclipped(const AssignedChannel& a, const std::vector<Source>& sources, double begin, double end)
+{
+    const auto& x = sources[a.file].sound.channels[a.channel];
     const auto size = static_cast<double>(x.size());
     Channel part;
     part.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(std::clamp(begin, 0.0, size)),
                         x.begin() + static_cast<std::ptrdiff_t>(std::clamp(end, 0.0, size)));
     if (const auto clipped = clippedSamples(part); clipped > 0)
         throw Error(Error::Kind::data,
-                    labelOf(a, files) + " clips: " + std::to_string(clipped)
+                    labelOf(a, sources) + " clips: " + std::to_string(clipped)
                         + " samples stand at its limit; lower the gain of that input and record again.");
 }
 
@@ -58,15 +88,15 @@ double levelOf(const std::vector<double>& x, const Excitation& e, std::size_t le
 /// Files on the clock of a plan, one take.
 class Assembly {
 public:
-    Assembly(const RecordingOptions& options, const std::vector<RecordedFile>& files,
-             const std::vector<RecordedChannel>& assigned)
-        : options_(options), sources_(files), assigned_(assigned), plan_(*options.plan), periods_(periodsOf(plan_))
+    Assembly(const RecordingOptions& options, const std::vector<Source>& sources,
+             const std::vector<AssignedChannel>& assigned)
+        : options_(options), sources_(sources), assigned_(assigned), plan_(*options.plan), periods_(periodsOf(plan_))
     {
     }
 
     ImportedRecording build(const Progress& progress)
     {
-        requireVoltage();
+        requireInput(assigned_, options_.gain);
         result_.take.sampleRate = plan_.sampleRate;
         result_.take.excitation = plan_.excitation;
         result_.take.excitation->lines = periods_.lines;
@@ -91,29 +121,13 @@ private:
     bool recorded(Quantity quantity) const
     {
         return std::any_of(assigned_.begin(), assigned_.end(),
-                           [quantity](const RecordedChannel& a) { return a.quantity == quantity; });
-    }
-
-    void requireVoltage() const
-    {
-        if (!recorded(Quantity::voltage) && !(options_.gain > 0))
-            throw Error(Error::Kind::usage, "None of the channels is the voltage at the loudspeaker; map it, or give "
-                                            "--gain, the volts at the loudspeaker for a "
-                                            "played sample of 1.0, to take the plan's.");
-        if (recorded(Quantity::voltage) && options_.gain > 0)
-            throw Error(Error::Kind::usage,
-                        "The voltage was recorded, so --gain has nothing to say; leave one of them out.");
-        if (std::none_of(assigned_.begin(), assigned_.end(),
-                         [](const RecordedChannel& a) { return a.quantity && *a.quantity != Quantity::voltage; })
-            && !recorded(Quantity::voltage))
-            throw Error(Error::Kind::usage,
-                        "No channel but a loopback is mapped, so there is no take in this recording.");
+                           [quantity](const AssignedChannel& a) { return a.quantity == quantity; });
     }
 
     void align(std::size_t file)
     {
         const auto& source = sources_[file];
-        std::vector<const RecordedChannel*> own;
+        std::vector<const AssignedChannel*> own;
         for (const auto& a : assigned_)
             if (a.file == file)
                 own.push_back(&a);
@@ -153,7 +167,7 @@ private:
 
     /// The time of a file that was told by what a loudspeaker had passed: what physics allows no loudspeaker to delay,
     /// as `check` has it, is taken off.
-    void settleTime(const RecordedChannel& witness, ImportedFile& done)
+    void settleTime(const AssignedChannel& witness, ImportedFile& done)
     {
         auto& alignment = done.alignment;
         const auto& samples = sources_[witness.file].sound.channels[witness.channel];
@@ -257,7 +271,7 @@ private:
         }
     }
 
-    Response responseOf(const RecordedChannel& a, const ImportedFile& done) const
+    Response responseOf(const AssignedChannel& a, const ImportedFile& done) const
     {
         std::vector<ResponseCurve> curves;
         if (done.loopback && done.loopback->curve)
@@ -306,8 +320,8 @@ private:
     }
 
     const RecordingOptions& options_;
-    const std::vector<RecordedFile>& sources_;
-    const std::vector<RecordedChannel>& assigned_;
+    const std::vector<Source>& sources_;
+    const std::vector<AssignedChannel>& assigned_;
     const Measurement& plan_;
     PlanPeriods periods_;
     std::vector<std::size_t> used_;
@@ -316,15 +330,15 @@ private:
 };
 
 /// One file as it is: nothing is known of what was played.
-ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<RecordedFile>& files,
-                             const std::vector<RecordedChannel>& assigned)
+ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<Source>& sources,
+                             const std::vector<AssignedChannel>& assigned)
 {
-    if (files.size() > 1)
+    if (sources.size() > 1)
         throw Error(Error::Kind::usage,
                     "Several recordings can only be laid beside one another by what was played; give its --plan.");
     if (options.gain > 0)
         throw Error(Error::Kind::usage, "--gain takes the voltage from a plan; give the --plan that was played.");
-    const auto& source = files.front();
+    const auto& source = sources.front();
     const auto length = source.sound.channels.front().size(), to = options.to.value_or(length);
     if (to > length || options.from >= to)
         throw Error(Error::Kind::usage, "'" + source.path.string() + "' has " + std::to_string(length)
@@ -361,15 +375,15 @@ ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<
 
 ImportedRecording importRecording(const RecordingOptions& options, const Progress& progress)
 {
-    if (options.files.empty())
+    if (options.files.empty() && options.sounds.empty())
         throw Error(Error::Kind::usage, "Give a recording.");
-    const auto files = readFiles(options);
-    const auto assigned = recordedChannels(options, files);
+    const auto sources = readSources(options);
+    const auto assigned = assignChannels(options, shapesOf(sources));
     for (const auto& a : assigned)
-        requireFinite(files[a.file].sound, a.channel, files[a.file].path);
+        requireFinite(sources[a.file].sound, a.channel, sources[a.file].path);
     if (!options.plan)
-        return asRecorded(options, files, assigned);
-    return Assembly(options, files, assigned).build(progress);
+        return asRecorded(options, sources, assigned);
+    return Assembly(options, sources, assigned).build(progress);
 }
 
 }  // namespace excursion

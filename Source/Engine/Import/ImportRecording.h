@@ -2,29 +2,15 @@
 #pragma once
 
 #include "Engine/Import/AlignRecording.h"
-#include "Engine/Import/Calibration.h"
-#include "Engine/Import/ChannelMap.h"
 #include "Engine/Import/Loopback.h"
+#include "Engine/Import/RecordingOptions.h"
 #include "Engine/Progress.h"
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace excursion {
-
-struct RecordingOptions {
-    std::vector<std::filesystem::path> files;  ///< WAV, AIFF, CAF or FLAC; each was recorded by one device
-    std::optional<Measurement> plan;           ///< what was played; absent: one file is taken as it is
-    std::vector<ChannelMapping> map;           ///< empty: what the calibration says
-    std::optional<Calibration> calibration;
-    std::string calibrationFile;  ///< for sentences
-    /// V at the loudspeaker for a played sample of 1.0, where the voltage was not recorded; 0: not known
-    double gain = 0.0;
-    std::size_t from = 0;           ///< without a plan: the first sample to take
-    std::optional<std::size_t> to;  ///< and one beyond the last
-};
 
 /// What became of one file.
 struct ImportedFile {

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace excursion {
 namespace {
@@ -124,6 +125,12 @@ constexpr std::uint64_t mostSamples = std::uint64_t(1) << 31;
 Wav readSamples(const fs::path& path, Container allowed)
 {
     const auto size = sizeOfFile(path);
+    const std::string what = allowed == Container::wav ? "is not a readable WAV file ("
+                                                       : "is not a readable WAV, AIFF, CAF or FLAC file (";
+    // libsndfile would look for MP3 frames in anything, and tell on stderr what it thinks of them
+    static constexpr std::array<std::string_view, 5> heads {"RIFF", "RF64", "FORM", "caff", "fLaC"};
+    if (std::find(heads.begin(), heads.end(), Head(path, false).text()) == heads.end())
+        refuse(path, what + "it does not begin as one).");
     SF_INFO info {};
     const SoundFile file(sf_open(path.string().c_str(), SFM_READ, &info));
     const int container = info.format & SF_FORMAT_TYPEMASK;
@@ -135,9 +142,7 @@ Wav readSamples(const fs::path& path, Container allowed)
         refuse(path, "is truncated: its header claims " + std::to_string(claimed) + " bytes, but the file has only "
                          + std::to_string(size) + "; copy it again.");
     if (!file)
-        refuse(path, std::string(allowed == Container::wav ? "is not a readable WAV file ("
-                                                           : "is not a readable WAV, AIFF, CAF or FLAC file (")
-                         + sf_strerror(nullptr) + ").");
+        refuse(path, what + sf_strerror(nullptr) + ").");
     const auto sampleBytes = bytesOfSample(info.format);
     if (allowed == Container::wav && (!wav || claimed == 0 || sampleBytes == 0))
         refuse(path, "holds no PCM or float samples in WAV form; save it as a float WAV.");

@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Import/RecordedChannel.h"
+#include "Engine/Import/AssignChannels.h"
 
 #include "Engine/Error.h"
+
+#include <algorithm>
 
 namespace excursion {
 namespace {
 
 /// Where a mapping points to. Numbers without a file count through all files.
-RecordedChannel locate(const ChannelMapping& mapping, const std::vector<RecordedFile>& files)
+AssignedChannel locate(const ChannelMapping& mapping, const std::vector<RecordingShape>& recordings)
 {
     const auto refuse = [&](const std::string& why) {
         throw Error(Error::Kind::usage, "--map " + mapping.text + ": " + why);
     };
-    RecordedChannel place;
+    AssignedChannel place;
     place.quantity = mapping.quantity;
     auto number = static_cast<std::size_t>(mapping.channel - 1);
     if (!mapping.file.empty()) {
         std::vector<std::size_t> matching;
-        for (std::size_t f = 0; f < files.size(); ++f)
-            if (const auto& path = files[f].path;
+        for (std::size_t f = 0; f < recordings.size(); ++f)
+            if (const auto& path = recordings[f].path;
                 path == mapping.file || path.filename() == mapping.file || path.stem() == mapping.file)
                 matching.push_back(f);
         if (matching.size() != 1)
@@ -27,16 +29,16 @@ RecordedChannel locate(const ChannelMapping& mapping, const std::vector<Recorded
                        : "more than one of the recordings is '" + mapping.file + "'; give its whole path.");
         place.file = matching.front();
     } else {
-        while (place.file + 1 < files.size() && number >= files[place.file].sound.channels.size())
-            number -= files[place.file++].sound.channels.size();
+        while (place.file + 1 < recordings.size() && number >= recordings[place.file].channels)
+            number -= recordings[place.file++].channels;
     }
-    if (number >= files[place.file].sound.channels.size()) {
+    if (number >= recordings[place.file].channels) {
         std::size_t all = 0;
-        for (const auto& source : files)
-            all += source.sound.channels.size();
-        const bool one = !mapping.file.empty() || files.size() == 1;
-        refuse((one ? "'" + files[place.file].path.string() + "' has "
-                          + std::to_string(files[place.file].sound.channels.size())
+        for (const auto& recording : recordings)
+            all += recording.channels;
+        const bool one = !mapping.file.empty() || recordings.size() == 1;
+        refuse((one ? "'" + recordings[place.file].path.string() + "' has "
+                          + std::to_string(recordings[place.file].channels)
                     : "the recordings have " + std::to_string(all))
                + " channels; they are counted from 1.");
     }
@@ -62,25 +64,12 @@ std::vector<ChannelMapping> mappingsOf(const RecordingOptions& options)
 
 }  // namespace
 
-std::string labelOf(const RecordedChannel& a, const std::vector<RecordedFile>& files)
+std::vector<AssignedChannel> assignChannels(const RecordingOptions& options,
+                                            const std::vector<RecordingShape>& recordings)
 {
-    return "channel " + std::to_string(a.channel + 1) + " of '" + files[a.file].path.string() + "' ("
-           + (a.quantity ? std::string(name(*a.quantity)) : std::string("loopback")) + ")";
-}
-
-std::vector<RecordedFile> readFiles(const RecordingOptions& options)
-{
-    std::vector<RecordedFile> files;
-    for (const auto& path : options.files)
-        files.push_back({path, readSound(path)});
-    return files;
-}
-
-std::vector<RecordedChannel> recordedChannels(const RecordingOptions& options, const std::vector<RecordedFile>& files)
-{
-    std::vector<RecordedChannel> assigned;
+    std::vector<AssignedChannel> assigned;
     for (const auto& mapping : mappingsOf(options)) {
-        auto place = locate(mapping, files);
+        auto place = locate(mapping, recordings);
         for (const auto& other : assigned) {
             if (other.file == place.file && other.channel == place.channel)
                 throw Error(Error::Kind::usage, "--map " + mapping.text + ": that channel is mapped already.");
@@ -92,7 +81,7 @@ std::vector<RecordedChannel> recordedChannels(const RecordingOptions& options, c
         if (place.quantity) {
             int number = static_cast<int>(place.channel) + 1;
             for (std::size_t f = 0; f < place.file; ++f)
-                number += static_cast<int>(files[f].sound.channels.size());
+                number += static_cast<int>(recordings[f].channels);
             const auto* calibrated = options.calibration ? options.calibration->find(number) : nullptr;
             if (!mapping.fullScale && !calibrated)
                 throw Error(
@@ -112,6 +101,21 @@ std::vector<RecordedChannel> recordedChannels(const RecordingOptions& options, c
         assigned.push_back(place);
     }
     return assigned;
+}
+
+void requireInput(const std::vector<AssignedChannel>& assigned, double gain)
+{
+    const bool voltage = std::any_of(assigned.begin(), assigned.end(),
+                                     [](const AssignedChannel& a) { return a.quantity == Quantity::voltage; });
+    if (!voltage && !(gain > 0))
+        throw Error(Error::Kind::usage, "None of the channels is the voltage at the loudspeaker; map it, or give "
+                                        "--gain, the volts at the loudspeaker for a "
+                                        "played sample of 1.0, to take the plan's.");
+    if (voltage && gain > 0)
+        throw Error(Error::Kind::usage,
+                    "The voltage was recorded, so --gain has nothing to say; leave one of them out.");
+    if (std::none_of(assigned.begin(), assigned.end(), [](const AssignedChannel& a) { return a.quantity.has_value(); }))
+        throw Error(Error::Kind::usage, "No channel but a loopback is mapped, so there is no take in this recording.");
 }
 
 }  // namespace excursion

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Audio/Measure.h"
+
+#include "Engine/Document/Figures.h"
+#include "Engine/Error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace excursion::audio {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto pollEvery = std::chrono::milliseconds(10);
+constexpr auto reportEvery = std::chrono::milliseconds(100);
+
+std::string inputText(const WatchedInput& watched)
+{
+    return "input " + std::to_string(watched.input + 1) + " ("
+           + (watched.quantity ? std::string(name(*watched.quantity)) : std::string("loopback")) + ")";
+}
+
+/// "at 3.2 s of the rise, 6.1 dB below full level".
+std::string momentOf(const Ending& ending)
+{
+    const auto seconds = figure(ending.seconds, "%.1f");
+    switch (ending.stage) {
+    case Stage::listening: return "in silence, before anything was played";
+    case Stage::rising:
+        return ending.gain < 1.0 ? "in the rise, " + figure(-20.0 * std::log10(ending.gain)) + " dB below full level"
+                                 : std::string("at the end of the rise, at full level");
+    case Stage::playing: return "at " + seconds + " s of the plan";
+    case Stage::trailing: return "after the plan had been played";
+    default: return "in silence, before the plan was played";
+    }
+}
+
+/// One run of the procedure. Only a device that answers is stopped, others are left to themselves.
+class Run {
+public:
+    Run(Stream& stream, Procedure& procedure) : stream_(stream), procedure_(procedure) { stream_.start(procedure_); }
+    ~Run()
+    {
+        if (open_)
+            stream_.abandon();
+    }
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
+
+    /// @return false when the device is gone
+    bool wait(const MeasureOptions& options, int attempt, std::vector<std::vector<float>>& channels)
+    {
+        const auto begun = Clock::now();
+        auto moved = begun, reported = begun - reportEvery;
+        auto frames = procedure_.frames();
+        while (!procedure_.ended()) {
+            std::this_thread::sleep_for(pollEvery);
+            procedure_.take(channels);
+            if (options.stop.stop_requested())
+                procedure_.stop();
+            const auto now = Clock::now();
+            if (const auto present = procedure_.frames(); present != frames) {
+                frames = present;
+                moved = now;
+            }
+            if (!procedure_.ended()
+                && (!stream_.running() || now - moved > std::chrono::duration<double>(options.patience)))
+                return false;
+            if (options.report && now - reported >= reportEvery) {
+                reported = now;
+                Status status {procedure_.stage(),
+                               procedure_.fraction(),
+                               std::chrono::duration<double>(now - begun).count(),
+                               attempt,
+                               {}};
+                for (std::size_t k = 0; k < procedure_.options().inputs.size(); ++k)
+                    status.meters.push_back(procedure_.meter(k));
+                options.report(status);
+            }
+        }
+        procedure_.take(channels);
+        open_ = false;
+        stream_.stop();
+        return true;
+    }
+
+private:
+    Stream& stream_;
+    Procedure& procedure_;
+    bool open_ = true;
+};
+
+}  // namespace
+
+std::string sentenceOf(const Ending& ending, const ProcedureOptions& options)
+{
+    const auto& watched = options.inputs[std::min(ending.watched, options.inputs.size() - 1)];
+    switch (ending.kind) {
+    case Ending::Kind::limit: {
+        const auto quantity = std::string(name(watched.quantity.value()));
+        const auto unit = std::string(siUnit(*watched.quantity));
+        return "The " + quantity + " reached " + figure(ending.value, "%.4g") + " " + unit + " " + momentOf(ending)
+               + ", beyond its limit of " + figure(watched.limit.value(), "%.4g") + " " + unit
+               + "; take lower levels (excursion excite --levels) or another --limit.";
+    }
+    case Ending::Kind::clipping:
+        return "The " + inputText(watched) + " clips " + momentOf(ending)
+               + "; lower the gain of that input, or the levels of the plan.";
+    case Ending::Kind::unheard:
+        return "Nothing of what is played arrives at the inputs, though the rise has come to "
+               + figure(-20.0 * std::log10(std::max(ending.gain, 1e-9)))
+               + " dB below full level: look at the amplifier, the cables, --output and --map.";
+    case Ending::Kind::frozen:
+        return "No input has moved any more from " + figure(ending.seconds, "%.1f")
+               + " s of the plan on: the device has lost its connection, or its cables have.";
+    case Ending::Kind::broken: return "Samples were lost " + momentOf(ending) + " (xrun).";
+    case Ending::Kind::overrun:
+        return "The computer did not take the recorded samples away in time, " + momentOf(ending) + ".";
+    case Ending::Kind::complete:
+    case Ending::Kind::stopped: break;
+    }
+    return "";
+}
+
+std::size_t loudestPeriod(const Excitation& e, const std::vector<double>& samples)
+{
+    const auto N = static_cast<std::size_t>(e.period);
+    std::size_t place = 0;
+    double peak = -1.0;
+    for (std::size_t begin = 0; begin + N <= samples.size(); begin += N)
+        for (std::size_t n = begin; n < begin + N; ++n)
+            if (std::abs(samples[n]) > peak) {
+                peak = std::abs(samples[n]);
+                place = begin;
+            }
+    return place;
+}
+
+Measured measure(System& system, const Device& device, const MeasureOptions& options)
+{
+    Measured result;
+    std::string lost;
+    for (int attempt = 1;; ++attempt) {
+        if (attempt > options.attempts)
+            throw Error(Error::Kind::input, lost + " It was so in " + std::to_string(options.attempts)
+                                                + " attempts: close other programs, or ask for more --latency.");
+        auto procedureOptions = options.procedure;
+        if (attempt > 1)
+            procedureOptions.rise = 0.0;  // the limits have been met, or not, by the first attempt
+        auto streamOptions = options.stream;
+        streamOptions.sampleRate = procedureOptions.sampleRate;
+        streamOptions.inputs = procedureOptions.recorded;
+        streamOptions.outputs = 1 + *std::max_element(procedureOptions.outputs.begin(), procedureOptions.outputs.end());
+        Procedure procedure(procedureOptions);
+        const auto stream = system.open(device, streamOptions);
+        result.channels.assign(static_cast<std::size_t>(procedureOptions.recorded), {});
+        const auto expected = procedureOptions.sound.size()
+                              + static_cast<std::size_t>((procedureOptions.pause + procedureOptions.tail + 0.1)
+                                                         * procedureOptions.sampleRate);
+        for (auto& channel : result.channels)
+            channel.reserve(expected);
+        Run run(*stream, procedure);
+        const bool there = run.wait(options, attempt, result.channels);
+        if (options.stop.stop_requested() && !(there && procedure.ending().kind == Ending::Kind::complete))
+            throw Error(Error::Kind::cancelled, there ? "The measurement was stopped; nothing was written."
+                                                      : "The measurement was stopped, without a fade as '" + device.name
+                                                            + "' answers no longer; nothing was written.");
+        if (!there)
+            throw Error(Error::Kind::input, "'" + device.name + "' is gone: it was "
+                                                + std::string(name(procedure.stage()))
+                                                + " and delivers no sound any more. Nothing was written; connect it "
+                                                  "again and repeat the measurement.");
+        const auto& ending = procedure.ending();
+        for (std::size_t k = 0; isRecorded(ending.stage) && k < procedure.heard().size(); ++k)
+            if (procedure.heard()[k] < 1.1)
+                result.remarks.push_back("The " + inputText(procedureOptions.inputs[k])
+                                         + " is no louder at full level than in silence: is it connected?");
+        if (ending.kind == Ending::Kind::broken || ending.kind == Ending::Kind::overrun) {
+            lost = sentenceOf(ending, procedureOptions);
+            result.remarks.push_back(lost + " All of the plan was played again.");
+            continue;
+        }
+        if (ending.kind != Ending::Kind::complete)
+            throw Error(ending.kind == Ending::Kind::frozen ? Error::Kind::input : Error::Kind::data,
+                        sentenceOf(ending, procedureOptions));
+        result.attempts = attempt;
+        return result;
+    }
+}
+
+}  // namespace excursion::audio
