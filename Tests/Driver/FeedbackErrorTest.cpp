@@ -153,34 +153,6 @@ TEST_CASE("Several laws are found at once from nothing", "[fed][slow]")
     CHECK(simulated.cost < 2.0 * simulated.rows);
 }
 
-TEST_CASE("The memories that no parameter moves are just those that say so", "[fed]")
-{
-    for (const auto* law : catalogue()) {
-        if (law->linear())
-            continue;
-        const Extent extent;
-        const auto size = static_cast<std::size_t>(law->memorySize(extent));
-        auto parameters = law->parameters(extent);
-        bool moved = false;
-        for (std::size_t k = 0; k < parameters.size(); ++k) {
-            std::vector<Jet> values;
-            for (const auto& p : parameters)
-                values.emplace_back(p.value != 0.0 ? p.value : 0.3);
-            values[k].v[0] = 1.0;
-            std::vector<Jet> coefficients(static_cast<std::size_t>(law->coefficientCount(extent))),
-                memory(size, Jet(0.1)), rate(size);
-            law->prepare(extent, values.data(), coefficients.data());
-            Balance<Jet> sum;
-            law->contribute(extent, coefficients.data(), {Jet(0.5), Jet(3e-4), Jet(0.2)}, memory.data(), rate.data(),
-                            sum);
-            for (const auto& r : rate)
-                moved = moved || r.v[0] != 0.0;
-        }
-        INFO(law->id());
-        CHECK(law->remembersMotionAlone() == (size > 0 && !moved));
-    }
-}
-
 TEST_CASE("Less what the laws add, a take shows the responses of its linear part", "[fed]")
 {
     auto [record, model, sections] = ready({{"force-factor", 0.3}, {"stiffness", 0.3}});

@@ -83,7 +83,7 @@ ShownMotion shownMotion(const Record& record, const Section& section, const Spec
     const auto motion = [&](const Spectrum& of, int derivative) {
         return played(of, N, derivative, record.sampleRate);
     };
-    return {motion(I, 0), motion(I, 1), motion(X, 0), motion(X, 1), motion(X, 2), {}};
+    return {motion(I, 0), motion(I, 1), motion(X, 0), motion(X, 1), motion(X, 2)};
 }
 
 PeriodicMotion everySample(const ShownMotion& motion)
