@@ -17,6 +17,7 @@ constexpr std::size_t fine = ShownMotion::fine;
 template <class T>
 struct Answers {
     std::vector<T> voltage, force, lateness;
+    std::vector<T> memory;  ///< where the window begins
 };
 
 /// A law that is asked along a motion.
@@ -64,15 +65,21 @@ private:
     const ShownMotion& motion_;
 };
 
-/// Steps a sample in which a law's memory can be followed: its fastest rate along the motion times the step stays below
-/// one.
-int stepsFor(const Component& law, const ShownMotion& motion, double sampleRate)
+/// How quick a law's memory is along the motion.
+struct Pace {
+    int steps = 1;  ///< a sample, in which the memory can be followed: its fastest rate times one stays below one
+    bool quarterForgets = true;  ///< nothing of what was is left of its slowest part after a quarter of the period
+};
+
+Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
 {
     const auto size = static_cast<std::size_t>(law.effect->memorySize(law.extent));
+    if (size == 0)
+        return {};
     const auto coefficients = coefficientsOf(law, valuesOf(law));
-    std::vector<double> memory(size, 0.0), rest(size), moved(size);
-    double fastest = 0.0;
-    for (std::size_t n = 0; n < motion.i.size(); n += 2 * fine) {
+    std::vector<double> memory(size, 0.0), rest(size), moved(size), sum(size, 0.0);
+    double fastest = 0.0, asked = 0.0;
+    for (std::size_t n = 0; n < motion.i.size(); n += 2 * fine, asked += 1.0) {
         const auto rates = [&](std::vector<double>& out) {
             Balance<double> unused;
             law.effect->contribute(law.extent, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]},
@@ -83,22 +90,26 @@ int stepsFor(const Component& law, const ShownMotion& motion, double sampleRate)
             memory[k] = 1.0;
             rates(moved);
             memory[k] = 0.0;
-            fastest = std::max(fastest, std::abs(moved[k] - rest[k]));
+            const double rate = std::abs(moved[k] - rest[k]);
+            fastest = std::max(fastest, rate);
+            sum[k] += rate;
         }
     }
-    constexpr double most = 32.0;
-    return static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most));
+    constexpr double most = 32.0, forgotten = 7.0;  // exp(-7): a thousandth
+    const double quarter = static_cast<double>(motion.i.size() / fine) / (4.0 * sampleRate);
+    return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)),
+            *std::min_element(sum.begin(), sum.end()) / asked * quarter > forgotten};
 }
 
-/// Follows a law's memory from a quarter of a period before the window to its end, and shows what it meets there once a
-/// sample: see(fine value, sum, memory, its rate).
+/// Follows a law's memory from the lead-in before the window to its end, and shows what it meets there once a sample:
+/// see(fine value, sum, memory, its rate).
+/// @param leadIn  fine values, up to a period
 template <class T, class See>
-void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, int steps, double sampleRate,
-            const See& see)
+void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, std::size_t leadIn, int steps,
+            double sampleRate, const See& see)
 {
     RungeKutta<T> method(memory.size());
     std::vector<T> rate(memory.size());
-    const std::size_t leadIn = length / fine / 4 * fine;
     const double h = 1.0 / (steps * sampleRate), across = static_cast<double>(fine) / steps;
     for (std::size_t step = 0; step < leadIn + length; step += fine) {
         const std::size_t n = (length - leadIn + step) % length;
@@ -118,16 +129,18 @@ void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, int 
 
 template <class T>
 Answers<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion,
-               const std::vector<T>& start, int steps, double sampleRate)
+               const std::vector<T>& start, std::size_t leadIn, int steps, double sampleRate)
 {
     const Along<T> along(law, parameters, motion);
-    const std::size_t length = motion.i.size(), size = start.size();
+    const std::size_t length = motion.i.size();
     Answers<T> answers;
     answers.voltage.reserve(length / fine);
     answers.force.reserve(length / fine);
-    if (size > 0) {
-        follow(along, start, length, steps, sampleRate,
+    if (!start.empty()) {
+        follow(along, start, length, leadIn, steps, sampleRate,
                [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory, const std::vector<T>& rate) {
+                   if (answers.memory.empty())
+                       answers.memory = memory;
                    along.answer(n, sum, memory.data(), rate.data(), answers);
                });
         return answers;
@@ -152,10 +165,11 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
 {
     const auto count = law.parameters.size();
     const auto size = static_cast<std::size_t>(start.value.size());
-    const int steps = size > 0 ? stepsFor(law, motion, sampleRate) : 1;
+    const auto pace = paceOf(law, motion, sampleRate);
+    const std::size_t length = motion.i.size(), quarter = length / fine / 4 * fine;
     LawDrive drive;
-    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, steps,
-                                   sampleRate);
+    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, quarter,
+                                   pace.steps, sampleRate);
     drive.voltage = fft(plain.voltage);
     drive.force = fft(plain.force);
     drive.lateness = plain.lateness;
@@ -164,19 +178,22 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
     drive.voltageSlopes.resize(count);
     drive.forceSlopes.resize(count);
     drive.latenessSlopes.resize(count);
+    // A start of a slow part knows nothing of the parameters: a whole period, which begins as the window does, forgets
+    // more of that than a quarter.
+    const bool whole = !pace.quarterForgets && !law.effect->slow();
     std::vector<std::size_t> own;  // of a chunk
     const auto differentiate = [&] {
         auto parameters = valuesOf<Jet>(law);
         std::vector<Jet> memory(size);
         for (std::size_t m = 0; m < size; ++m)
-            memory[m] = Jet(start.value[static_cast<Eigen::Index>(m)]);
+            memory[m] = Jet(whole ? plain.memory[m] : start.value[static_cast<Eigen::Index>(m)]);
         for (std::size_t j = 0; j < own.size(); ++j) {
             const auto slot = static_cast<Eigen::Index>(j);
             parameters[own[j]].v[slot] = 1.0;
-            for (std::size_t m = 0; m < size; ++m)
+            for (std::size_t m = 0; m < size && !whole; ++m)
                 memory[m].v[slot] = start.gradient(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(own[j]));
         }
-        const auto jets = ask<Jet>(law, parameters, motion, memory, steps, sampleRate);
+        const auto jets = ask<Jet>(law, parameters, motion, memory, whole ? length : quarter, pace.steps, sampleRate);
         for (std::size_t j = 0; j < own.size(); ++j) {
             const auto slope = [slot = static_cast<Eigen::Index>(j)](const Jet& value) { return value.v[slot]; };
             drive.voltageSlopes[own[j]] = fft(series(jets.voltage, slope));
