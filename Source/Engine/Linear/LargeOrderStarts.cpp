@@ -18,6 +18,7 @@ namespace {
 using Eigen::Index;
 
 constexpr int fewSteps = 4;
+constexpr int determinedSteps = 8;   // near a minimum that the data determines Newton's steps are few
 constexpr double noticeable = 1.02;  // a cost grown by this factor is worth refining
 
 class LargeOrderSearch {
@@ -42,12 +43,14 @@ public:
                                                      : warpingRates(data_, options_.thorough);
         progress_.at(0.0, "identifying by subspace");
         for (std::size_t k = 0; k < rates.size(); ++k) {
-            if (tryRange(rates[k]))
+            const bool met = tryRange(rates[k]);
+            if (met || (k == 0 && tryVectors(false, true))) {
+                if (!determined_)
+                    tryVectors(false, false);
                 return std::move(starts_);
-            if (k == 0 && tryVectors(false))
-                return std::move(starts_);
+            }
         }
-        if (!tryVectors(true) && options_.thorough)
+        if (!tryVectors(true, true) && options_.thorough)
             tryPruned();
         return std::move(starts_);
     }
@@ -60,7 +63,8 @@ private:
         return larger + (larger - n) % 2;
     }
 
-    /// Keeps these poles, refined by a few steps. @returns whether they explain all but noise
+    /// Keeps these poles, refined by a few steps, and to the end where they explain all but noise. @returns whether
+    /// they do
     bool add(const char* name, Sections sections)
     {
         if (!sections.factors.allFinite())
@@ -70,8 +74,14 @@ private:
         auto fit = refinePoles(sections, data_, few_).fit;
         if (!std::isfinite(fit.cost))
             return false;
+        const bool met = explainsAllButNoise(fit, data_, floor_);
+        if (met) {
+            auto refined = refinePoles(fit.sections, data_, options_.refinement);
+            determined_ = refined.converged && refined.iterations <= determinedSteps;
+            fit = std::move(refined.fit);
+        }
         starts_.push_back({name, std::move(fit)});
-        return explainsAllButNoise(starts_.back().fit, data_, floor_);
+        return met;
     }
 
     /// The range of the observability matrix, on the circle or, of fractional order, on the arc that the transform
@@ -127,10 +137,12 @@ private:
             pruned_ = std::move(fit);
     }
 
-    bool tryVectors(bool logarithmic)
+    /// Relocates poles until their error settles. @param untilNoise  or until it is no more than noise
+    bool tryVectors(bool logarithmic, bool untilNoise)
     {
         progress_.at(0.4, "fitting vectors");
         constexpr int most = 60, patience = 8;
+        constexpr double progressing = 1.002;
         auto sections = spreadPoles(options_.order, data_, options_.sampleRate, scale_, logarithmic, options_.alpha);
         PartialFractionFit best;
         best.cost = std::numeric_limits<double>::infinity();
@@ -143,9 +155,9 @@ private:
             if (!(fit.cost < best.cost))
                 continue;
             best = std::move(fit);
-            if (explainsAllButNoise(best, data_, floor_))
+            if (untilNoise && explainsAllButNoise(best, data_, floor_))
                 break;
-            if (1.01 * best.cost < settled) {
+            if (progressing * best.cost < settled) {
                 settled = best.cost;
                 since = 0;
             }
@@ -178,6 +190,7 @@ private:
     PoleRefinementOptions few_;
     std::vector<PoleStart> starts_;
     PartialFractionFit pruned_;
+    bool determined_ = false;  // the poles that met the noise were the only ones nearby
 };
 
 }  // namespace

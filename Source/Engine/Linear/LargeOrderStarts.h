@@ -25,7 +25,9 @@ std::vector<double> warpingRates(const FrequencyData&, bool thorough);
 bool explainsAllButNoise(const PartialFractionFit&, const FrequencyData&, double floor);
 
 /// Starts for an order at which each of them costs something: one after the other, each refined by a few steps, until
-/// one explains all but noise; that one is then the last. What the next ones could find would be no better.
+/// one explains all but noise. Where its refinement then ends soon, the data determines that many poles and no other
+/// start could end elsewhere. Where it goes on, the order is above the true one and poles follow the noise; then vector
+/// fitting has a try, too, as there are many minima, but hardly different ones.
 ///
 /// The subspace method goes first. One range of its observability matrix holds the models of all orders, so the larger
 /// models to prune come from the same ranges; of them only the poles are taken, as the coefficients follow from those.
