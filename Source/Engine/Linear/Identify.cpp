@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
+#include "Engine/Linear/LargeOrderStarts.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
 #include "Engine/Linear/TallQr.h"
@@ -22,32 +23,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int cheapOrder = 20;  // up to here every start is tried, as it costs nothing
-
-struct Candidate {
-    std::string start;
-    Sections sections;
-    double cost = std::numeric_limits<double>::infinity();
-};
-
-double scaleFor(const FrequencyData& data, const IdentifyOptions& options)
-{
-    return options.sampleRate > 0.0 ? 1.0 : std::pow(2.0 * std::numbers::pi * data.frequency.back(), options.alpha);
-}
-
-/// Rates of the bilinear transform that put the band's end at different places of the unit circle, and its middle for
-/// wide bands.
-std::vector<double> warpingRates(const FrequencyData& data, bool thorough)
-{
-    const double high = data.frequency.back();
-    const double middle = std::sqrt(std::max(data.frequency.front(), 1e-4 * high) * high);
-    std::vector<double> rates {std::numbers::pi * 0.18 * high, std::numbers::pi * 0.5 * high};
-    if (thorough)
-        rates.insert(rates.end(), {std::numbers::pi * 0.1 * high, std::numbers::pi * 0.3 * high});
-    if (middle < 0.1 * high)
-        rates.push_back(std::numbers::pi * 0.5 * middle);
-    return rates;
-}
+constexpr int cheapOrder = 20;            // up to here every start is tried, as it costs nothing
+constexpr std::size_t largeSearches = 3;  // above it as many of the best are refined to the end
 
 StateSpace subspaceAt(const FrequencyData& data, double rate, int order, bool stable)
 {
@@ -72,7 +49,7 @@ StateSpace subspaceAt(const FrequencyData& data, double rate, const IdentifyOpti
     range.sampleRate = 0.5 * a;
     auto model = toContinuous(dynamicsOf(range, options.order, data.inputs, false));
     if (options.refinement.stable && data.inputs == 1) {
-        const auto sections = mirrored(sectionsOf(poles(model), 0.0, scaleFor(data, options), options.alpha));
+        const auto sections = mirrored(sectionsOf(poles(model), 0.0, sectionScaleOf(data, options), options.alpha));
         const auto fit = fitPartialFractions(sections, data);
         return realize(sections, fit.C, fit.D);
     }
@@ -101,13 +78,13 @@ std::vector<StateSpace> subspaceModels(const FrequencyData& data, const Identify
     return models;
 }
 
-void add(std::vector<Candidate>& candidates, const char* start, const Sections& sections, const FrequencyData& data)
+void add(std::vector<PoleStart>& candidates, const char* start, const Sections& sections, const FrequencyData& data)
 {
     if (!sections.factors.allFinite())
         return;
-    const auto fit = fitPartialFractions(sections, data);
+    auto fit = fitPartialFractions(sections, data);
     if (std::isfinite(fit.cost))
-        candidates.push_back({start, sections, fit.cost});
+        candidates.push_back({start, std::move(fit)});
 }
 
 Sections fittedVectors(Sections sections, const FrequencyData& data, int times)
@@ -141,6 +118,31 @@ Sections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& o
             fit = refinePoles(fit.sections, data, quick).fit;
     }
     return fit.sections;
+}
+
+/// Every start that there is, the others left out where the subspace method costs less than `floor`.
+std::vector<PoleStart> allStarts(const FrequencyData& data, const IdentifyOptions& options, double floor,
+                                 const Progress& progress)
+{
+    progress.at(0.0, "identifying by subspace");
+    const double scale = sectionScaleOf(data, options);
+    std::vector<PoleStart> starts;
+    for (const auto& model : subspaceModels(data, options))
+        add(starts, "subspace", sectionsOf(poles(model), options.sampleRate, scale, options.alpha), data);
+    for (const auto& start : starts)
+        if (start.fit.cost < floor)
+            return starts;
+    progress.at(0.2, "fitting vectors");
+    for (const bool logarithmic : {false, true})
+        add(starts, "vector fitting",
+            fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, logarithmic, options.alpha), data,
+                          10),
+            data);
+    if (options.thorough && options.order >= 2) {
+        progress.at(0.4, "pruning a larger model");
+        add(starts, "pruned", prunedTo(options.order, data, options, scale), data);
+    }
+    return starts;
 }
 
 LinearIdentification fromFit(const PartialFractionFit& fit, const FrequencyData& data)
@@ -245,12 +247,11 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
     const double floor = data.deviation.size() == 0 ? 1e-20
                                                     : 1.1 * weights.cwiseProduct(data.deviation).squaredNorm()
                                                           / weights.cwiseProduct(data.value.cwiseAbs()).squaredNorm();
-    progress.at(0.0, "identifying by subspace");
-    const auto models = subspaceModels(data, options, options.order > cheapOrder ? floor : 0.0);
     if (data.inputs > 1 || !options.refine) {
+        progress.at(0.0, "identifying by subspace");
         LinearIdentification best;
         best.cost = std::numeric_limits<double>::infinity();
-        for (const auto& model : models)
+        for (const auto& model : subspaceModels(data, options, options.order > cheapOrder ? floor : 0.0))
             if (auto found = judged(model, data, options.alpha); found.cost < best.cost)
                 best = std::move(found);
         if (!std::isfinite(best.cost))
@@ -261,40 +262,23 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
         return best;
     }
 
-    const double scale = scaleFor(data, options);
-    std::vector<Candidate> candidates;
-    for (const auto& model : models)
-        add(candidates, "subspace", sectionsOf(poles(model), options.sampleRate, scale, options.alpha), data);
-    const auto bestCost = [&candidates] {
-        double cost = std::numeric_limits<double>::infinity();
-        for (const auto& c : candidates)
-            cost = std::min(cost, c.cost);
-        return cost;
-    };
-    if (!(bestCost() < floor)) {
-        progress.at(0.2, "fitting vectors");
-        for (const bool logarithmic : {false, true})
-            add(candidates, "vector fitting",
-                fittedVectors(spreadPoles(options.order, data, options.sampleRate, scale, logarithmic, options.alpha),
-                              data, 10),
-                data);
-        if (options.thorough && options.order >= 2) {
-            progress.at(0.4, "pruning a larger model");
-            add(candidates, "pruned", prunedTo(options.order, data, options, scale), data);
-        }
-    }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    const bool large = options.order > cheapOrder;
+    auto candidates = large ? startsOfLargeOrder(data, options, floor, progress.part(0.0, 0.5))
+                            : allStarts(data, options, floor, progress);
     if (candidates.empty())
         throw Error(Error::Kind::numerical, "No start gave a model of order " + std::to_string(options.order) + ".");
-    const std::size_t searches = bestCost() < floor ? 1 : options.thorough ? candidates.size() : 2;
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.fit.cost < b.fit.cost; });
+    const auto& leading = candidates.front().fit;
+    const bool met = large ? explainsAllButNoise(leading, data, floor) : leading.cost < floor;
+    const std::size_t searches = met ? 1 : !options.thorough ? 2 : large ? largeSearches : candidates.size();
     if (candidates.size() > searches)
         candidates.resize(searches);
 
     LinearIdentification best;
     best.cost = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < candidates.size(); ++c) {
-        auto start = candidates[c].sections;
+        auto start = candidates[c].fit.sections;
         if (options.refinement.stable)
             start = mirrored(start);
         const double share = static_cast<double>(candidates.size());
@@ -303,7 +287,7 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
             progress.part(0.5 + 0.5 * static_cast<double>(c) / share, 0.5 + 0.5 * static_cast<double>(c + 1) / share));
         if (refined.fit.cost < best.cost) {
             best = fromFit(refined.fit, data);
-            best.start = candidates[c].start;
+            best.start = candidates[c].name;
             best.reason = refined.reason;
         }
     }
