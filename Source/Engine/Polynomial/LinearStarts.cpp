@@ -18,24 +18,21 @@ using Eigen::VectorXd;
 
 constexpr double alikeDb = 0.01;
 
-Pnlss withoutTerms(const StateSpace& linear)
-{
-    return withTerms(linear, Exponents(0, linear.order() + linear.inputs()));
-}
+Pnlss linearOnly(const StateSpace& linear) { return withTerms(linear, Exponents(0, linear.order() + linear.inputs())); }
 
 std::span<const double> samplesOf(const Eigen::MatrixXd& column)
 {
     return {column.data(), static_cast<std::size_t>(column.rows())};
 }
 
-LinearStart refined(const StateSpace& linear, const PnlssRecord& record)
+LinearStart refinedOn(const StateSpace& linear, const PnlssRecord& record)
 {
     PnlssFitOptions options;
     options.search = PnlssSearch::plain;
     options.maximumIterations = 20;
     options.costTolerance = 1e-5;
     options.estimateInitialStates = true;
-    const auto fit = fitPnlss(withoutTerms(linear), {record}, {}, options);
+    const auto fit = fitPnlss(linearOnly(linear), {record}, {}, options);
     if (!std::isfinite(fit.estimationDb))
         return {linear, VectorXd::Zero(linear.order()), fit.estimationDb};
     return {fit.model.linear, fit.initialStates.front(), fit.estimationDb};
@@ -54,7 +51,7 @@ std::vector<LinearStart> linearStarts(const PnlssRecord& record, double sampleRa
     const auto consider = [&](const auto& find) {
         try {
             const StateSpace linear = find();
-            const auto start = refined(linear, record);
+            const auto start = refinedOn(linear, record);
             raw.push_back({linear, VectorXd::Zero(order), start.errorDb});
             const bool known = std::any_of(starts.begin(), starts.end(), [&](const LinearStart& other) {
                 return std::abs(other.errorDb - start.errorDb) < alikeDb;

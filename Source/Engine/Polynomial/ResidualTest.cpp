@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index lags = 3, longestFilter = 30, mostRegressors = 120;
+constexpr Index residualLags = 3, longestFilter = 30, mostRegressors = 120;
 
 /// a(0) = 1, a(1) .. of the filter that leaves least of x going forth and back.
 VectorXd burg(const VectorXd& x, Index order)
@@ -39,7 +39,7 @@ VectorXd burg(const VectorXd& x, Index order)
     return a;
 }
 
-VectorXd filtered(const VectorXd& a, const VectorXd& x)
+VectorXd whitenedBy(const VectorXd& a, const VectorXd& x)
 {
     VectorXd y = x;
     for (Index i = 1; i < a.size(); ++i)
@@ -47,7 +47,7 @@ VectorXd filtered(const VectorXd& a, const VectorXd& x)
     return y;
 }
 
-VectorXd unfiltered(const VectorXd& a, const VectorXd& y)
+VectorXd colouredBy(const VectorXd& a, const VectorXd& y)
 {
     VectorXd x = y;
     for (Index t = 0; t < x.size(); ++t)
@@ -60,13 +60,13 @@ VectorXd unfiltered(const VectorXd& a, const VectorXd& y)
 int degreeFor(Index variables, Index room)
 {
     int degree = 0;
-    while (degree < 3 && monomials(static_cast<int>(variables), 1, degree + 1).rows() * lags <= room)
+    while (degree < 3 && monomials(static_cast<int>(variables), 1, degree + 1).rows() * residualLags <= room)
         ++degree;
     return degree;
 }
 
 /// Monomials of states and inputs at each sample, each variable over its rms.
-MatrixXd regressors(const MatrixXd& states, const MatrixXd& input, int degree)
+MatrixXd monomialColumns(const MatrixXd& states, const MatrixXd& input, int degree)
 {
     const auto N = input.rows(), n = states.rows(), m = input.cols();
     MatrixXd z(N, n + m);
@@ -108,14 +108,15 @@ double leftOver(const MatrixXd& regressors, const VectorXd& target)
 double innovationShare(const VectorXd& e, const MatrixXd& output, const MatrixXd& input)
 {
     const auto N = e.size(), p = output.cols(), m = input.cols();
-    const Index longest = 2 * lags + 4;
+    const Index longest = 2 * residualLags + 4;
     const double alone = leftOver(delayed(e, 1, longest, longest), e.tail(N - longest));
-    MatrixXd lately(N - longest, lags * (p + m) + m);
-    lately << delayed(output, 1, lags, longest), delayed(input, 0, lags, longest);
-    const int degree = degreeFor(lately.cols(), std::min(2 * mostRegressors, N / 8) * lags);
-    const auto bent = regressors(lately.transpose(), MatrixXd(lately.rows(), 0), std::max(degree, 1));
-    MatrixXd all(lately.rows(), bent.cols() + (longest - lags) * (p + m));
-    all << bent, delayed(output, lags + 1, longest, longest), delayed(input, lags + 1, longest, longest);
+    MatrixXd lately(N - longest, residualLags * (p + m) + m);
+    lately << delayed(output, 1, residualLags, longest), delayed(input, 0, residualLags, longest);
+    const int degree = degreeFor(lately.cols(), std::min(2 * mostRegressors, N / 8) * residualLags);
+    const auto bent = monomialColumns(lately.transpose(), MatrixXd(lately.rows(), 0), std::max(degree, 1));
+    MatrixXd all(lately.rows(), bent.cols() + (longest - residualLags) * (p + m));
+    all << bent, delayed(output, residualLags + 1, longest, longest),
+        delayed(input, residualLags + 1, longest, longest);
     // What is left of the output before is no more than what is left of e, if that is noise.
     MatrixXd known(lately.rows(), all.cols() + longest);
     known << all, delayed(e, 1, longest, longest);
@@ -132,11 +133,11 @@ std::optional<double> untold(const VectorXd& e, const MatrixXd& states, const Ma
         return std::nullopt;
     const double power = e.squaredNorm(), share = innovationShare(e, output.tail(N), input.bottomRows(N));
     const VectorXd a = burg(e, longestFilter);
-    const VectorXd white = filtered(a, e);
-    const auto now = regressors(states, input, degree);
-    const Index K = now.cols(), P = K * lags;
+    const VectorXd white = whitenedBy(a, e);
+    const auto now = monomialColumns(states, input, degree);
+    const Index K = now.cols(), P = K * residualLags;
     MatrixXd M = MatrixXd::Zero(N, P);
-    for (Index lag = 0; lag < lags; ++lag) {
+    for (Index lag = 0; lag < residualLags; ++lag) {
         const Index delay = std::max<Index>(0, lag - first);  // no samples are known before the record
         M.block(delay, lag * K, N - delay, K) = now.middleRows(first + delay - lag, N - delay);
     }
@@ -146,7 +147,7 @@ std::optional<double> untold(const VectorXd& e, const MatrixXd& states, const Ma
     gram.selfadjointView<Eigen::Lower>().rankUpdate(M.transpose());
     gram.diagonal().array() += 1e-11;
     const VectorXd rest = white - M * gram.selfadjointView<Eigen::Lower>().ldlt().solve(M.transpose() * white);
-    const double untold = unfiltered(a, rest).squaredNorm() * static_cast<double>(N) / static_cast<double>(N - P);
+    const double untold = colouredBy(a, rest).squaredNorm() * static_cast<double>(N) / static_cast<double>(N - P);
     return std::min({power, untold, share * power});
 }
 
