@@ -48,6 +48,8 @@ public:
                                 ? 2.0 * all
                                 : all + static_cast<double>(starts.size()) * (1.5 * all + guided);
         searching_.costTolerance = options.costTolerance;
+        if (options.judgeResidual)
+            searching_.costTolerance = std::max(options.costTolerance, 0.1 / samplesJudged());
         searching_.rankTolerance = options.rankTolerance;
         searching_.begun = [this, most, &progress] {
             progress.at(std::min(iterations_++ / most, 1.0), "fitting the polynomial model");
@@ -111,6 +113,14 @@ public:
     }
 
 private:
+    double samplesJudged() const
+    {
+        double count = 0.0;
+        for (const auto& record : estimation_)
+            count += static_cast<double>((record.output.rows() - record.skip) * record.output.cols());
+        return count;
+    }
+
     int guidedIterations() const { return std::max(3, options_.maximumIterations / 28); }
 
     /// Through all gains, a few iterations each: a stage only has to lead to the next.

@@ -35,7 +35,8 @@ struct PnlssFitOptions {
     /// weighted error where there are weights and no such records
     double enoughDb = -200.0;
     /// where the noise is not known: no other way is tried either once what is left is noise, as far as the input can
-    /// tell (see ResidualTest.h)
+    /// tell (see ResidualTest.h). A gain of less than 0.1 over the number of samples, which changes no likelihood, then
+    /// counts as none.
     bool judgeResidual = false;
 
     /// Weights of the error's spectrum, one a line 0 .. N/2 of the judged samples of each record (all equally long,
