@@ -118,7 +118,7 @@ std::span<const double> spanOf(const Eigen::MatrixXd& column)
 }  // namespace
 
 TEST_CASE(
-    "From one record out of a longer motion, a response has no leakage and iterative prefiltering finds the model")
+    "From one record out of a longer motion, a response has little leakage and iterative prefiltering finds the model")
 {
     const double rate = 48000.0;
     const auto truth = loudspeaker(rate);
@@ -126,7 +126,6 @@ TEST_CASE(
     Eigen::MatrixXd u = noiseOf(3000, 1.0, normal);
     const Eigen::MatrixXd y = simulate(truth, u, Eigen::Vector3d(1e-3, 2.0, 5.0));
 
-    const auto response = localRationalResponse(spanOf(u), spanOf(y), rate);
     const auto errorOf = [&](const std::vector<double>& frequency, const auto& valueAt) {
         double error = 0.0, power = 0.0;
         for (std::size_t k = 0; k < frequency.size(); ++k) {
@@ -136,10 +135,16 @@ TEST_CASE(
         }
         return 10.0 * std::log10(error / power);
     };
-    REQUIRE(response.lines() > 500);
-    CHECK(errorOf(response.frequency, [&](std::size_t k) { return response.value(static_cast<Index>(k), 0); }) < -90.0);
+    const auto localError = [&](int reach) {
+        const auto response = localRationalResponse(spanOf(u), spanOf(y), rate, 1000, reach);
+        REQUIRE(response.lines() > 500);
+        return errorOf(response.frequency, [&](std::size_t k) { return response.value(static_cast<Index>(k), 0); });
+    };
     const auto averaged = welch(spanOf(u), spanOf(y), rate).frf;
-    CHECK(errorOf(averaged.frequency, [&](std::size_t k) { return averaged.value[k]; }) > -50.0);
+    const double welchError = errorOf(averaged.frequency, [&](std::size_t k) { return averaged.value[k]; });
+    // 128 Hz to either side of a line are wide beside a resonance of 57 Hz; what they bend is all that is wrong.
+    CHECK(localError(8) < welchError - 20.0);
+    CHECK(localError(5) < localError(8) - 10.0);
 
     for (Index t = 0; t < u.rows(); ++t) {  // a sweep, which shows every frequency once
         const double s = static_cast<double>(t) / static_cast<double>(u.rows());
