@@ -36,7 +36,7 @@ struct PnlssOutcome {
     nlohmann::ordered_json model;                                       ///< its document
     std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;  ///< the output from rest
     /// dB of the output, of a take without periods: what is left that the input does not tell (see ResidualTest.h)
-    std::optional<double> untoldDb;
+    std::optional<double> untoldDb {};
 };
 
 /// A take with what is to be explained by what.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models from one aperiodic record: responses and linear starts without leakage, nonlinear fits that arrive, and a
+// Models from one aperiodic record: responses with little leakage, linear starts, nonlinear fits that arrive, and a
 // residual that tells whether they did.
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Response.h"
