@@ -6,10 +6,11 @@
 
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
-#include "Engine/Linear/Identify.h"
 #include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Measurement/TakeFile.h"
+#include "Engine/Polynomial/LinearStarts.h"
 #include "Engine/Polynomial/PnlssFile.h"
+#include "Engine/Polynomial/ResidualTest.h"
 #include "Engine/Ranking/Agreement.h"
 
 #include <algorithm>
@@ -44,17 +45,9 @@ void writePlayed(const PnlssTake& data, const Eigen::MatrixXd& y, const std::str
     writeMeasurement(played, folder);
 }
 
-Pnlss startFor(const PnlssArguments& options, const Measurement& take)
+bool isFractional(const PnlssArguments& options, const nlohmann::json& kept)
 {
-    IdentifyOptions identifying;
-    identifying.order = options.order;
-    identifying.sampleRate = take.sampleRate;
-    const auto linear = identify(frequencyDataOf(openResponse(options.response).frf), identifying).model;
-    auto start = options.terms.empty() ? withTerms(linear, options.degree, maskNamed(options.mask), options.offset)
-                                       : withTerms(linear, monomialsNamed(options.terms, options.order, 1));
-    if (options.noOutputTerms)
-        keepOutputLinear(start);
-    return start;
+    return kept.is_object() ? kept.value("format", "") == "excursion-fractional-pnlss" : !options.alpha.empty();
 }
 
 /// The channels that a kept model connects, or those that are asked for.
@@ -77,19 +70,18 @@ void choose(const PnlssArguments& options, const nlohmann::json& kept, PnlssTake
         data.output = &channelNamed(data.take, output);
     }
     data.records = recordsOf(data.take, *data.input, *data.output, options.response.level);
-}
-
-bool isFractional(const PnlssArguments& options, const nlohmann::json& kept)
-{
-    return kept.is_object() ? kept.value("format", "") == "excursion-fractional-pnlss" : !options.alpha.empty();
+    if (!isFractional(options, kept) && !data.periodic())
+        data.records.estimation.front().skip = 0;  // its first state is estimated
 }
 
 void require(const PnlssArguments& options)
 {
-    if (options.model.empty() == (options.order == 0 && !options.mixed))
-        throw Error(
-            Error::Kind::usage,
-            "Give either --order (or --alpha with --mixed), to fit a model, or --model, to judge one that was kept.");
+    if (options.model.empty() == (options.order == 0 && !options.mixed && options.start.empty()))
+        throw Error(Error::Kind::usage,
+                    "Give either --order (or --start, or --alpha with --mixed), to fit a model, or --model, to judge "
+                    "one that was kept.");
+    if (!options.start.empty() && !options.alpha.empty())
+        throw Error(Error::Kind::usage, "--start is a model of whole order; leave --alpha out.");
     if (options.mixed && (options.alpha.empty() || options.order != 0))
         throw Error(
             Error::Kind::usage,
@@ -128,8 +120,8 @@ void run(PnlssArguments options, Terminal& terminal)
         writePlayed(data, outcome.play(data.wholeInput()), options.played);
 
     if (options.model.empty())
-        terminal.say("linear part alone: " + errorText(outcome.startDb) + " dB; " + std::to_string(outcome.iterations)
-                     + " iterations: " + outcome.reason + ".");
+        terminal.say((options.start.empty() ? "linear part alone: " : "start: ") + errorText(outcome.startDb) + " dB; "
+                     + std::to_string(outcome.iterations) + " iterations: " + outcome.reason + ".");
     if (!outcome.alpha.empty())
         terminal.say("alpha " + outcome.alpha);
     const bool validated = !data.records.validation.empty();
@@ -137,6 +129,10 @@ void run(PnlssArguments options, Terminal& terminal)
         {"records", "error dB"},
         {{"estimation", errorText(outcome.estimationDb)},
          {"validation", errorText(validated ? outcome.validationDb : std::numeric_limits<double>::quiet_NaN())}});
+    const auto arrival = arrivalOf(options, data, outcome);
+    terminal.say(arrival.sentence);
+    if (!arrival.advice.empty())
+        terminal.say(arrival.advice);
     if (!outcome.stable)
         terminal.say("The linear part of this model is not stable.");
     for (const auto& written : {options.out, options.played})
@@ -153,6 +149,10 @@ void run(PnlssArguments options, Terminal& terminal)
     Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", options.response.path}};
     document["estimationDb"] = outcome.estimationDb;
     document["validationDb"] = validated ? numberOrNull(outcome.validationDb) : Json();
+    document["noiseDb"] = arrival.noiseDb ? Json(*arrival.noiseDb) : Json();
+    document["noiseFrom"] = arrival.noiseDb ? Json(arrival.noiseFrom) : Json();
+    document["arrived"] = arrival.arrived ? Json(*arrival.arrived) : Json();
+    document["advice"] = arrival.advice.empty() ? Json() : Json(arrival.advice);
     document["iterations"] = outcome.iterations;
     document["stopped"] = outcome.reason;
     document["stable"] = outcome.stable;
@@ -175,6 +175,44 @@ Eigen::MatrixXd PnlssTake::wholeInput() const
     return Eigen::Map<const Eigen::VectorXd>(input->samples.data(), static_cast<Eigen::Index>(input->samples.size()));
 }
 
+Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const PnlssOutcome& outcome)
+{
+    Arrival told;
+    told.noiseDb = data.records.noiseDb ? data.records.noiseDb : outcome.untoldDb;
+    told.noiseFrom = data.records.noiseDb ? "periods" : "residual";
+    if (outcome.estimationDb <= exactDb) {
+        told.arrived = true;
+        told.sentence = "The error is below what any recording resolves.";
+        return told;
+    }
+    if (!told.noiseDb) {
+        told.sentence = "Whether the error is at the noise cannot be told: neither periods nor the residual tell it.";
+        return told;
+    }
+    const double above = outcome.estimationDb - *told.noiseDb;
+    told.arrived = above <= atNoiseDb;
+    if (*told.arrived) {
+        told.sentence = "The error is at the noise, " + errorText(*told.noiseDb) + " dB.";
+        return told;
+    }
+    told.sentence = (options.model.empty() ? "The fit did not arrive: its error is " : "The error is ")
+                    + errorText(above) + " dB above the noise, "
+                    + (data.records.noiseDb ? errorText(*told.noiseDb) + " dB by the scatter of the periods"
+                                            : "as the input still tells that much of it; what it does not tell is "
+                                                  + errorText(*told.noiseDb) + " dB or less")
+                    + (options.model.empty() && outcome.estimationDb > outcome.startDb - 1.0
+                           ? ", and no better than its start."
+                           : ".");
+    const auto more = options.mask != "full" ? std::string(", --mask full") : std::string();
+    told.advice = "Try "
+                  + (options.model.empty() && outcome.reason == "the largest number of iterations was reached"
+                         ? "--iterations " + std::to_string(4 * options.iterations) + ", "
+                         : std::string())
+                  + (outcome.alpha.empty() ? "--start with a model of identify or of another take, " : "")
+                  + "a higher --order or --degree" + more + ".";
+    return told;
+}
+
 TermMask maskNamed(const std::string& wanted)
 {
     for (const auto mask : termMasks())
@@ -193,25 +231,33 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
         if (named.model.linear.sampleRate != data.take.sampleRate)
             throw Error(Error::Kind::data, "The model is one at " + significant(named.model.linear.sampleRate, 8)
                                                + " Hz, the take at " + significant(data.take.sampleRate, 8) + " Hz.");
-        outcome.estimationDb = relativeErrorDb(named.model, estimation);
-        outcome.validationDb = relativeErrorDb(named.model, validation);
+        std::vector<Eigen::VectorXd> initial;
+        if (!data.periodic()) {
+            initial = {initialStateOf(named.model, estimation.front())};
+            outcome.untoldDb = untoldDb(named.model, estimation, initial);
+        }
+        outcome.estimationDb = relativeErrorDb(named.model, estimation, initial);
+        outcome.validationDb = relativeErrorDb(named.model, validation, initial);
         outcome.stable = isStable(named.model.linear) && std::isfinite(outcome.estimationDb);
     } else {
-        const auto start = startFor(options, data.take);
+        const auto starts = startsFor(options, data);
         PnlssFitOptions fitting;
         fitting.maximumIterations = options.iterations;
         fitting.enoughDb = data.records.enoughDb();
-        const auto fit = fitPnlss(start, estimation, validation, fitting, terminal.progress());
-        outcome = {relativeErrorDb(start, validation.empty() ? estimation : validation),
-                   fit.estimationDb,
-                   fit.validationDb,
-                   fit.iterations,
-                   fit.stable,
-                   fit.reason,
-                   fit.history,
-                   "",
-                   {},
-                   {}};
+        fitting.estimateInitialStates = fitting.judgeResidual = !data.periodic();
+        const auto fit = fitPnlss(starts, estimation, validation, fitting, terminal.progress());
+        outcome = {
+            relativeErrorDb(starts[0].model, validation.empty() ? estimation : validation, starts[0].initialStates),
+            fit.estimationDb,
+            fit.validationDb,
+            fit.iterations,
+            fit.stable,
+            fit.reason,
+            fit.history,
+            "",
+            {},
+            {},
+            fit.untoldDb};
         named = {std::filesystem::path(options.response.path).stem().string(),
                  {std::string(name(data.input->quantity))},
                  {std::string(name(data.output->quantity))},
@@ -234,6 +280,9 @@ void addPnlss(CLI::App& app, Terminal& terminal)
         masks.emplace_back(name(mask));
     verb->add_option("TAKE", o->response.path, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--order", o->order, "number of states")->check(CLI::Range(1, 100));
+    verb->add_option("--start", o->start,
+                     "begin the fit at this model: a linear one of identify, one that pnlss kept, or a driver")
+        ->type_name("MODEL");
     verb->add_option("--alpha", o->alpha,
                      "states of fractional order alpha, a number below 1, or free: one that starts there and moves");
     verb->add_flag("--mixed", o->mixed,
@@ -261,7 +310,11 @@ void addPnlss(CLI::App& app, Terminal& terminal)
     verb->add_flag("--laws", o->laws,
                    "also tell which physical laws the model agrees with: what it plays is diagnosed as a loudspeaker");
     verb->footer("Exit code 1: the linear part of the model is not stable.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
+    verb->callback([o, &terminal, verb] {
+        for (const auto* option : {"--degree", "--mask", "--terms", "--offset"})
+            o->chosenTerms = o->chosenTerms || verb->count(option) > 0;
+        run(*o, terminal);
+    });
 }
 
 }  // namespace excursion::cli

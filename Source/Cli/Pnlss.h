@@ -10,14 +10,18 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace excursion::cli {
 
 struct PnlssArguments {
     ResponseChoice response;
-    std::string model, out, played, mask = "full", terms, alpha;
+    std::string model, start, out, played, mask = "full", terms, alpha;
     int order = 0, degree = 3, iterations = 50;
     bool noOutputTerms = false, offset = false, mixed = false, laws = false;
+    bool chosenTerms = false;  ///< --degree, --mask, --terms or --offset was given
 };
 
 /// What the two kinds of polynomial models tell alike.
@@ -31,6 +35,8 @@ struct PnlssOutcome {
     std::string alpha;                                                  ///< in words; empty for integer order
     nlohmann::ordered_json model;                                       ///< its document
     std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;  ///< the output from rest
+    /// dB of the output, of a take without periods: what is left that the input does not tell (see ResidualTest.h)
+    std::optional<double> untoldDb {};
 };
 
 /// A take with what is to be explained by what.
@@ -41,9 +47,23 @@ struct PnlssTake {
     PnlssRecords records;
 
     Eigen::MatrixXd wholeInput() const;
+    bool periodic() const { return take.excitation && !take.excitation->lines.empty(); }
 };
 
+/// Whether a fit came as far as the noise lets it, and what to try where it did not.
+struct Arrival {
+    std::optional<double> noiseDb;  ///< dB of the output; empty: not known
+    const char* noiseFrom = "";     ///< "periods", "residual"
+    std::optional<bool> arrived;    ///< empty: that cannot be told
+    std::string sentence, advice;   ///< no advice where it arrived
+};
+
+Arrival arrivalOf(const PnlssArguments&, const PnlssTake&, const PnlssOutcome&);
+
 TermMask maskNamed(const std::string&);
+
+/// Where a fit sets out: the model of --start, or linear ones that are identified from the take.
+std::vector<PnlssStart> startsFor(const PnlssArguments&, const PnlssTake&);
 
 /// A model of integer, or of fractional order: fitted, or read and judged; kept where --out says.
 PnlssOutcome integerPnlss(const PnlssArguments&, const PnlssTake&, Terminal&);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polynomial state-space models from the command line.
 #include "Cli/Chain.h"
+#include "Engine/Document/JsonText.h"
+#include "Linear/Problem.h"
+
+#include <sstream>
 
 using namespace excursion::test;
 
@@ -44,6 +48,88 @@ TEST_CASE("pnlss explains more than its linear start, keeps the model, and judge
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--mask", "odd"}).code == 2);
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--order", "3", "--level", "7"}).code == 2);
     CHECK(runProgram(scratch.folder(), {"pnlss", chain.take(), "--model", chain.model()}).code == 3);
+}
+
+TEST_CASE("pnlss of one record arrives at its noise or says that it did not, and sets out from a model that was kept")
+{
+    const Scratch scratch;
+    // A resonance with a hardening spring, from rest, driven by noise, and heard with noise 60 dB below
+    std::ostringstream csv;
+    csv << "time,voltage,displacement\n";
+    Normal normal(11);
+    double x = 0.0, v = 0.0;
+    for (int t = 0; t < 1800; ++t) {
+        const double u = normal();
+        csv << t / 1000.0 << ',' << significant(u, 12) << ',' << significant(x + 6e-4 * normal(), 12) << '\n';
+        const double next = x + 0.3 * v;
+        v = 0.95 * v - 0.3 * x - 0.1 * x * x * x + 0.2 * u;
+        x = next;
+    }
+    const auto take = (scratch / "record.csv").string(), kept = (scratch / "kept.json").string();
+    std::ofstream(take) << csv.str();
+
+    const auto told = runProgram(scratch.folder(), {"pnlss", take, "--order", "2", "--out", kept, "--json"});
+    INFO(told.err);
+    REQUIRE(told.code == 0);
+    const auto fit = nlohmann::json::parse(told.out);
+    INFO(told.out.substr(0, 600));
+    CHECK(fit.at("arrived") == true);
+    CHECK(fit.at("advice").is_null());
+    CHECK(fit.at("noiseFrom") == "residual");
+    CHECK(fit.at("estimationDb").get<double>() == Approx(fit.at("noiseDb").get<double>()).margin(3.0));
+    CHECK(fit.at("validationDb").get<double>() < fit.at("noiseDb").get<double>() + 5.0);
+
+    const auto judged = runProgram(scratch.folder(), {"pnlss", take, "--model", kept, "--json"});
+    REQUIRE(judged.code == 0);
+    CHECK(nlohmann::json::parse(judged.out).at("estimationDb").get<double>()
+          == Approx(fit.at("estimationDb").get<double>()).margin(0.1));
+
+    // No monomial helps a linear system of order 1 to swing.
+    const auto small = runProgram(scratch.folder(), {"pnlss", take, "--order", "1", "--json"});
+    INFO(small.err);
+    REQUIRE(small.code <= 1);
+    const auto missed = nlohmann::json::parse(small.out);
+    CHECK(missed.at("arrived") == false);
+    CHECK(missed.at("advice").get<std::string>().find("--order") != std::string::npos);
+    const auto words = runProgram(scratch.folder(), {"pnlss", take, "--order", "1"});
+    CHECK(words.out.find("did not arrive") != std::string::npos);
+
+    const auto again = runProgram(scratch.folder(), {"pnlss", take, "--start", kept, "--json"});
+    INFO(again.err);
+    REQUIRE(again.code == 0);
+    const auto restarted = nlohmann::json::parse(again.out);
+    CHECK(restarted.at("history").front().get<double>() == Approx(fit.at("estimationDb").get<double>()).margin(0.5));
+    CHECK(restarted.at("arrived") == true);
+
+    const auto linear = (scratch / "linear.json").string();
+    REQUIRE(runProgram(scratch.folder(), {"identify", take, "--order", "2", "--discrete", "--out", linear}).code <= 1);
+    const auto led = runProgram(scratch.folder(), {"pnlss", take, "--start", linear, "--json"});
+    INFO(led.err);
+    REQUIRE(led.code == 0);
+    CHECK(nlohmann::json::parse(led.out).at("arrived") == true);
+
+    refusedWith(2, {"pnlss", take, "--start", kept, "--degree", "3"}, scratch, "leave --degree");
+    refusedWith(2, {"pnlss", take, "--start", kept, "--order", "3"}, scratch, "leave --order out");
+    refusedWith(2, {"pnlss", take, "--start", kept, "--alpha", "0.5"}, scratch, "--alpha");
+    refusedWith(3, {"pnlss", take, "--start", (scratch / "none.json").string()}, scratch, "none.json");
+    auto other = nlohmann::json::parse(bytesOf(kept));
+    other["linear"]["sampleRate"] = 48000.0;
+    std::ofstream(scratch / "other.json") << other;
+    refusedWith(4, {"pnlss", take, "--start", (scratch / "other.json").string()}, scratch, "48000 Hz");
+}
+
+TEST_CASE("pnlss sets out from a driver")
+{
+    const Scratch scratch;
+    const auto& chain = Chain::get();
+    const auto told = runProgram(scratch.folder(), {"pnlss", chain.take(), "--output", "displacement", "--start",
+                                                    chain.model(), "--iterations", "2", "--json"});
+    INFO(told.err);
+    REQUIRE(told.code <= 1);
+    const auto document = nlohmann::json::parse(told.out);
+    CHECK(document.at("noiseFrom") == "periods");
+    CHECK(document.at("history").front().get<double>() < 0.0);
+    CHECK(document.at("model").at("linear").at("A").size() == 3);
 }
 
 TEST_CASE("pnlss of fractional order explains a take, keeps the model with its order, and judges and plays it again")

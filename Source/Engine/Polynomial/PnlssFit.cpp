@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Polynomial/Recursion.h"
+#include "Engine/Polynomial/ResidualTest.h"
 #include "Engine/Polynomial/SimulationError.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
@@ -31,21 +32,24 @@ struct Way {
 /// The ways of one fit.
 class Fitting {
 public:
-    Fitting(const Pnlss& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
-            const PnlssFitOptions& options, const Progress& progress)
-        : start_(start),
+    Fitting(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
+            const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+        : start_(starts.front().model),
           estimation_(estimation),
           validation_(validation),
           options_(options),
-          problem_(estimation, options, start)
+          problem_(estimation, options, start_)
     {
         const double all = options.maximumIterations,
                      guided = static_cast<double>(guidedIterations() * static_cast<int>(options.guideGains.size()));
         const double most = options.search == PnlssSearch::plain    ? all
                             : options.search == PnlssSearch::guided ? all + guided
-                            : options.search == PnlssSearch::grown  ? 2.0 * all
-                                                                    : 2.5 * all + guided;
+                            : options.search == PnlssSearch::grown
+                                ? 2.0 * all
+                                : all + static_cast<double>(starts.size()) * (1.5 * all + guided);
         searching_.costTolerance = options.costTolerance;
+        if (options.judgeResidual)
+            searching_.costTolerance = std::max(options.costTolerance, 0.1 / samplesJudged());
         searching_.rankTolerance = options.rankTolerance;
         searching_.begun = [this, most, &progress] {
             progress.at(std::min(iterations_++ / most, 1.0), "fitting the polynomial model");
@@ -55,11 +59,11 @@ public:
     bool isFree() const { return problem_.parameters() > 0; }
 
     /// As far as the first simulation of the whole records.
-    Way led(PnlssSearch search, int iterations)
+    Way led(const PnlssStart& start, PnlssSearch search, int iterations)
     {
         Way way;
-        way.values = problem_.valuesOf(start_);
-        way.fit.model = start_;
+        way.values = problem_.valuesOf(start.model, start.initialStates);
+        way.fit.model = start.model;
         way.fit.reason = "the model runs away at its start";
         way.fit.estimationDb = way.fit.validationDb = infinity;
         searching_.accepted = {};
@@ -72,7 +76,23 @@ public:
     }
 
     /// Whether it sets out from another place than the plain way.
-    bool leadsElsewhere(const Way& way) const { return way.values != problem_.valuesOf(start_); }
+    bool leadsElsewhere(const Way& way, const PnlssStart& start) const
+    {
+        return way.values != problem_.valuesOf(start.model, start.initialStates);
+    }
+
+    /// Whether there is nothing left to be found by another way.
+    bool isEnough(Way& way) const
+    {
+        if (way.judgedDb <= options_.enoughDb)
+            return true;
+        if (!options_.judgeResidual || !std::isfinite(way.fit.estimationDb))
+            return false;
+        if (!way.fit.untoldDb)
+            way.fit.untoldDb = untoldDb(way.fit.model, estimation_, way.fit.initialStates);
+        return way.fit.estimationDb <= exactDb
+               || (way.fit.untoldDb && way.fit.estimationDb <= *way.fit.untoldDb + atNoiseDb);
+    }
 
     /// On by simulation, until the way has this many iterations.
     Way simulated(Way way, int iterations)
@@ -93,6 +113,14 @@ public:
     }
 
 private:
+    double samplesJudged() const
+    {
+        double count = 0.0;
+        for (const auto& record : estimation_)
+            count += static_cast<double>((record.output.rows() - record.skip) * record.output.cols());
+        return count;
+    }
+
     int guidedIterations() const { return std::max(3, options_.maximumIterations / 28); }
 
     /// Through all gains, a few iterations each: a stage only has to lead to the next.
@@ -135,16 +163,29 @@ private:
         auto& fit = way.fit;
         const auto model = problem_.modelAt(values);
         fit.history.push_back(decibelsOf(cost));
-        const double validationDb = validation_.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                                        : relativeErrorDb(model, validation_);
+        const auto initial = problem_.initialStates(values);
+        const double validationDb = validation_.empty()
+                                        ? std::numeric_limits<double>::quiet_NaN()
+                                        : relativeErrorDb(model, validation_, validationStates(initial));
         const double judgedDb = validation_.empty() ? decibelsOf(cost) : validationDb;
         if (judgedDb < way.judgedDb) {
             way.judgedDb = judgedDb;
             fit.model = model;
-            fit.initialStates = problem_.initialStates(values);
+            fit.initialStates = initial;
+            fit.untoldDb.reset();
             fit.validationDb = validationDb;
             fit.estimationDb = relativeErrorDb(model, estimation_, fit.initialStates);
         }
+    }
+
+    std::vector<VectorXd> validationStates(const std::vector<VectorXd>& estimated) const
+    {
+        std::vector<VectorXd> states;
+        for (const auto& record : validation_)
+            states.push_back(record.startsAs >= 0 && !estimated.empty()
+                                 ? estimated[static_cast<std::size_t>(record.startsAs)]
+                                 : VectorXd::Zero(start_.linear.order()));
+        return states;
     }
 
     const Pnlss& start_;
@@ -154,6 +195,23 @@ private:
     SearchOptions searching_;
     int iterations_ = 0;
 };
+
+void requireStart(const PnlssStart& start, const Pnlss& structure, const std::vector<PnlssRecord>& estimation)
+{
+    std::string reason;
+    const auto n = structure.linear.order();
+    if (!start.model.isValid(&reason))
+        throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
+    if (start.model.linear.order() != n || start.model.linear.inputs() != structure.linear.inputs()
+        || start.model.linear.outputs() != structure.linear.outputs() || start.model.terms() != structure.terms()
+        || start.model.exponents != structure.exponents || (start.model.free != structure.free).any())
+        throw Error(Error::Kind::usage, "The starts of a fit must be models of one structure.");
+    if (!start.initialStates.empty() && start.initialStates.size() != estimation.size())
+        throw Error(Error::Kind::usage, "A start needs one initial state a record, or none.");
+    for (const auto& state : start.initialStates)
+        if (state.size() != n || !state.allFinite())
+            throw Error(Error::Kind::usage, "An initial state of a start does not fit the model.");
+}
 
 }  // namespace
 
@@ -193,34 +251,55 @@ double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& recor
 PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
                   const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
 {
-    std::string reason;
-    if (!start.isValid(&reason) || !options.isValid(&reason))
+    return fitPnlss(std::vector<PnlssStart> {{start, {}}}, estimation, validation, options, progress);
+}
+
+PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
+                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+{
+    std::string reason = "there is no start";
+    if (starts.empty() || !options.isValid(&reason))
         throw Error(Error::Kind::usage, "The model cannot be fitted: " + reason + ".");
-    requireFitting(estimation, validation, start.linear.inputs(), start.linear.outputs());
+    for (const auto& start : starts)
+        requireStart(start, starts.front().model, estimation);
+    const auto& structure = starts.front().model;
+    requireFitting(estimation, validation, structure.linear.inputs(), structure.linear.outputs());
     for (const auto& record : estimation)
         if (options.lineWeights.size() != 0
             && (!record.periodic || (record.input.rows() - record.skip) / 2 + 1 != options.lineWeights.size()))
             throw Error(Error::Kind::data,
                         "Weights of the spectrum need periodic records, and as many numbers as a record has lines.");
-    Fitting fitting(start, estimation, validation, options, progress);
+    for (const auto& record : validation)
+        if (record.startsAs >= static_cast<int>(estimation.size()))
+            throw Error(Error::Kind::usage, "A validation record begins as an estimation record that does not exist.");
+    Fitting fitting(starts, estimation, validation, options, progress);
     if (!fitting.isFree())
         throw Error(Error::Kind::usage, "The model cannot be fitted: nothing of it is free.");
     const int all = options.maximumIterations, half = (all + 1) / 2;
-    if (options.search != PnlssSearch::any)
-        return fitting.simulated(fitting.led(options.search, all), all).fit;
-    auto best = fitting.simulated(fitting.led(PnlssSearch::plain, half), half);
-    for (const auto search : {PnlssSearch::guided, PnlssSearch::grown}) {
-        if (best.judgedDb <= options.enoughDb)
-            break;
-        auto way = fitting.led(search, half);
-        if (!fitting.leadsElsewhere(way))
-            continue;
-        way = fitting.simulated(std::move(way), half);
-        if (way.judgedDb < best.judgedDb)
+    const bool any = options.search == PnlssSearch::any;
+    Way best;
+    bool enough = false;
+    const auto go = [&](const PnlssStart& start, PnlssSearch search) {
+        auto way = fitting.led(start, search, any ? half : all);
+        if ((any && search != PnlssSearch::plain && !fitting.leadsElsewhere(way, start)))
+            return;
+        way = fitting.simulated(std::move(way), any ? half : all);
+        enough = fitting.isEnough(way);
+        if (best.values.size() == 0 || way.judgedDb < best.judgedDb)
             best = std::move(way);
-    }
-    if (!best.fit.converged && best.iterations < all)
+    };
+    for (const auto& start : starts)
+        for (const auto search :
+             any ? std::vector {PnlssSearch::plain, PnlssSearch::guided} : std::vector {options.search})
+            if (!enough)
+                go(start, search);
+    if (any)
+        for (const auto& start : starts)
+            if (!enough)
+                go(start, PnlssSearch::grown);
+    if (any && !best.fit.converged && best.iterations < all)
         best = fitting.simulated(std::move(best), all);
+    fitting.isEnough(best);  // tells what is left of the one that is returned
     return best.fit;
 }
 

@@ -5,6 +5,7 @@
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Progress.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ struct PnlssFitOptions {
     /// relative rms error, on the validation records where there are any, below which no other way is tried; of the
     /// weighted error where there are weights and no such records
     double enoughDb = -200.0;
+    /// where the noise is not known: no other way is tried either once what is left is noise, as far as the input can
+    /// tell (see ResidualTest.h). A gain of less than 0.1 over the number of samples, which changes no likelihood, then
+    /// counts as none.
+    bool judgeResidual = false;
 
     /// Weights of the error's spectrum, one a line 0 .. N/2 of the judged samples of each record (all equally long,
     /// periodic); empty: all equal.
@@ -41,12 +46,20 @@ struct PnlssFitOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
+/// Where a search sets out.
+struct PnlssStart {
+    Pnlss model;
+    std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they are estimated; empty: zero
+};
+
 /// What became of a fit; the default is failure.
 struct PnlssFit {
     Pnlss model;
     std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they were estimated
     /// relative rms error [B 4.26], of the model that is returned; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
+    /// dB of the output: what is left that the input does not tell, where the residual was judged
+    std::optional<double> untoldDb;
     int iterations = 0;  ///< of all ways
     bool converged = false;
     bool stable = false;  ///< its linear part is stable and no record made it run away
@@ -79,6 +92,12 @@ double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
 /// Grown: a quarter of a record lets errors of the model add up for a shorter time, and its error has fewer valleys.
 /// Weights of the spectrum come later.
 PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
+                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
+
+/// From several starts of one structure, such as linear models that were found in different ways (see LinearStarts.h):
+/// where one leads into a valley, another need not. Each is gone in the ways that the options name until one is good
+/// enough; then the best one goes on. Throws Error (usage) without a start, or where structures differ.
+PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
                   const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
 
 }  // namespace excursion

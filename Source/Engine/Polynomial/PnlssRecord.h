@@ -21,6 +21,9 @@ struct PnlssRecord {
     Eigen::Index skip = 0;
     /// the samples after `skip` are whole periods in steady state, as frequency weights need
     bool periodic = false;
+    /// of a validation record: number of the estimation record that begins at the same sample, whose first state is its
+    /// own where states are estimated; below 0: none
+    int startsAs = -1;
 };
 
 /// A record of one steady period: `before` of its last samples are put in front, again and again if need be, to let the

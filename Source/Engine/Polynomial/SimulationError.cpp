@@ -67,10 +67,13 @@ Index SimulationError::parameters() const
     return recursion_.parameters() + (options_.estimateInitialStates ? n_ * static_cast<Index>(records_.size()) : 0);
 }
 
-VectorXd SimulationError::valuesOf(const Pnlss& model) const
+VectorXd SimulationError::valuesOf(const Pnlss& model, const std::vector<VectorXd>& initialStates) const
 {
     VectorXd values = VectorXd::Zero(parameters());
     values.head(recursion_.parameters()) = recursion_.valuesOf(model);
+    if (options_.estimateInitialStates)
+        for (std::size_t k = 0; k < initialStates.size(); ++k)
+            values.segment(recursion_.parameters() + n_ * static_cast<Index>(k), n_) = initialStates[k];
     return values;
 }
 

@@ -19,7 +19,8 @@ public:
     SimulationError(const std::vector<PnlssRecord>&, const PnlssFitOptions&, const Pnlss& structure);
 
     Eigen::Index parameters() const;
-    Eigen::VectorXd valuesOf(const Pnlss&) const;  // first states of 0
+    /// @param initialStates  one a record; empty: zero. Of no account where they are not estimated
+    Eigen::VectorXd valuesOf(const Pnlss&, const std::vector<Eigen::VectorXd>& initialStates = {}) const;
     Pnlss modelAt(const Eigen::VectorXd& values) const;
 
     /// One a record; empty where they are not estimated.

@@ -38,7 +38,7 @@ PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Chan
         const auto u = columnOf(input.samples), y = columnOf(output.samples);
         const Eigen::Index skip = std::min<Eigen::Index>(1000, N / 10);
         records.estimation.push_back({u.topRows(cut), y.topRows(cut), skip, false});
-        records.validation.push_back({u, y, cut, false});  // led in by all that comes before
+        records.validation.push_back({u, y, cut, false, 0});  // led in by all that comes before
         return records;
     }
     const auto& excitation = periodicExcitation(take);
