@@ -103,13 +103,13 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
     const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "units of " + box.input;
     terminal.say("A " + box.kind + " (" + box.output + " from " + box.input + ") at "
                  + significant(box.linear.sampleRate, 6) + " Hz. As it was fitted, with "
-                 + significant(box.stimulus.rms, 3) + " " + unit + " rms, its distortion is "
-                 + fixed(gain.beforeDb, 1) + " dB; with the correction "
-                 + fixed(gain.afterDb, 1) + " dB are left: a gain of " + fixed(gain.gainDb(), 1)
-                 + " dB, as far as the model is right.");
+                 + significant(box.stimulus.rms, 3) + " " + unit + " rms, its distortion is " + fixed(gain.beforeDb, 1)
+                 + " dB; with the correction " + fixed(gain.afterDb, 1) + " dB are left: a gain of "
+                 + fixed(gain.gainDb(), 1) + " dB, as far as the model is right.");
     if (box.output == "current")
-        terminal.say("What becomes linear is the current, which is not the sound: of that, a model of the displacement, "
-                     "the velocity, the acceleration or the pressure would take the distortion out.");
+        terminal.say(
+            "What becomes linear is the current, which is not the sound: of that, a model of the displacement, "
+            "the velocity, the acceleration or the pressure would take the distortion out.");
     const auto rate = static_cast<double>(wav.sampleRate);
     if (rate != box.linear.sampleRate)
         terminal.say("The WAV is at another rate, " + significant(rate, 6)
@@ -287,8 +287,10 @@ void addPredistort(CLI::App& app, Terminal& terminal)
     auto o = std::make_shared<PredistortArguments>();
     auto* verb = app.add_subcommand("predistort", "Bends a WAV so that the loudspeaker plays it as if it were linear")
                      ->group(step::use);
-    verb->add_option("MODEL", o->model, "the model of a driver, or one without physics that pnlss or rank --keep "
-                                          "has written, a .json")->required();
+    verb->add_option("MODEL", o->model,
+                     "the model of a driver, or one without physics that pnlss or rank --keep "
+                     "has written, a .json")
+        ->required();
     verb->add_option("IN.wav", o->input, "what is to be played; each of its channels is predistorted by itself")
         ->required();
     verb->add_option("OUT.wav", o->out, "the predistorted signal, as long and as loud")->required();

@@ -109,7 +109,7 @@ TEST_CASE("Block, NARX and Hammerstein models are played as they are simulated",
     const double pole = 0.99, angle = 0.02;
     for (int k = 0; k < 3; ++k)
         narx.exponents(k, k) = 1;
-    narx.coefficients << 2.0 * pole * std::cos(angle), -pole * pole, 1e-3, -2e-4, 3e-5, 1e-6;
+    narx.coefficients << 2.0 * pole * std::cos(angle), -pole * pole, 1e-3, -1e-5, -1e-6, 1e-6;
     narx.exponents(3, 0) = 2;
     narx.exponents(4, 0) = 1;
     narx.exponents(4, 4) = 2;  // y(t-1) u(t)^2; the last one is a constant

@@ -14,10 +14,13 @@ namespace {
 
 constexpr double modelRate = 48000.0;
 
-std::vector<double> twice(const std::vector<double>& period)
+/// Long enough for the mean of what bends the model to settle, which the linearizer leaves alone, and for the last one
+/// to be periodic.
+std::vector<double> fourTimes(const std::vector<double>& period)
 {
-    auto signal = period;
-    signal.insert(signal.end(), period.begin(), period.end());
+    std::vector<double> signal;
+    for (int k = 0; k < 4; ++k)
+        signal.insert(signal.end(), period.begin(), period.end());
     return signal;
 }
 
@@ -53,7 +56,7 @@ TEST_CASE("The distortion of random PNLSS models goes down as the rehearsal says
         const RehearsedBox box(boxOf(model, stimulus));
         BlackBoxPredistorter predistorter(box, modelRate);
         // A little below the level of the fit, as its peaks are drawn otherwise; the gain does not fall with the level.
-        auto u = twice(playedAs(stimulus, modelRate, 16384, 100 + seed));
+        auto u = fourTimes(playedAs(stimulus, modelRate, 16384, 100 + seed));
         for (auto& sample : u)
             sample *= 0.8;
         const auto bent = through(predistorter, u);
@@ -77,7 +80,7 @@ TEST_CASE("A signal at another rate than the model's is linearized as well", "[p
         const auto factor = static_cast<std::size_t>(rate / modelRate);
         const int period = static_cast<int>(factor) * 16384;
         BlackBoxPredistorter predistorter(box, rate);
-        auto u = twice(playedAs(stimulus, rate, period, 7));
+        auto u = fourTimes(playedAs(stimulus, rate, period, 7));
         for (auto& sample : u)
             sample *= 0.8;
         const auto bent = through(predistorter, u);
@@ -136,7 +139,7 @@ TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[pred
 {
     const auto& stimulus = oneBox().box.stimulus;
     const double bound = stimulus.peak + 1.5 * oneBox().rehearsal.correction;
-    auto u = twice(playedAs(stimulus, modelRate, 16384, 6));
+    auto u = fourTimes(playedAs(stimulus, modelRate, 16384, 6));
     const auto plain = u;
     u[5000] = std::numeric_limits<double>::quiet_NaN();
     u[5001] = std::numeric_limits<double>::infinity();
@@ -151,15 +154,15 @@ TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[pred
         usual = std::max(usual, std::abs(right[k] - right[k - 1]));
     }
     CHECK(largest <= bound);
-    CHECK(step < 1.2 * usual);  // no click
-    CHECK(std::abs(bent[5010]) < 1e-3 * stimulus.rms);
+    CHECK(step < 1.2 * usual);                          // no click
+    CHECK(std::abs(bent[7000]) < 1e-3 * stimulus.rms);  // silence, once the correction of what rang out is over
     CHECK(predistorter.take().faults == 3);
     double left = 0.0;
-    for (std::size_t k = 28000; k < bent.size(); ++k)
+    for (std::size_t k = 40000; k < bent.size(); ++k)
         left = std::max(left, std::abs(bent[k] - right[k]));
     CHECK(left < 1e-3 * stimulus.rms);  // it has recovered
 
-    // A low tone at twenty times the peak of the fit, then noise of the same size
+    // A low tone at twenty times the peak of the fit, which sets in at once, then noise of the same size
     std::mt19937_64 random(8);
     std::normal_distribution<double> normal;
     std::vector<double> loud(96000);
@@ -175,14 +178,14 @@ TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[pred
     }
     const auto meters = predistorter.take();
     CHECK(meters.reduction > 20.0);
-    CHECK(meters.region < 1.5);
+    CHECK(meters.region < 2.0);
 }
 
 TEST_CASE("The speaker plays as the model is simulated, and never runs away", "[speaker]")
 {
     const auto stimulus = pinkStimulus(2.0);
     const auto model = randomPnlss(11, modelRate, stimulus);
-    auto u = twice(playedAs(stimulus, modelRate, 16384, 9));
+    auto u = fourTimes(playedAs(stimulus, modelRate, 16384, 9));
     for (auto& sample : u)
         sample *= 0.7;
     BlackBoxSpeaker speaker(oneBox().box, oneBox().region, oneBox().rest, modelRate);
@@ -210,16 +213,16 @@ TEST_CASE("The speaker plays as the model is simulated, and never runs away", "[
     CHECK((vectorOf(out) - straight).cwiseAbs().maxCoeff() < 0.1 * straight.cwiseAbs().maxCoeff());
     speaker.setLinearShareRemoved(1.0);
     speaker.reset();
-    CHECK(decibelsOf((vectorOf(through(speaker, u)) - (truth - simulate(model.linear, vectorOf(u)).col(0)))
-                         .squaredNorm()
-                     / truth.squaredNorm())
-          < -150.0);
+    CHECK(
+        decibelsOf((vectorOf(through(speaker, u)) - (truth - simulate(model.linear, vectorOf(u)).col(0))).squaredNorm()
+                   / truth.squaredNorm())
+        < -150.0);
 }
 
 TEST_CASE("A model that cannot be turned around is refused in a sentence", "[predistorter]")
 {
-    // What is odd in the output alone and delayed cannot be made undone where the linear part is silent: the linear part
-    // passes nothing but a resonance far below the distortion.
+    // What is odd in the output alone and delayed cannot be made undone where the linear part is silent: the linear
+    // part passes nothing but a resonance far below the distortion.
     const auto stimulus = pinkStimulus(2.0);
     auto model = randomPnlss(12, modelRate, stimulus);
     model.E.setZero();

@@ -35,7 +35,8 @@ inline Pnlss randomPnlss(std::uint64_t seed, double sampleRate, const Stimulus& 
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> draw(-1.0, 1.0);
     const double f0 = 70.0 * std::exp2(draw(random)), w0 = 2.0 * std::numbers::pi * f0,
-                 quality = std::exp2(0.5 * draw(random)), coil = 2.0 * std::numbers::pi * 1500.0 * std::exp2(draw(random));
+                 quality = std::exp2(0.5 * draw(random)),
+                 coil = 2.0 * std::numbers::pi * 1500.0 * std::exp2(draw(random));
     Eigen::MatrixXd A {{0.0, 1.0, 0.0}, {-w0 * w0, -w0 / quality, w0 * w0}, {0.0, 0.0, -coil}};
     // By steps of a 64th of a sample, with the input held: a system like those that fits find, whatever the rule.
     Eigen::MatrixXd Ad = Eigen::MatrixXd::Identity(3, 3), B = Eigen::MatrixXd::Zero(3, 1);
@@ -59,7 +60,8 @@ inline Pnlss randomPnlss(std::uint64_t seed, double sampleRate, const Stimulus& 
         }
     const auto period = playedAs(stimulus, sampleRate, 16384, 99);
     Eigen::VectorXd u(2 * 16384);
-    u << Eigen::Map<const Eigen::VectorXd>(period.data(), 16384), Eigen::Map<const Eigen::VectorXd>(period.data(), 16384);
+    u << Eigen::Map<const Eigen::VectorXd>(period.data(), 16384),
+        Eigen::Map<const Eigen::VectorXd>(period.data(), 16384);
     const Eigen::VectorXd straight = simulate(model.linear, u).col(0);
     // Small at first, so that it stays finite; then what it makes there is proportional to the coefficients.
     double factor = 1e-6;

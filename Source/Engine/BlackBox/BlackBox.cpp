@@ -48,8 +48,7 @@ void combine(const MatrixXd& E, const MatrixXd& F, const MatrixXd& G, BlackBox& 
             ++rank;
     }
     const MatrixXd left = rank > 0 ? MatrixXd(rows.asDiagonal() * svd.U.leftCols(rank)) : MatrixXd(n + 1 + seen, 0);
-    box.R = rank > 0 ? MatrixXd(svd.s.head(rank).asDiagonal() * svd.V.leftCols(rank).transpose()
-                                * columns.asDiagonal())
+    box.R = rank > 0 ? MatrixXd(svd.s.head(rank).asDiagonal() * svd.V.leftCols(rank).transpose() * columns.asDiagonal())
                      : MatrixXd(0, K);
     box.E = left.topRows(n);
     box.F = left.row(n);
@@ -157,8 +156,8 @@ BlackBox blackBoxOf(const ParallelHammerstein& model, const Stimulus& stimulus)
                                            + " taps are too long to be played as a state space; the most are "
                                            + std::to_string(mostTaps) + ".");
     // The shift register of what is yet to come out: A shifts, B is the taps, C reads the first place. It is seen as it
-    // is (its observability Gramian is the identity), so the eigenvectors of what is reached, W = H H^T, balance it, and
-    // a projection on them is stable.
+    // is (its observability Gramian is the identity), so the eigenvectors of what is reached, W = H H^T, balance it,
+    // and a projection on them is stable.
     const auto taps = weighted(model, stimulus);
     const Index K = taps.rows() - 1, N = taps.cols();
     MatrixXd W = MatrixXd::Zero(K, K);

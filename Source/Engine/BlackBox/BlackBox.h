@@ -17,15 +17,15 @@ namespace excursion {
 /// with K monomials p in what the nonlinearity sees, z and the input, and as few combinations q of them as E and F ask
 /// for. G is zero except of fractional orders, whose steps are implicit.
 struct BlackBox {
-    std::string name;             ///< of the model
-    std::string kind;             ///< what it is, "polynomial state space"
-    std::string input, output;    ///< quantities, "voltage"
-    StateSpace linear;            ///< A, B, C, D and the sample rate
-    Eigen::MatrixXd S, T;         ///< seen x n, seen x 1
-    Exponents exponents;          ///< K x (seen + 1)
-    Eigen::MatrixXd R;            ///< r x K
-    Eigen::MatrixXd E, F, G;      ///< n x r, 1 x r, seen x r
-    Stimulus stimulus;            ///< what it was fitted under
+    std::string name;           ///< of the model
+    std::string kind;           ///< what it is, "polynomial state space"
+    std::string input, output;  ///< quantities, "voltage"
+    StateSpace linear;          ///< A, B, C, D and the sample rate
+    Eigen::MatrixXd S, T;       ///< seen x n, seen x 1
+    Exponents exponents;        ///< K x (seen + 1)
+    Eigen::MatrixXd R;          ///< r x K
+    Eigen::MatrixXd E, F, G;    ///< n x r, 1 x r, seen x r
+    Stimulus stimulus;          ///< what it was fitted under
 
     Eigen::Index seen() const { return S.rows(); }
     Eigen::Index combinations() const { return R.rows(); }

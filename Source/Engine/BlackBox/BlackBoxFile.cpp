@@ -49,10 +49,11 @@ BlackBox blackBoxFromJson(const JsonField& document)
     const auto format = document.at("format").oneOf({playableFormats.begin(), playableFormats.end()});
     const auto stimulus = stimulusFrom(document);
     if (!stimulus)
-        throw Error(Error::Kind::data,
-                    "'" + document.source()
-                        + "' does not say at which level and in which band it was fitted (the field stimulus), so nobody "
-                          "knows how far it holds: fit it again with excursion pnlss or excursion rank --keep.");
+        throw Error(
+            Error::Kind::data,
+            "'" + document.source()
+                + "' does not say at which level and in which band it was fitted (the field stimulus), so nobody "
+                  "knows how far it holds: fit it again with excursion pnlss or excursion rank --keep.");
     BlackBox box;
     if (format == "excursion-pnlss") {
         const auto named = pnlssFromJson(document);

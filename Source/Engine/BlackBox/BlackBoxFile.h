@@ -12,8 +12,8 @@ namespace excursion {
 /// "excursion-fractional-pnlss", "excursion-block-model", "excursion-parallel-hammerstein", "excursion-narx".
 bool isBlackBox(const JsonField&);
 
-/// Throws Error (input) naming the field when the document is none of these, (data) for one that does not say what it was
-/// fitted under, whose linear part is not stable, or that blackBoxOf() refuses.
+/// Throws Error (input) naming the field when the document is none of these, (data) for one that does not say what it
+/// was fitted under, whose linear part is not stable, or that blackBoxOf() refuses.
 BlackBox blackBoxFromJson(const JsonField&);
 
 BlackBox readBlackBox(const std::filesystem::path&);

@@ -30,8 +30,7 @@ BlackBoxLinearizer::BlackBoxLinearizer(const BlackBox& box, const Region& region
       width_(step_.combinations()),
       K_(step_.states(), 0.0),
       g_((preview_ + 1) * width_, 0.0),
-      slowShare_(1.0
-                 - std::exp(-2.0 * std::numbers::pi * slowPart * box.stimulus.lowest() / box.linear.sampleRate)),
+      slowShare_(1.0 - std::exp(-2.0 * std::numbers::pi * slowPart * box.stimulus.lowest() / box.linear.sampleRate)),
       reference_(step_.states()),
       z_(step_.seen() + 1),
       q_(width_),
@@ -46,8 +45,8 @@ BlackBoxLinearizer::BlackBoxLinearizer(const BlackBox& box, const Region& region
         for (Eigen::Index i = 0; i < design.control.g.rows(); ++i)
             g_[j * width_ + static_cast<std::size_t>(i)] = design.control.g(i, static_cast<Eigen::Index>(j));
     for (int k = 0; k < design.passes; ++k)
-        passes_.push_back({std::vector<double>(step_.states()), std::vector<double>(width_),
-                           Window(width_, preview_ + 1)});
+        passes_.push_back(
+            {std::vector<double>(step_.states()), std::vector<double>(width_), Window(width_, preview_ + 1)});
     reset();
 }
 

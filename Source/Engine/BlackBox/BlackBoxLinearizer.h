@@ -56,8 +56,7 @@ private:
     /// So many numbers for each of the latest samples, all in one row from the oldest to the newest.
     class Window {
     public:
-        Window(std::size_t each, std::size_t samples)
-            : each_(each), samples_(samples), values_(2 * each * samples, 0.0)
+        Window(std::size_t each, std::size_t samples) : each_(each), samples_(samples), values_(2 * each * samples, 0.0)
         {
         }
         void clear() { std::fill(values_.begin(), values_.end(), 0.0); }

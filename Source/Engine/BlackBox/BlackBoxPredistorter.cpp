@@ -30,8 +30,8 @@ BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sam
       // A correction of the time of input n is there when the model has heard its latency more, and both converters
       // what they reach ahead.
       behind_(toModel_.reach()
-              + static_cast<int>(std::ceil((linearizer_.latency() + back_.reach()) * sampleRate
-                                           / model.box.linear.sampleRate))
+              + static_cast<int>(
+                  std::ceil((linearizer_.latency() + back_.reach()) * sampleRate / model.box.linear.sampleRate))
               + (toModel_.reach() > 0 ? 2 : 0)),
       amount_(amountTime, sampleRate),
       delayed_(static_cast<std::size_t>(behind_) + 1),
@@ -52,7 +52,8 @@ void BlackBoxPredistorter::reset()
     std::fill(corrections_.begin(), corrections_.end(), 0.0);
     at_ = made_ = used_ = 0;
     early_ = behind_;
-    // The model's samples are `latency` late: those that come first are of before the beginning, and belong to no sample.
+    // The model's samples are `latency` late: those that come first are of before the beginning, and belong to no
+    // sample.
     skip_ = linearizer_.latency();
 }
 

@@ -26,8 +26,8 @@ struct RehearsedBox {
 };
 
 struct BlackBoxControls {
-    double amount = 1.0;                                            ///< of the correction, 0 to 1
-    double inputLimit = std::numeric_limits<double>::infinity();    ///< of what comes out, in the input's unit
+    double amount = 1.0;                                          ///< of the correction, 0 to 1
+    double inputLimit = std::numeric_limits<double>::infinity();  ///< of what comes out, in the input's unit
     bool areSound() const { return amount >= 0.0 && amount <= 1.0 && inputLimit > 0.0; }
 };
 

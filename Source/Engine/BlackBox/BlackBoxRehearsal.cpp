@@ -13,7 +13,7 @@
 namespace excursion {
 namespace {
 
-constexpr double worthwhile = 3.0;             // dB
+constexpr double worthwhile = 3.0;              // dB
 constexpr double plenty = 40.0, enough = 45.0;  // dB; no model is right to more of its distortion
 
 /// Power without the mean.

@@ -22,8 +22,7 @@ BlackBoxSpeaker::BlackBoxSpeaker(const BlackBox& box, const Region& region, cons
       linear_(box, region),
       rest_(rest),
       loudest_(beyondAnything * box.stimulus.peak),
-      latency_(toModel_.reach()
-               + static_cast<int>(std::ceil(back_.reach() * sampleRate / box.linear.sampleRate))
+      latency_(toModel_.reach() + static_cast<int>(std::ceil(back_.reach() * sampleRate / box.linear.sampleRate))
                + (toModel_.reach() > 0 ? 2 : 0)),
       x_(step_.states()),
       straight_(step_.states()),

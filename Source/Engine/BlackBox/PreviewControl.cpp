@@ -49,8 +49,7 @@ std::optional<PreviewControl> previewControl(const StateSpace& system, const Mat
     for (auto& one : scale)
         one = one > 0.0 ? one : 1.0;
     const MatrixXd A = scale.cwiseInverse().asDiagonal() * system.A * scale.asDiagonal(),
-                   B = scale.cwiseInverse().asDiagonal() * system.B,
-                   disturbed = scale.cwiseInverse().asDiagonal() * E;
+                   B = scale.cwiseInverse().asDiagonal() * system.B, disturbed = scale.cwiseInverse().asDiagonal() * E;
     const Eigen::RowVectorXd C = system.C * scale.asDiagonal();
     // Without the product of output and input in the cost, in units in which the cost of w^2 is 1.
     const MatrixXd plain = A - B * (D / R) * C;

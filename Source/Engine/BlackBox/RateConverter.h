@@ -12,11 +12,12 @@ namespace excursion {
 /// long it runs. Flat to 0.41 of the lower of the two rates, -90 dB from 0.5 of it on. Of equal rates the signal goes
 /// through as it is.
 ///
-/// libsoxr, which resamples records here, allocates as it runs and gives out what it has in lumps; an audio thread needs
-/// neither.
+/// libsoxr, which resamples records here, allocates as it runs and gives out what it has in lumps; an audio thread
+/// needs neither.
 class RateConverter {
 public:
-    RateConverter(double from, double to);  ///< Hz, to the thousandth; Error (usage) where they differ by more than 16 times
+    RateConverter(double from,
+                  double to);  ///< Hz, to the thousandth; Error (usage) where they differ by more than 16 times
 
     /// Inputs beyond an output's time that have to be there before it comes: the delay.
     int reach() const { return reach_; }
@@ -34,8 +35,8 @@ private:
     std::vector<double> table_;  ///< phases + 1 rows of 2 reach_ taps
     std::vector<double> history_;
     std::size_t at_ = 0;
-    std::int64_t ahead_ = 0;      ///< inputs that came since the one at or before the next output
-    std::int64_t fraction_ = 0;   ///< of it, in 1/to_
+    std::int64_t ahead_ = 0;     ///< inputs that came since the one at or before the next output
+    std::int64_t fraction_ = 0;  ///< of it, in 1/to_
 };
 
 }  // namespace excursion

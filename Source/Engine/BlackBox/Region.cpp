@@ -15,9 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double widening = 1.05;       // of the ellipsoid, as the phases of the records were others
-constexpr double thinnest = 1e-6;       // variance of an axis, of the thickest, each coordinate scaled to 1
-constexpr int implicitSteps = 6;        // for z, which depends on q at fractional orders
+constexpr double widening = 1.05;  // of the ellipsoid, as the phases of the records were others
+constexpr double thinnest = 1e-6;  // variance of an axis, of the thickest, each coordinate scaled to 1
+constexpr int implicitSteps = 6;   // for z, which depends on q at fractional orders
 
 /// The equations as they stand in BlackBox.h, step by step.
 class PlainRecursion {
@@ -133,11 +133,9 @@ Region visitedBy(const BlackBox& box)
     VectorXd scale = moments.diagonal().cwiseMax(0.0).cwiseSqrt();
     for (auto& one : scale)
         one = one > 0.0 ? 1.0 / one : 0.0;  // a place that never moves is not looked at
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(
-        MatrixXd(scale.asDiagonal() * moments * scale.asDiagonal()));
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(MatrixXd(scale.asDiagonal() * moments * scale.asDiagonal()));
     const VectorXd variance = axes.eigenvalues().cwiseMax(thinnest * axes.eigenvalues().maxCoeff());
-    region.W = variance.cwiseSqrt().cwiseInverse().asDiagonal() * axes.eigenvectors().transpose()
-               * scale.asDiagonal();
+    region.W = variance.cwiseSqrt().cwiseInverse().asDiagonal() * axes.eigenvectors().transpose() * scale.asDiagonal();
     double furthest = 0.0;
     for (const auto& place : places)
         furthest = std::max(furthest, region.distance(place));

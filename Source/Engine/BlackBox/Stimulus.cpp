@@ -132,10 +132,8 @@ std::vector<double> playedAs(const Stimulus& stimulus, double sampleRate, int pe
 
 nlohmann::ordered_json toJson(const Stimulus& stimulus)
 {
-    return {{"rms", stimulus.rms},
-            {"peak", stimulus.peak},
-            {"frequency", stimulus.frequency},
-            {"power", stimulus.power}};
+    return {
+        {"rms", stimulus.rms}, {"peak", stimulus.peak}, {"frequency", stimulus.frequency}, {"power", stimulus.power}};
 }
 
 std::optional<Stimulus> stimulusFrom(const JsonField& document)

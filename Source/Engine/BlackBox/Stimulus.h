@@ -12,8 +12,8 @@
 
 namespace excursion {
 
-/// What a model without physics was fitted under, as far as it matters afterwards: such a model knows nothing beyond the
-/// level and the band of its records. The field "stimulus" of a model's document keeps it.
+/// What a model without physics was fitted under, as far as it matters afterwards: such a model knows nothing beyond
+/// the level and the band of its records. The field "stimulus" of a model's document keeps it.
 struct Stimulus {
     double rms = 0.0;   ///< of the input, in its unit, without the mean
     double peak = 0.0;  ///< the largest magnitude of the input

@@ -45,8 +45,8 @@ std::string withAlpha(double alpha)
 template <class Model>
 nlohmann::ordered_json documentOf(const RankedTake& data, const char* of, const Model& model)
 {
-    return toJson(Named<Model> {of, std::string(name(data.input.quantity)), std::string(name(data.output.quantity)),
-                                model});
+    return toJson(
+        Named<Model> {of, std::string(name(data.input.quantity)), std::string(name(data.output.quantity)), model});
 }
 
 /// A driver's coil of fractional order beside a resonance, monomials at zero.
@@ -176,13 +176,12 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
             attempt(start, search, progress.part(done, std::min(1.0, done + share)));
             done += share;
         }
-    return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
-            ofOrder("", best.model.linear.order(), data.options.degree),
-            static_cast<int>(Recursion(best.model, true).parameters()), best.stable,
-            toJson(NamedPnlss {"pnlss",
-                               {std::string(name(data.input.quantity))},
-                               {std::string(name(data.output.quantity))},
-                               best.model})};
+    return {
+        [model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
+        ofOrder("", best.model.linear.order(), data.options.degree),
+        static_cast<int>(Recursion(best.model, true).parameters()), best.stable,
+        toJson(NamedPnlss {
+            "pnlss", {std::string(name(data.input.quantity))}, {std::string(name(data.output.quantity))}, best.model})};
 }
 
 FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& progress)
