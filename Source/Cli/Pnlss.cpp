@@ -4,6 +4,7 @@
 #include "Cli/Destination.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/BlackBox/Stimulus.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/PreparedTake.h"
@@ -110,10 +111,12 @@ void run(PnlssArguments options, Terminal& terminal)
     const auto kept = options.model.empty() ? nlohmann::json() : readJson(options.model);
     choose(options, kept, data);
     options.response.output = name(data.output->quantity);
-    const auto outcome = (isFractional(options, kept) ? fractionalPnlss : integerPnlss)(options, data, terminal);
+    auto outcome = (isFractional(options, kept) ? fractionalPnlss : integerPnlss)(options, data, terminal);
     if (!std::isfinite(outcome.estimationDb))
         throw Error(Error::Kind::numerical,
                     "The model runs away on the records that it was to explain; try another --order or --mask.");
+    if (options.model.empty())
+        outcome.model["stimulus"] = toJson(stimulusOf(data.records.estimation, data.take.sampleRate));
     if (!options.out.empty())
         writeJson(outcome.model, options.out);
     if (!options.played.empty())

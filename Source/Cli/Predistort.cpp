@@ -3,6 +3,8 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/BlackBox/BlackBoxFile.h"
+#include "Engine/BlackBox/BlackBoxPredistorter.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Driver/ModelFile.h"
@@ -32,9 +34,14 @@ struct PredistortArguments {
     int oversampling = 2;
 };
 
-Wav readPlayable(const std::string& file)
+/// @param out  where what comes of it goes
+Wav readPlayable(const std::string& file, const std::string& out)
 {
     auto wav = readWav(file);
+    std::error_code none;
+    if (std::filesystem::equivalent(file, out, none))
+        throw Error(Error::Kind::usage,
+                    "The WAV that is played would be overwritten: give another name for what comes out.");
     for (std::size_t c = 0; c < wav.channels.size(); ++c)
         requireFinite(wav, c, file);
     return wav;
@@ -52,7 +59,8 @@ LinearizationControls controlsFrom(const PredistortArguments& options, const Mod
 }
 
 /// One channel through a predistorter of its own, by which its delay is taken out again.
-void bend(std::vector<double>& samples, Predistorter& predistorter, double fullScale, const Progress& progress,
+template <class AnyPredistorter>
+void bend(std::vector<double>& samples, AnyPredistorter& predistorter, double fullScale, const Progress& progress,
           double from, double share)
 {
     constexpr std::size_t block = 4096;
@@ -79,6 +87,89 @@ std::string turnedDown(double decibels, bool limited)
     return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit";
 }
 
+/// The same with a model without physics, which knows no cone: the region of its fit is the limit.
+void runBlackBox(const PredistortArguments& options, const BlackBox& box, Terminal& terminal)
+{
+    if (options.displacementLimit || options.powerLimit || options.margin != 0.0)
+        throw Error(Error::Kind::usage, "--limit-x, --limit-p and --margin are of a cone and a coil, which a model "
+                                        "without physics does not know: leave them out; it keeps to where it was "
+                                        "fitted.");
+    const auto wav = readPlayable(options.input, options.out);
+    const RehearsedBox model(box);
+    const auto& gain = model.rehearsal;
+    const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "units of " + box.input;
+    terminal.say("A " + box.kind + " (" + box.output + " from " + box.input + ") at "
+                 + significant(box.linear.sampleRate, 6) + " Hz. As it was fitted, with "
+                 + significant(box.stimulus.rms, 3) + " " + unit + " rms, its distortion is " + fixed(gain.beforeDb, 1)
+                 + " dB; with the correction " + fixed(gain.afterDb, 1) + " dB are left: a gain of "
+                 + fixed(gain.gainDb(), 1) + " dB, as far as the model is right.");
+    if (box.output == "current")
+        terminal.say(
+            "What becomes linear is the current, which is not the sound: of that, a model of the displacement, "
+            "the velocity, the acceleration or the pressure would take the distortion out.");
+    const auto rate = static_cast<double>(wav.sampleRate);
+    if (rate != box.linear.sampleRate)
+        terminal.say("The WAV is at another rate, " + significant(rate, 6)
+                     + " Hz: the correction passes through the model's rate, and reaches up to "
+                     + significant(0.41e-3 * std::min(rate, box.linear.sampleRate), 3) + " kHz.");
+    auto bent = wav;
+    const auto progress = terminal.progress();
+    std::vector<std::vector<std::string>> rows;
+    nlohmann::ordered_json channels = nlohmann::ordered_json::array();
+    bool limited = false;
+    double loudest = 0.0;
+    const BlackBoxControls controls {options.amount,
+                                     options.voltageLimit.value_or(std::numeric_limits<double>::infinity())};
+    for (std::size_t c = 0; c < bent.channels.size(); ++c) {
+        BlackBoxPredistorter predistorter(model, rate, controls);
+        const double before = options.fullScale * peakOf(wav.channels[c]),
+                     share = 1.0 / static_cast<double>(bent.channels.size());
+        bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
+        const auto meters = predistorter.take();
+        const double after = options.fullScale * peakOf(bent.channels[c]);
+        loudest = std::max(loudest, after);
+        limited = limited || meters.reduction > noticed;
+        channels.push_back({{"peakIn", before},
+                            {"peakOut", after},
+                            {"correction", meters.correction},
+                            {"region", meters.region},
+                            {"reduction", meters.reduction}});
+        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
+                        significant(meters.correction) + " " + unit, fixed(100.0 * meters.region, 0) + " %",
+                        turnedDown(meters.reduction, true)});
+    }
+    DraftFile draft(options.out);
+    writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
+    draft.publish();
+    terminal.document({{"format", "excursion-predistort"},
+                       {"version", 1},
+                       {"model", options.model},
+                       {"input", options.input},
+                       {"output", options.out},
+                       {"sampleRate", wav.sampleRate},
+                       {"samples", wav.channels.front().size()},
+                       {"fullScale", options.fullScale},
+                       {"amount", options.amount},
+                       {"voltageLimit", numberOrNull(controls.inputLimit)},
+                       {"modelRate", box.linear.sampleRate},
+                       {"distortionBeforeDb", gain.beforeDb},
+                       {"distortionAfterDb", gain.afterDb},
+                       {"gainDb", gain.gainDb()},
+                       {"channels", channels},
+                       {"limited", limited}});
+    terminal.table({"channel", "peak in", "out", "the correction", "of the region", "turned down"}, rows);
+    if (limited)
+        terminal.say("The signal goes beyond where the model was fitted (" + significant(box.stimulus.peak, 3) + " "
+                     + unit + " peak, or what its states reached): there it was turned down.");
+    if (loudest > options.fullScale)
+        terminal.say("Samples go to " + significant(loudest / options.fullScale, 3)
+                     + " times full scale, which only a WAV of floating point, as this one is, can hold.");
+    terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit
+                 + ", as in " + options.input + ".");
+    if (limited)
+        terminal.answer = 1;
+}
+
 void run(const PredistortArguments& options, Terminal& terminal)
 {
     for (const auto& [name, value] : {std::pair {"--full-scale", options.fullScale},
@@ -88,12 +179,12 @@ void run(const PredistortArguments& options, Terminal& terminal)
         if (!(value > 0.0 && std::isfinite(value)))
             throw Error(Error::Kind::usage, std::string(name) + " must be a positive number.");
     requireFilePlace(options.out);
-    const auto model = readModel(options.model);
-    const auto wav = readPlayable(options.input);
-    std::error_code none;
-    if (std::filesystem::equivalent(options.input, options.out, none))
-        throw Error(Error::Kind::usage,
-                    "The WAV that is played would be overwritten: give another name for what comes out.");
+    const auto document = readJson(options.model);
+    const JsonField field(document, "", options.model);
+    if (isBlackBox(field))
+        return runBlackBox(options, blackBoxFromJson(field), terminal);
+    const auto model = modelFromJson(field);
+    const auto wav = readPlayable(options.input, options.out);
     if (options.powerLimit && !model.electrical())
         throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model has none; leave it out.");
     const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling};
@@ -193,7 +284,10 @@ void addPredistort(CLI::App& app, Terminal& terminal)
     auto o = std::make_shared<PredistortArguments>();
     auto* verb = app.add_subcommand("predistort", "Bends a WAV so that the loudspeaker plays it as if it were linear")
                      ->group(step::use);
-    verb->add_option("MODEL", o->model, "the model, a .json")->required();
+    verb->add_option("MODEL", o->model,
+                     "the model of a driver, or one without physics that pnlss or rank --keep "
+                     "has written, a .json")
+        ->required();
     verb->add_option("IN.wav", o->input, "what is to be played; each of its channels is predistorted by itself")
         ->required();
     verb->add_option("OUT.wav", o->out, "the predistorted signal, as long and as loud")->required();

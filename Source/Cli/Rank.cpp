@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -9,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <memory>
 
 namespace excursion::cli {
@@ -17,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct RankArguments {
-    std::string take, output;
+    std::string take, output, keep;
     RankOptions options;
 };
 
@@ -46,6 +48,8 @@ void run(const RankArguments& arguments, Terminal& terminal)
         if (!options.output)
             throw Error(Error::Kind::usage, "There is no quantity \"" + arguments.output + "\".");
     }
+    if (!arguments.keep.empty())
+        requireFolderPlace(arguments.keep);
     const auto ranking = rank(readMeasurement(arguments.take), options, terminal.progress());
     terminal.say(std::string(name(ranking.output)) + " explained by " + std::string(name(ranking.input))
                  + ", errors of simulations"
@@ -62,6 +66,17 @@ void run(const RankArguments& arguments, Terminal& terminal)
         if (!m.trouble.empty())
             terminal.say(m.name + ": " + m.trouble);
     terminal.say(ranking.sentence);
+    if (!arguments.keep.empty()) {
+        std::string kept;
+        std::filesystem::create_directories(arguments.keep);
+        for (const auto& m : ranking.models)
+            if (!m.document.is_null()) {
+                writeJson(m.document, std::filesystem::path(arguments.keep) / (m.name + ".json"));
+                kept += (kept.empty() ? "" : ", ") + m.name + ".json";
+            }
+        terminal.say(kept.empty() ? "None of these classes has a document of its own to be kept."
+                                  : "Kept in " + arguments.keep + ": " + kept + ".");
+    }
 
     Json document {{"format", "excursion-ranking"},
                    {"version", 1},
@@ -110,6 +125,10 @@ void addRank(CLI::App& app, Terminal& terminal)
         ->delimiter(',')
         ->check(CLI::IsMember(names))
         ->type_name("CLASS");
+    verb->add_option("--keep", o->keep,
+                     "write the models of the classes hammerstein, block, narx, pnlss and fractional-pnlss there, each "
+                     "to a file of its name, as predistort takes them")
+        ->type_name("DIR");
     verb->footer(told);
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

@@ -185,3 +185,98 @@ TEST_CASE("predistort refuses what it cannot play", "[cli][bad-input]")
     std::ofstream(model) << dead.dump();
     refusedWith(4, {"predistort", model, in, out, "--full-scale", "20"}, scratch, "Bl");
 }
+
+namespace {
+
+/// A resonance at 60 Hz whose stiffness rises with the square of the displacement, as a polynomial state-space model.
+struct CubicModel {
+    static constexpr double h = 1.0 / rate, w = 2.0 * std::numbers::pi * 60.0, cube = 5e4;
+
+    nlohmann::json document() const
+    {
+        const auto rows = [](std::initializer_list<std::initializer_list<double>> values) {
+            auto result = nlohmann::json::array();
+            for (const auto& row : values)
+                result.push_back(std::vector<double>(row));
+            return result;
+        };
+        std::vector<double> frequency, power;
+        for (int band = -17; band <= 3; ++band) {
+            frequency.push_back(1000.0 * std::exp2(band / 3.0));
+            power.push_back(1.0 / 21.0);
+        }
+        return {{"format", "excursion-pnlss"},
+                {"version", 1},
+                {"name", "cubic"},
+                {"linear",
+                 {{"format", "excursion-state-space"},
+                  {"version", 1},
+                  {"name", "cubic"},
+                  {"sampleRate", rate},
+                  {"delay", 0.0},
+                  {"inputs", {"voltage"}},
+                  {"outputs", {"displacement"}},
+                  {"A", rows({{1.0 - h * h * w * w, h * (1.0 - h * w)}, {-h * w * w, 1.0 - h * w}})},
+                  {"B", rows({{h * h * w * w * 1e-3}, {h * w * w * 1e-3}})},
+                  {"C", rows({{1.0, 0.0}})},
+                  {"D", rows({{0.0}})}}},
+                {"terms",
+                 {{{"exponents", {3, 0, 0}},
+                   {"E", {-h * h * w * w * cube, -h * w * w * cube}},
+                   {"F", {0.0}},
+                   {"free", {true, true, false}}}}},
+                {"stimulus", {{"rms", 1.0}, {"peak", 4.5}, {"frequency", frequency}, {"power", power}}}};
+    }
+
+    /// m, for V
+    static std::vector<double> play(const std::vector<double>& volts, bool bent)
+    {
+        double x = 0.0, v = 0.0;
+        std::vector<double> result;
+        for (const double u : volts) {
+            result.push_back(x);
+            v += h * (w * w * (1e-3 * u - x - (bent ? cube * x * x * x : 0.0)) - w * v);
+            x += h * v;
+        }
+        return result;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("predistort turns around a model without physics, and says what that gains", "[cli][predistort]")
+{
+    const Scratch scratch;
+    const auto model = (scratch / "cubic.json").string(), in = wavOf(scratch, {tone(0.1)}),
+               out = (scratch / "out.wav").string();
+    auto document = CubicModel().document();
+    std::ofstream(model) << document.dump();
+    const std::vector<std::string> command {"predistort", model, in, out, "--full-scale", "20"};
+    auto scripted = command;
+    scripted.emplace_back("--json");
+    const auto told = runProgram(scratch.folder(), scripted);
+    INFO(told.out << told.err);
+    REQUIRE(told.code == 0);
+    const auto said = documentOf(told, "excursion-predistort");
+    CHECK(said.at("gainDb").get<double>() > 25.0);
+    CHECK(said.at("limited") == false);
+    auto volts = tone(2.0), bent = readWav(out).channels.at(0);
+    REQUIRE(bent.size() == volts.size());
+    for (auto& sample : bent)
+        sample *= 20.0;
+    const auto straight = CubicModel::play(volts, false);
+    const double was = distance(CubicModel::play(volts, true), straight),
+                 is = distance(CubicModel::play(bent, true), straight);
+    CHECK(is < was / 18.0);  // 25 dB
+    CHECK(runProgram(scratch.folder(), command).out.find("a gain of") != std::string::npos);
+
+    // What it was fitted under has to be known, and what is of a cone is refused.
+    auto limited = command;
+    limited.insert(limited.end(), {"--limit-x", "0.001"});
+    CHECK(runProgram(scratch.folder(), limited).code == 2);
+    document.erase("stimulus");
+    std::ofstream(model) << document.dump();
+    const auto refused = runProgram(scratch.folder(), command);
+    CHECK(refused.code == 4);
+    CHECK(refused.err.find("stimulus") != std::string::npos);
+}

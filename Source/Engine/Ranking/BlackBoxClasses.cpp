@@ -6,11 +6,16 @@
 #include "Engine/Fractional/MixedImpedance.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Simulation.h"
+#include "Engine/Polynomial/BlockModelFile.h"
 #include "Engine/Polynomial/BlockModelFit.h"
+#include "Engine/Polynomial/FractionalPnlssFile.h"
 #include "Engine/Polynomial/FractionalPnlssFit.h"
 #include "Engine/Polynomial/FractionalRecursion.h"
 #include "Engine/Polynomial/HammersteinFit.h"
+#include "Engine/Polynomial/NarxFile.h"
 #include "Engine/Polynomial/NarxFit.h"
+#include "Engine/Polynomial/ParallelHammersteinFile.h"
+#include "Engine/Polynomial/PnlssFile.h"
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Polynomial/Recursion.h"
 
@@ -34,6 +39,14 @@ std::string withAlpha(double alpha)
     std::array<char, 32> text {};
     std::snprintf(text.data(), text.size(), ", alpha %.3f", alpha);
     return text.data();
+}
+
+/// The document of a model, named after its class.
+template <class Model>
+nlohmann::ordered_json documentOf(const RankedTake& data, const char* of, const Model& model)
+{
+    return toJson(
+        Named<Model> {of, std::string(name(data.input.quantity)), std::string(name(data.output.quantity)), model});
 }
 
 /// A driver's coil of fractional order beside a resonance, monomials at zero.
@@ -68,7 +81,7 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
         return run.output;
     };
     return {play, ofOrder("", model.form.linear.order(), degree) + withAlpha(model.alpha), parameters,
-            isStable(model, grid)};
+            isStable(model, grid), nullptr};
 }
 
 }  // namespace
@@ -77,7 +90,7 @@ FittedClass fitLinearClass(const RankedTake& data, const Progress&)
 {
     const auto n = data.linear.order();
     return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); },
-            ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear)};
+            ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear), nullptr};
 }
 
 FittedClass fitFractionalClass(const RankedTake& data, const Progress&)
@@ -98,7 +111,7 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
                                     data.records.validation, fitting, progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
-            static_cast<int>(fit.model.parameters()), true};
+            static_cast<int>(fit.model.parameters()), true, documentOf(data, "hammerstein", fit.model)};
 }
 
 FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
@@ -112,7 +125,7 @@ FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
         if (step.branch)
             description += ", " + std::string(name(*step.branch));
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); }, description,
-            static_cast<int>(fit.model.parameters()), fit.stable};
+            static_cast<int>(fit.model.parameters()), fit.stable, documentOf(data, "block", fit.model)};
 }
 
 FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
@@ -126,7 +139,7 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree "
                 + std::to_string(fitting.degree),
-            static_cast<int>(fit.model.parameters()), fit.stable};
+            static_cast<int>(fit.model.parameters()), fit.stable, documentOf(data, "narx", fit.model)};
 }
 
 FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
@@ -165,9 +178,12 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
             attempt(start, search, progress.part(done, std::min(1.0, done + share)));
             done += share;
         }
-    return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
-            ofOrder("", best.model.linear.order(), data.options.degree),
-            static_cast<int>(Recursion(best.model, true).parameters()), best.stable};
+    return {
+        [model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
+        ofOrder("", best.model.linear.order(), data.options.degree),
+        static_cast<int>(Recursion(best.model, true).parameters()), best.stable,
+        toJson(NamedPnlss {
+            "pnlss", {std::string(name(data.input.quantity))}, {std::string(name(data.output.quantity))}, best.model})};
 }
 
 FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& progress)
@@ -182,6 +198,11 @@ FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& prog
     auto fitted = fractionalClass(fit.model, grid, data.options.degree,
                                   static_cast<int>(FractionalRecursion(fit.model, grid, true, true).parameters()));
     fitted.stable = fit.stable;
+    fitted.document = toJson(NamedFractionalPnlss {"fractional-pnlss",
+                                                   {std::string(name(data.input.quantity))},
+                                                   {std::string(name(data.output.quantity))},
+                                                   fit.model,
+                                                   grid});
     return fitted;
 }
 

@@ -30,7 +30,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
             throw Error(Error::Kind::data, "The physical driver does not know this channel.");
         return Eigen::Map<const Eigen::VectorXd>(channel->samples.data(), u.size());
     };
-    return {play, description.empty() ? "base alone" : description, parameters, isStable(model)};
+    return {play, description.empty() ? "base alone" : description, parameters, isStable(model), nullptr};
 }
 
 }  // namespace

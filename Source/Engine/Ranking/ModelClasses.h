@@ -5,6 +5,8 @@
 #include "Engine/Polynomial/FractionalPnlss.h"
 #include "Engine/Ranking/Rank.h"
 
+#include <nlohmann/json.hpp>
+
 #include <functional>
 
 namespace excursion {
@@ -28,6 +30,7 @@ struct FittedClass {
     std::string description;
     int parameters = 0;
     bool stable = false;
+    nlohmann::ordered_json document = nullptr;  ///< of the model, for the classes that have one
 };
 
 FittedClass fitLinearClass(const RankedTake&, const Progress&);

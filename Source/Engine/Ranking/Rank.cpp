@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Ranking/Rank.h"
 
+#include "Engine/BlackBox/Stimulus.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Measurement/Bla.h"
@@ -65,6 +66,9 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
         model.fitSeconds = secondsSince(start);
         model.description = fitted.description;
         model.parameters = fitted.parameters;
+        model.document = fitted.document;
+        if (!model.document.is_null())
+            model.document["stimulus"] = toJson(stimulusOf(data.records.estimation, data.take.sampleRate));
         model.estimationDb = errorDb(fitted, data.records.estimation);
         const auto& judges = data.records.validation.empty() ? data.records.estimation : data.records.validation;
         const auto playing = std::clock();

@@ -5,6 +5,8 @@
 #include "Engine/Polynomial/TakeRecords.h"
 #include "Engine/Progress.h"
 
+#include <nlohmann/json.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +36,9 @@ struct RankedModel {
     double load = 0.0;
     double fitSeconds = 0.0;
     bool stable = false;  ///< around rest, and no record made it run away
+    /// of the model, with the stimulus of its fit, as `predistort` plays it; null of the linear and the physical
+    /// classes
+    nlohmann::ordered_json document = nullptr;
     /// a sentence where the class could not be fitted; the figures then mean nothing
     std::string trouble;
 };

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/BlackBox/BlackBoxLinearizer.h"
+#include "Engine/BlackBox/BlackBoxRehearsal.h"
+#include "Engine/BlackBox/RegionLimiter.h"
+#include "Engine/Linearization/Glide.h"
+#include "Engine/Linearization/Peak.h"
+
+#include <atomic>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace excursion {
+
+/// A black box that is ready to be turned around: where it has been, where it rests, and what that is worth. Made once,
+/// for any number of channels. Throws Error, see visitedBy(), restOf() and rehearse().
+struct RehearsedBox {
+    explicit RehearsedBox(const BlackBox&);
+
+    BlackBox box;
+    Region region;
+    Rest rest;
+    BlackBoxRehearsal rehearsal;
+};
+
+struct BlackBoxControls {
+    double amount = 1.0;                                          ///< of the correction, 0 to 1
+    double inputLimit = std::numeric_limits<double>::infinity();  ///< of what comes out, in the input's unit
+    bool areSound() const { return amount >= 0.0 && amount <= 1.0 && inputLimit > 0.0; }
+};
+
+/// Bends the input of a loudspeaker that is known by a model without physics so that its output is that of the model's
+/// linear part:
+///     u -> RegionLimiter -> delay ------------------------------------------+-> out
+///              |-> to the model's rate -> BlackBoxLinearizer -> and back ->-+
+/// The signal itself is delayed and not filtered, at any rate: only the correction passes through the rates, and so is
+/// band-limited to the lower of the two. What comes out is never more than the peak of the fit's input and the largest
+/// correction that the rehearsal at that level asked for.
+///
+/// Everything but the construction is for the audio thread: no allocation, no lock, no exception. Blocks may have any
+/// length, and the output does not depend on how a signal is cut into blocks.
+class BlackBoxPredistorter {
+public:
+    /// Throws Error (usage) for a rate that is more than 16 times the model's or less than a sixteenth.
+    BlackBoxPredistorter(const RehearsedBox&, double sampleRate, const BlackBoxControls& = {});
+
+    int latency() const { return limiter_.latency() + behind_; }  ///< samples; fixed
+    void reset();
+    void set(const BlackBoxControls&);  ///< followed smoothly; what is not sound is left as it was
+
+    /// Switched off the signal goes through as it is, but for samples that are no numbers.
+    void turn(bool on);
+
+    /// @param in, out  n samples, may be the same place
+    void process(const double* in, double* out, std::size_t n);
+
+    /// Since the last call of take(); may be read from another thread.
+    struct Meters {
+        double out = 0.0;         ///< peak, in the input's unit
+        double correction = 0.0;  ///< peak of the correction
+        double region = 0.0;      ///< how far out the loudspeaker went, 1: as far as the fit has been
+        double reduction = 0.0;   ///< dB, by which the signal was turned down at most
+        int faults = 0;           ///< samples that were no numbers, since construction
+    };
+    Meters take();
+
+private:
+    RegionLimiter limiter_;
+    RateConverter toModel_, back_;
+    BlackBoxLinearizer linearizer_;
+    double bound_, largest_;
+    int behind_;
+    bool on_ = true;
+    BlackBoxControls controls_;
+    Glide amount_;
+    std::vector<double> delayed_, corrections_;  ///< rings; corrections_: those that came before their sample is due
+    std::size_t at_ = 0, made_ = 0, used_ = 0;
+    int early_ = 0;  ///< samples until the first correction is due
+    int skip_ = 0;   ///< corrections that are of before the beginning
+    Peak out_, correction_, region_, reduction_;
+    std::atomic<int> faults_ {0};
+};
+
+}  // namespace excursion

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/BlackBox/BlackBoxRehearsal.h"
+
+#include "Engine/Error.h"
+#include "Engine/Signal/Level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <array>
+#include <cstdio>
+#include <limits>
+
+namespace excursion {
+namespace {
+
+constexpr double worthwhile = 3.0;              // dB
+constexpr double plenty = 40.0, enough = 45.0;  // dB; no model is right to more of its distortion
+
+/// Power without the mean.
+double variance(const std::vector<double>& values)
+{
+    double sum = 0.0, square = 0.0;
+    for (const double v : values) {
+        sum += v;
+        square += v * v;
+    }
+    const auto n = static_cast<double>(values.size());
+    return std::max(square / n - sum * sum / (n * n), 0.0);
+}
+
+std::string decibels(double value)
+{
+    std::array<char, 32> text {};
+    std::snprintf(text.data(), text.size(), "%.1f dB", value);
+    return text.data();
+}
+
+}  // namespace
+
+BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest& rest,
+                           const BlackBoxRehearsalOptions& options)
+{
+    const double rate = box.linear.sampleRate;
+    int period = 4096;
+    while (period < 1 << 16 && rate / period > 0.25 * box.stimulus.lowest())
+        period *= 2;
+    const auto input = playedAs(box.stimulus, rate, period, 3);
+    const int lead = period;
+    BlackBox plain = box;
+    plain.R.setZero();
+
+    // y and y_r, one after another: the second is the box without q, which nothing bends.
+    const auto played = [&](const BlackBox& which) {
+        BlackBoxStep step(which, region);
+        std::vector<double> x(step.states(), 0.0), z(step.seen() + 1, 0.0), q(step.combinations(), 0.0), out;
+        if (&which == &box) {
+            std::copy(rest.x.begin(), rest.x.end(), x.begin());
+            std::copy(rest.q.begin(), rest.q.end(), q.begin());
+        }
+        for (int t = -lead; t < period; ++t) {
+            const double u = input[static_cast<std::size_t>((t + lead) % period)];
+            step.see(x.data(), u, z.data());
+            step.combinationsAt(z.data(), u, nullptr, q.data());
+            const double y = step.advance(x.data(), u, q.data());
+            if (t >= 0)
+                out.push_back(y);
+        }
+        return out;
+    };
+    auto bent = played(box);
+    const auto straight = played(plain);
+    const double signal = variance(straight);
+    for (std::size_t t = 0; t < bent.size(); ++t)
+        bent[t] -= straight[t];
+    BlackBoxRehearsal best;
+    best.beforeDb = decibelsOf(variance(bent) / signal);
+    best.afterDb = std::numeric_limits<double>::infinity();
+    const double gain = std::sqrt(signal / variance(input));
+    for (const int preview : {16, 32, 64, 128}) {
+        for (double depth = 20.0; depth <= 80.0; depth += 10.0) {
+            const double cost = std::pow(gain * std::pow(10.0, -depth / 20.0), 2);
+            const auto control = previewControl(box.linear, box.E, box.F, cost, preview);
+            if (!control)
+                continue;
+            BlackBoxRehearsal trial = best;
+            trial.design = {*control, preview, options.passes};
+            trial.correction = 0.0;
+            BlackBoxLinearizer linearizer(box, region, rest, trial.design);
+            std::vector<double> left;
+            for (int t = -lead; t < period + linearizer.latency(); ++t) {
+                const auto sample = linearizer.step(input[static_cast<std::size_t>((t + lead) % period)]);
+                if (t < linearizer.latency())
+                    continue;
+                left.push_back(sample.residual);
+                trial.correction = std::max(trial.correction, std::abs(sample.correction));
+            }
+            trial.afterDb = decibelsOf(variance(left) / signal);
+            if (std::isfinite(trial.afterDb) && trial.correction <= box.stimulus.peak && trial.afterDb < best.afterDb)
+                best = trial;
+            if (best.gainDb() >= enough)
+                return best;
+        }
+        // A longer look ahead costs time and latency, and is tried for what it may bring.
+        if (best.gainDb() >= plenty || 2 * preview > options.mostPreview)
+            break;
+    }
+    if (!(best.gainDb() >= worthwhile))
+        throw Error(Error::Kind::data,
+                    "This model cannot be turned around: of its distortion of " + decibels(best.beforeDb)
+                        + " at the level of its fit "
+                        + (std::isfinite(best.afterDb) ? decibels(best.afterDb) + " would be left."
+                                                       : "no correction was found that keeps it in bounds."));
+    return best;
+}
+
+}  // namespace excursion

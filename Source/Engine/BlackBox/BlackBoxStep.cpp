@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/BlackBox/BlackBoxStep.h"
+
+#include "Engine/Dispatch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr std::size_t group = 4;
+constexpr int implicitPasses = 4;
+
+std::size_t padded(Eigen::Index n) { return (static_cast<std::size_t>(n) + group - 1) / group * group; }
+
+std::vector<double> paddedRow(const Eigen::MatrixXd& row, std::size_t length)
+{
+    std::vector<double> result(length, 0.0);
+    for (Eigen::Index k = 0; k < row.cols(); ++k)
+        result[static_cast<std::size_t>(k)] = row(0, k);
+    return result;
+}
+
+/// out += M v, by groups of rows, with four sums that do not wait for one another.
+EXCURSION_DISPATCH
+void addProduct(const double* M, std::size_t rows, std::size_t columns, const double* v, double* out)
+{
+    for (std::size_t r = 0; r < rows; r += group) {
+        const double* m = M + r;
+        Four a = *reinterpret_cast<const Four*>(out + r), b {}, c {}, d {};
+        std::size_t j = 0;
+        for (; j + 4 <= columns; j += 4, m += 4 * rows) {
+            a += *reinterpret_cast<const Four*>(m) * v[j];
+            b += *reinterpret_cast<const Four*>(m + rows) * v[j + 1];
+            c += *reinterpret_cast<const Four*>(m + 2 * rows) * v[j + 2];
+            d += *reinterpret_cast<const Four*>(m + 3 * rows) * v[j + 3];
+        }
+        for (; j < columns; ++j, m += rows)
+            a += *reinterpret_cast<const Four*>(m) * v[j];
+        *reinterpret_cast<Four*>(out + r) = (a + b) + (c + d);
+    }
+}
+
+EXCURSION_DISPATCH
+double dot(const double* a, const double* b, std::size_t n)
+{
+    Four s {}, t {};
+    std::size_t k = 0;
+    for (; k + 8 <= n; k += 8) {
+        s += *reinterpret_cast<const Four*>(a + k) * *reinterpret_cast<const Four*>(b + k);
+        t += *reinterpret_cast<const Four*>(a + k + 4) * *reinterpret_cast<const Four*>(b + k + 4);
+    }
+    s += t;
+    double sum = (s[0] + s[1]) + (s[2] + s[3]);
+    for (; k < n; ++k)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+}  // namespace
+
+double innerProduct(const double* a, const double* b, std::size_t n) { return dot(a, b, n); }
+
+PaddedMatrix::PaddedMatrix(const Eigen::MatrixXd& M)
+    : rows_(padded(M.rows())), columns_(static_cast<std::size_t>(M.cols())), values_(rows_ * columns_, 0.0)
+{
+    for (Eigen::Index j = 0; j < M.cols(); ++j)
+        for (Eigen::Index i = 0; i < M.rows(); ++i)
+            values_[static_cast<std::size_t>(j) * rows_ + static_cast<std::size_t>(i)] = M(i, j);
+}
+
+void PaddedMatrix::add(const double* v, double* out) const { addProduct(values_.data(), rows_, columns_, v, out); }
+
+void PaddedMatrix::set(const double* v, double* out) const
+{
+    std::fill(out, out + rows_, 0.0);
+    add(v, out);
+}
+
+BlackBoxStep::BlackBoxStep(const BlackBox& box, const Region& region)
+    : unpaddedStates_(static_cast<std::size_t>(box.linear.order())),
+      unpaddedSeen_(static_cast<std::size_t>(box.seen())),
+      unpaddedCombinations_(static_cast<std::size_t>(box.combinations())),
+      products_(box.exponents, box.seen() + 1, 0),
+      dynamics_(box.linear.A),
+      driven_(box.linear.B),
+      bent_(box.E),
+      readX_(paddedRow(box.linear.C, padded(box.linear.order()))),
+      readQ_(paddedRow(box.F, padded(box.combinations()))),
+      readU_(box.linear.D(0, 0)),
+      zOfX_(box.S),
+      zOfU_(box.T),
+      zOfQ_(box.G),
+      combine_(box.R),
+      whiten_(region.W),
+      centre_(region.centre.data(), region.centre.data() + region.centre.size()),
+      implicit_(!box.G.isZero(0.0)),
+      identity_(box.S.rows() == box.S.cols() && box.S.isIdentity(0.0) && box.T.isZero(0.0)),
+      nodes_(static_cast<std::size_t>(products_.nodes())),
+      terms_(static_cast<std::size_t>(box.exponents.rows())),
+      place_(unpaddedSeen_ + 1),
+      white_(whiten_.rows()),
+      next_(dynamics_.rows()),
+      z_(zOfX_.rows() + 1),
+      difference_(combine_.rows())
+{
+    for (Eigen::Index k = 0; k < box.exponents.rows(); ++k)
+        termNode_.push_back(static_cast<std::size_t>(products_.termNode(k)));
+}
+
+void BlackBoxStep::see(const double* x, double u, double* z) const
+{
+    if (identity_) {
+        std::copy(x, x + zOfX_.rows(), z);
+        return;
+    }
+    zOfX_.set(x, z);
+    zOfU_.add(&u, z);
+}
+
+double BlackBoxStep::evaluate(const double* z, double u, double* q)
+{
+    for (std::size_t k = 0; k < unpaddedSeen_; ++k)
+        place_[k] = z[k] - centre_[k];
+    place_[unpaddedSeen_] = u - centre_[unpaddedSeen_];
+    whiten_.set(place_.data(), white_.data());
+    const double square = innerProduct(white_.data(), white_.data(), white_.size());
+    const double scale = square > 1.0 ? 1.0 / std::sqrt(square) : 1.0;
+    for (std::size_t k = 0; k <= unpaddedSeen_; ++k)
+        nodes_[1 + k] = centre_[k] + scale * place_[k];
+    products_.evaluate(nodes_.data());
+    for (std::size_t k = 0; k < terms_.size(); ++k)
+        terms_[k] = nodes_[termNode_[k]];
+    combine_.set(terms_.data(), q);
+    return square;
+}
+
+double BlackBoxStep::combinationsAt(const double* z, double u, const double* before, double* q)
+{
+    double square = 0.0;
+    if (!implicit_) {
+        square = evaluate(z, u, q);
+    } else {
+        for (int pass = 0; pass < implicitPasses; ++pass) {
+            std::copy(z, z + zOfX_.rows(), z_.begin());
+            for (std::size_t k = 0; k < unpaddedCombinations_; ++k)
+                difference_[k] = q[k] - (before ? before[k] : 0.0);
+            zOfQ_.add(difference_.data(), z_.data());
+            square = evaluate(z_.data(), u, q);
+        }
+    }
+    return std::sqrt(square);
+}
+
+double BlackBoxStep::advance(double* x, double u, const double* q)
+{
+    const double y = innerProduct(readX_.data(), x, readX_.size()) + readU_ * u
+                     + innerProduct(readQ_.data(), q, readQ_.size());
+    dynamics_.set(x, next_.data());
+    driven_.add(&u, next_.data());
+    bent_.add(q, next_.data());
+    std::copy(next_.begin(), next_.end(), x);
+    return y;
+}
+
+}  // namespace excursion

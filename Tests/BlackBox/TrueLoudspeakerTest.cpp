@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole way on the virtual bench: a PNLSS model of a noisy take, turned around, and the loudspeaker itself driven
+// with what comes out. The bench shares no line with the models.
+#include "BlackBox/RandomModels.h"
+
+#include "Bench/Draw.h"
+#include "Engine/Linear/Identify.h"
+#include "Engine/Measurement/Bla.h"
+#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/TakeRecords.h"
+#include "Engine/Signal/Fft.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace excursion;
+
+namespace {
+
+/// Power on the lines that were not played, of that on those that were: what a person measures as distortion.
+double onSilentLines(std::span<const double> period, const std::vector<int>& lines)
+{
+    const auto X = fft(period);
+    double signal = 0.0, rest = 0.0;
+    for (int k = 1; k <= lines.back(); ++k)
+        (std::binary_search(lines.begin(), lines.end(), k) ? signal
+                                                           : rest) += std::norm(X[static_cast<std::size_t>(k)]);
+    return decibelsOf(rest / signal);
+}
+
+}  // namespace
+
+TEST_CASE("A loudspeaker of the bench is linearized by a PNLSS model of its take", "[.minutes]")
+{
+    for (const std::uint64_t seed : {7U, 12U}) {
+        bench::DrawOptions wanted;
+        wanted.driver = "midbass";
+        wanted.hidden = {{"stiffness", 0.3}, {"force-factor", 0.3}};
+        wanted.noiseDb = -70.0;
+        wanted.sampleRate = 48000.0;
+        wanted.channels = {Quantity::voltage, Quantity::displacement};
+        wanted.seconds = 3.0;
+        const auto drawn = bench::draw(seed, wanted);
+        const auto take = bench::measure(drawn.speaker, drawn.setup);
+        const auto records = recordsOf(take, take.input(), *take.find(Quantity::displacement));
+        IdentifyOptions identifying;
+        identifying.order = 3;
+        identifying.sampleRate = take.sampleRate;
+        const int loudest = static_cast<int>(take.excitation->levels.size()) - 1;
+        const auto start = withTerms(
+            identify(frequencyDataOf(bla(take, Quantity::displacement, loudest).frf), identifying).model, 3);
+        PnlssFitOptions fitting;
+        fitting.enoughDb = records.enoughDb();
+        const auto fit = fitPnlss(start, records.estimation, records.validation, fitting);
+        REQUIRE(fit.validationDb < -40.0);
+
+        const auto stimulus = stimulusOf(records.estimation, take.sampleRate);
+        const RehearsedBox box(boxOf(fit.model, stimulus));
+        BlackBoxPredistorter predistorter(box, take.sampleRate);
+        constexpr int period = 16384;
+        std::vector<int> lines;
+        const auto one = playedAs(stimulus, take.sampleRate, period, 77, &lines);
+        std::vector<double> u;
+        for (int k = 0; k < 3; ++k)
+            u.insert(u.end(), one.begin(), one.end());
+        for (std::size_t k = 0; k < u.size(); ++k) {
+            const auto edge = static_cast<double>(std::min(k, u.size() - 1 - k));
+            u[k] *= 0.9 * std::min(1.0, edge / 2000.0);
+        }
+        auto bent = u;
+        bent.resize(u.size() + 2000, 0.0);
+        predistorter.process(bent.data(), bent.data(), bent.size());
+        const auto late = static_cast<std::size_t>(predistorter.latency());
+        const auto before = bench::play(drawn.speaker, u, take.sampleRate, {Quantity::displacement}),
+                   after = bench::play(drawn.speaker, bent, take.sampleRate, {Quantity::displacement});
+        const std::span<const double> plain(before.find(Quantity::displacement)->samples),
+            straight(after.find(Quantity::displacement)->samples);
+        const double was = onSilentLines(plain.subspan(period, period), lines),
+                     is = onSilentLines(straight.subspan(period + late, period), lines);
+        const auto told = box.rehearsal;
+        WARN("seed " << seed << ": model " << fit.validationDb << " dB, told " << told.beforeDb << " to "
+                     << told.afterDb << " dB; the loudspeaker " << was << " to " << is << " dB, turned down by "
+                     << predistorter.take().reduction << " dB");
+        CHECK(was - is > 25.0);
+    }
+}
