@@ -11,7 +11,7 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr float headHeight = 24.0f, gaugeWidth = 60.0f, bodyHeight = 13.5f;
+constexpr float headHeight = 24.0f, sureHeight = 18.0f, gaugeWidth = 60.0f, bodyHeight = 13.5f;
 
 /// "current −28.1 → −60.2 dB": as confirmed by a refit, else as predicted.
 juce::String fallOf(const RankedEffect& ranked, const ErrorByChannel& before)
@@ -119,8 +119,10 @@ juce::AttributedString CandidateCard::body() const
 int CandidateCard::heightFor(int width) const
 {
     if (!speaksFor())
-        return 44;
-    return static_cast<int>(headHeight + heightOf(body(), static_cast<float>(width) - 2.0f * margin - 2.0f)) + 24;
+        return static_cast<int>(headHeight + sureHeight) + 18;
+    return static_cast<int>(headHeight + sureHeight
+                            + heightOf(body(), static_cast<float>(width) - 2.0f * margin - 2.0f))
+           + 24;
 }
 
 void CandidateCard::paint(juce::Graphics& g)
@@ -129,18 +131,18 @@ void CandidateCard::paint(juce::Graphics& g)
     const auto& colours = look::palette();
     auto area = getLocalBounds().toFloat().reduced(1.0f, 3.0f).reduced(margin, 7.0f);
     auto head = area.removeFromTop(headHeight).withTrimmedRight(80.0f);
-    auto sure = head.removeFromRight(speaksFor() ? gaugeWidth + 44.0f : 140.0f);
     g.setFont(look::heightThatFits(title_, 15.0f, head.getWidth(), 0.0f, false));
     g.setColour(colours.text);
     g.drawText(title_, head, juce::Justification::centredLeft);
+    auto sure = area.removeFromTop(sureHeight);
     g.setFont(13.0f);
     g.setColour(colours.dim);
     if (!speaksFor()) {
-        g.drawText("takes nothing away", sure, juce::Justification::centredRight);
+        g.drawText("Takes nothing away.", sure, juce::Justification::centredLeft);
         return;
     }
-    g.drawText(whole(100.0 * confidence_) + " %", sure.removeFromRight(42.0f), juce::Justification::centredRight);
-    const auto gauge = sure.withSizeKeepingCentre(gaugeWidth, 6.0f);
+    const auto gauge = sure.removeFromLeft(gaugeWidth).withSizeKeepingCentre(gaugeWidth, 6.0f);
+    g.drawText(whole(100.0 * confidence_) + " % sure", sure.withTrimmedLeft(8.0f), juce::Justification::centredLeft);
     g.setColour(colours.grid);
     g.fillRoundedRectangle(gauge, 3.0f);
     g.setColour(colours.accent);

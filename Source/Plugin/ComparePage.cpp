@@ -62,6 +62,9 @@ ComparePage::ComparePage(Window& window) : Page(window)
     overlay_.setTitle("All rungs in one picture");
     overlay_.onClick = [this] { draw(); };
     error_.setFont(juce::Font(14.0f));
+    error_.setBorderSize({1, 0, 1, 0});
+    spectrum_.getProperties().set("empty", "Open or measure a take first.");
+    wave_.getProperties().set("empty", "Of the last rung a stretch of time is drawn here.");
     const auto tell = [this](const juce::String& text, bool trouble) { window_.tell(text, trouble); };
     spectrum_.told = tell;
     wave_.told = tell;

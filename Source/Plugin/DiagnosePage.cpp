@@ -60,6 +60,7 @@ Plot soundOf(const Findings& findings)
 DiagnosePage::DiagnosePage(Window& window) : Page(window)
 {
     verdict_.setFont(juce::Font(17.0f));
+    verdict_.setBorderSize({1, 0, 1, 0});
     verdict_.setJustificationType(juce::Justification::topLeft);
     verdict_.setText("Open or measure a take first.", juce::dontSendNotification);
     list_.setViewedComponent(&rows_, false);
@@ -70,6 +71,7 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
     undo_.setTooltip("Ctrl+Z takes it back, too");
     const auto tell = [this](const juce::String& text, bool trouble) { window_.tell(text, trouble); };
     evidence_.told = tell;
+    evidence_.getProperties().set("empty", "What the trial of an effect has found is drawn here.");
     falls_.told = tell;
     undo_.onClick = [this] { session().undo(); };
     linearize_.onClick = [this] {

@@ -8,6 +8,7 @@ namespace excursion::plugin {
 Dial::Dial(SliderStyle style, TextEntryBoxPosition place) : Slider(style, place)
 {
     setWantsKeyboardFocus(true);
+    setFocusContainerType(FocusContainerType::keyboardFocusContainer);  // Tab goes past its box, which Return opens
     setMouseClickGrabsKeyboardFocus(true);
 }
 

@@ -73,6 +73,7 @@ Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
     add(progress_, {});
     add(cancel_, "Stops what is under way");
     status_.setFont(juce::Font(13.5f));
+    status_.setBorderSize({1, 0, 1, 0});  // in line with what stands above
     status_.setTitle("Status");
     progress_.setTitle("Progress");
     progress_.setVisible(false);
@@ -137,10 +138,11 @@ double Editor::shownScale() const
 
 void Editor::setScale(double scale)
 {
+    const bool open = getWidth() > 0;
     preferences_.scale = scale > 0.0 ? std::clamp(scale, Preferences::leastScale, Preferences::mostScale) : 0.0;
     const double least = preferences_.scale > 0.0 ? std::min(1.0, preferences_.scale) : 1.0;
     setResizeLimits(static_cast<int>(leastWidth * least), static_cast<int>(leastHeight * least), 16384, 16384);
-    if (getWidth() == 0)
+    if (!open)
         return;
     // A window that is too small for it grows as far as the screen lets it.
     const auto screen = room();

@@ -19,6 +19,8 @@ LinearizePage::LinearizePage(Window& window)
 {
     name_.setFont(juce::Font(19.0f));
     forecastWords_.setFont(juce::Font(14.0f));
+    name_.setBorderSize({1, 0, 1, 0});
+    distortion_.getProperties().set("empty", "The distortion to be expected is being computed.");
     drivers_.setTextWhenNothingSelected("Factory drivers");
     for (std::size_t k = 0; k < factoryDrivers().size(); ++k)
         drivers_.addItem(factoryDrivers()[k].title, static_cast<int>(k) + 1);
@@ -195,8 +197,13 @@ void LinearizePage::resized()
         if (one->button().isVisible())
             shown.push_back(&one->button());
     // Where the room is short, lines stand closer.
-    const int lines = static_cast<int>(dials_.size()) + (static_cast<int>(shown.size()) + 1) / 2,
-              rest = 28 + 3 * 8 + 3 * 30 + 3 * 4,
+    const auto titled = [width = left.getWidth() / 2](const juce::ToggleButton& one) {
+        return juce::Font(14.0f).getStringWidth(one.getButtonText()) + 28 <= width;
+    };
+    int lines = static_cast<int>(dials_.size());
+    for (std::size_t k = 0; k < shown.size(); ++lines)
+        k += k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]) ? 2 : 1;
+    const int rest = 28 + 3 * 8 + 3 * 30 + 3 * 4,
               row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
     mode_.box().setBounds(left.removeFromTop(28));
     left.removeFromTop(8);
@@ -206,11 +213,13 @@ void LinearizePage::resized()
         dial.second->slider().setBounds(line);
     }
     left.removeFromTop(8);
-    for (std::size_t k = 0; k < shown.size(); k += 2) {
+    for (std::size_t k = 0; k < shown.size();) {
         auto line = left.removeFromTop(juce::jmin(row, 26));
-        shown[k]->setBounds(line.removeFromLeft(line.getWidth() / 2));
-        if (k + 1 < shown.size())
-            shown[k + 1]->setBounds(line);
+        // Two beside each other where both titles have room.
+        const bool two = k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]);
+        shown[k++]->setBounds(two ? line.removeFromLeft(line.getWidth() / 2) : line);
+        if (two)
+            shown[k++]->setBounds(line);
     }
     left.removeFromTop(8);
     for (auto* meter : {&excursion_, &voltage_, &power_}) {

@@ -171,7 +171,7 @@ void Look::positionComboBoxText(juce::ComboBox& box, juce::Label& label)
 
 void Look::drawComboBoxTextWhenNothingSelected(juce::Graphics& g, juce::ComboBox& box, juce::Label& label)
 {
-    const auto area = label.getBorderSize().subtractedFrom(label.getLocalBounds()).toFloat();
+    const auto area = label.getBorderSize().subtractedFrom(label.getBounds()).toFloat();
     const auto text = box.getTextWhenNothingSelected();
     g.setColour(palette().dim);
     g.setFont(heightThatFits(text, listFont, area.getWidth(), area.getHeight(), false));

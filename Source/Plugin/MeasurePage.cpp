@@ -72,6 +72,8 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
 {
     for (auto* title : {&openTitle_, &virtualTitle_, &measuringTitle_})
         title->setFont(juce::Font(16.0f));
+    for (auto* label : {&openTitle_, &openHint_, &virtualTitle_, &measuringTitle_, &verdict_})
+        label->setBorderSize({1, 0, 1, 0});  // in line with what stands below
     openTitle_.setText("A take that you have", juce::dontSendNotification);
     openHint_.setText("Or drop it anywhere on this window: a folder, a .csv, .zma or .frd.",
                       juce::dontSendNotification);
@@ -195,7 +197,7 @@ void MeasurePage::resized()
     verdict_.setBounds(area.removeFromTop(44));
     save_.setBounds(area.removeFromBottom(28).removeFromLeft(140));
     area.removeFromBottom(8);
-    report_.setBounds(area.removeFromTop(area.getHeight() / 2));
+    report_.setBounds(area.removeFromTop(area.getHeight() * 2 / 5));
     area.removeFromTop(8);
     signal_.setBounds(area);
 }

@@ -157,28 +157,29 @@ std::vector<AxisLabel> labelsOf(const AxisRange& range, float length,
 {
     if (!(range.least < range.most) || !std::isfinite(range.most - range.least))
         return {};
-    const auto fits = [&](const std::vector<AxisLabel>& labels) {
+    const auto fits = [&](const std::vector<AxisLabel>& labels, float apart) {
         for (std::size_t k = 1; k < labels.size(); ++k) {
-            const auto apart = static_cast<float>(range.share(labels[k].value) - range.share(labels[k - 1].value))
-                               * length;
-            if (apart < 0.5f * (extent(labels[k].text) + extent(labels[k - 1].text)) + gap)
+            const double share = range.share(labels[k].value) - range.share(labels[k - 1].value);
+            if (static_cast<float>(share) * length
+                < 0.5f * (extent(labels[k].text) + extent(labels[k - 1].text)) + apart)
                 return false;
         }
         return true;
     };
     const auto all = choices(range);
+    for (const float apart : {gap, 0.25f * gap})  // closer where the room is short
+        for (const auto& labels : all)
+            if (labels.size() >= fewest && fits(labels, apart))
+                return labels;
+    // No step leaves three that stand apart: three of the sparsest, equally far from each other.
     const std::vector<AxisLabel>* sparsest = nullptr;
-    for (const auto& labels : all) {
-        if (labels.size() < fewest)
-            continue;
-        if (fits(labels))
-            return labels;
-        if (sparsest == nullptr || labels.size() <= sparsest->size())
+    for (const auto& labels : all)
+        if (labels.size() >= fewest && (sparsest == nullptr || labels.size() <= sparsest->size()))
             sparsest = &labels;
-    }
     if (sparsest == nullptr)
         return all.empty() ? std::vector<AxisLabel> {} : all.front();
-    return {sparsest->front(), (*sparsest)[sparsest->size() / 2], sparsest->back()};
+    const auto step = (sparsest->size() - 1) / 2;
+    return {(*sparsest)[0], (*sparsest)[step], (*sparsest)[2 * step]};
 }
 
 }  // namespace excursion::plugin

@@ -298,8 +298,13 @@ void PlotView::paint(juce::Graphics& g)
     const auto panel = getLocalBounds().toFloat().reduced(2.0f);
     g.setColour(colours.panel);
     g.fillRoundedRectangle(panel, 4.0f);
-    if (plot_.series.empty())
+    if (plot_.series.empty()) {
+        g.setColour(colours.dim);
+        g.setFont(14.0f);
+        g.drawFittedText(getProperties()["empty"].toString(), getLocalBounds().reduced(20),
+                         juce::Justification::centred, 3, 1.0f);
         return;
+    }
     const auto shown = picture();
     shown.paint(g);
     if (!frame_.isEmpty()) {
