@@ -16,6 +16,10 @@ namespace excursion {
 /// Measured, model, error and noise of a channel against frequency, dB.
 Plot spectrumPlot(const ErrorSpectrum&, const std::string& unit);
 
+/// The errors of the other rungs of a ladder into the picture of one rung's channel at a level. The lines of a role
+/// differ in their dashes, and the key names the rungs.
+void overlayErrors(Plot&, const Ladder&, std::size_t shown, std::size_t channel, std::size_t level);
+
 /// What the balances of force and voltage lack against motion; `after` may be null.
 std::vector<Plot> residualPlots(const Comparison& before, const Comparison* after);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plots/Engineering.h"
 #include "Plots/Plots.h"
+#include "Plots/Words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,29 @@ Plot spectrumPlot(const ErrorSpectrum& spectrum, const std::string& unit)
     line("error", Role::error, s.error);
     line("noise", Role::noise, s.noise);
     return plot;
+}
+
+void overlayErrors(Plot& plot, const Ladder& ladder, std::size_t shown, std::size_t channel, std::size_t level)
+{
+    constexpr int firstDash = 2, dashes = 4;
+    for (auto& series : plot.series)
+        if (series.role == Role::error)
+            series.title = "error at " + rungTitle(ladder, shown);
+    int other = 0;
+    for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
+        const auto& channels = ladder.rungs[k].comparison.channels;
+        if (k == shown || channel >= channels.size() || level >= channels[channel].spectrumByLevel.size())
+            continue;
+        const auto s = smoothed(channels[channel].spectrumByLevel[level]);
+        plot.series.push_back({rungTitle(ladder, k),
+                               Role::before,
+                               s.frequency,
+                               inDecibels(s.error),
+                               {},
+                               {},
+                               Series::Shape::line,
+                               firstDash + other++ % dashes});
+    }
 }
 
 }  // namespace excursion

@@ -52,13 +52,24 @@ Plot wavePlot(const Waveform& wave)
 
 ComparePage::ComparePage(Window& window) : Page(window)
 {
-    for (auto* list : {&rung_, &channel_, &level_}) {
+    for (auto* list : {&rung_, &channel_, &level_})
         list->onChange = [this] { draw(); };
-        addAndMakeVisible(list);
-    }
-    addAndMakeVisible(error_);
-    addAndMakeVisible(spectrum_);
-    addAndMakeVisible(wave_);
+    rung_.setTitle("Model");
+    rung_.setTooltip("Which rung of the ladder is compared");
+    channel_.setTitle("Channel");
+    level_.setTitle("Level");
+    overlay_.setTooltip("Draws the errors of all rungs into one picture, and what was missing at first");
+    overlay_.setTitle("All rungs in one picture");
+    overlay_.onClick = [this] { draw(); };
+    error_.setFont(juce::Font(14.0f));
+    error_.setBorderSize({1, 0, 1, 0});
+    spectrum_.getProperties().set("empty", "Open or measure a take first.");
+    wave_.getProperties().set("empty", "Of the last rung a stretch of time is drawn here.");
+    const auto tell = [this](const juce::String& text, bool trouble) { window_.tell(text, trouble); };
+    spectrum_.told = tell;
+    wave_.told = tell;
+    residuals_.told = tell;
+    add({&rung_, &channel_, &level_, &overlay_, &error_, &spectrum_, &wave_, &residuals_});
 }
 
 void ComparePage::show(const std::shared_ptr<const Findings>& fresh)
@@ -89,12 +100,12 @@ void ComparePage::draw()
     const auto shown = [](const juce::ComboBox& list) {
         return static_cast<std::size_t>(std::max(0, list.getSelectedItemIndex()));
     };
-    residuals_.clear();
-    spectrum_.show({});
-    wave_.show({});
     if (!findings_ || findings_->file.ladder.rungs.empty()) {
+        spectrum_.show({});
+        wave_.show({});
+        residuals_.show({});
         error_.setText("Open or measure a take first.", juce::dontSendNotification);
-        resized();
+        repaint();
         return;
     }
     const auto& ladder = findings_->file.ladder;
@@ -111,58 +122,62 @@ void ComparePage::draw()
         most = std::isfinite(y) ? std::max(most, y) : most;
     spectrum.y.most = 10.0 * std::ceil(most / 10.0 + 0.1);
     spectrum.y.least = spectrum.y.most - 130.0;
+    const bool overlaid = overlay_.getToggleState() && ladder.rungs.size() > 1;
+    if (overlaid)
+        overlayErrors(spectrum, ladder, shown(rung_), shown(channel_), level);
     spectrum_.show(std::move(spectrum));
     const bool last = shown(rung_) + 1 == ladder.rungs.size();
     if (last && level < findings_->waveforms.size() && shown(channel_) < findings_->waveforms[level].size()) {
         wave_.show(wavePlot(findings_->waveforms[level][shown(channel_)]));
     } else if (const auto plots = responsePlots(ladder, findings_->file.responses); !plots.empty()) {
         wave_.show(plots[std::min(plots.size() - 1, shown(channel_))]);
+    } else {
+        wave_.show({});
     }
-    for (auto& plot : residualPlots(comparison, nullptr)) {
-        residuals_.push_back(std::make_unique<PlotView>());
-        plot.key = false;
-        residuals_.back()->show(std::move(plot));
-        addAndMakeVisible(*residuals_.back());
-    }
-    resized();
+    const bool before = overlaid && shown(rung_) > 0;
+    auto missing = before ? residualPlots(ladder.rungs.front().comparison, &comparison)
+                          : residualPlots(comparison, nullptr);
+    for (auto& plot : missing)
+        plot.key = before;
+    residuals_.show(std::move(missing));
+    repaint();
 }
 
 void ComparePage::paint(juce::Graphics& g)
 {
     if (residuals_.empty() && findings_ && !findings_->file.ladder.rungs.empty()) {
-        g.setColour(look::dim);
-        g.setFont(13.0f);
+        g.setColour(look::palette().dim);
+        g.setFont(14.0f);
         g.drawFittedText("Residual force and voltage need a channel that tells the displacement, velocity or "
                          "acceleration, and the current.",
-                         getLocalBounds().removeFromRight(getWidth() * 2 / 5).reduced(20), juce::Justification::centred,
-                         3);
+                         residuals_.getBounds().reduced(20), juce::Justification::centred, 5, 1.0f);
     }
 }
 
 void ComparePage::resized()
 {
     auto area = getLocalBounds();
-    auto head = area.removeFromTop(30);
-    for (auto* list : {&rung_, &channel_, &level_}) {
-        list->setBounds(head.removeFromLeft(list == &rung_ ? 260 : 150));
+    auto head = area.removeFromTop(28);
+    const bool wide = getWidth() >= 960;
+    rung_.setBounds(head.removeFromLeft(wide ? 290 : 260));
+    head.removeFromLeft(8);
+    for (auto* list : {&channel_, &level_}) {
+        list->setBounds(head.removeFromLeft(140));
         head.removeFromLeft(8);
     }
+    overlay_.setBounds(head.removeFromLeft(104));
+    head.removeFromLeft(8);
+    if (!wide) {  // a line of its own
+        area.removeFromTop(2);
+        head = area.removeFromTop(20);
+    }
     error_.setBounds(head);
-    area.removeFromTop(8);
-    auto right = area.removeFromRight(area.getWidth() * 2 / 5);
+    area.removeFromTop(6);
+    residuals_.setBounds(area.removeFromRight(area.getWidth() * 2 / 5));
     area.removeFromRight(6);
-    spectrum_.setBounds(area.removeFromTop(area.getHeight() * 3 / 5));
+    spectrum_.setBounds(area.removeFromTop(area.getHeight() * 11 / 20));
     area.removeFromTop(6);
     wave_.setBounds(area);
-    const int columns = residuals_.size() > 3 ? 2 : 1,
-              rows = std::max(1, (static_cast<int>(residuals_.size()) + columns - 1) / columns);
-    for (std::size_t k = 0; k < residuals_.size(); ++k) {
-        // Column by column: the curves of the force in one, those of the voltage in the other.
-        const int column = static_cast<int>(k) / rows, row = static_cast<int>(k) % rows;
-        residuals_[k]->setBounds(right.getX() + column * right.getWidth() / columns,
-                                 right.getY() + row * right.getHeight() / rows, right.getWidth() / columns,
-                                 right.getHeight() / rows);
-    }
 }
 
 }  // namespace excursion::plugin

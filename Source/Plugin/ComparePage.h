@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Plugin/Page.h"
-#include "Plugin/PlotView.h"
+#include "Plugin/PlotGrid.h"
 
 #include <memory>
 #include <vector>
@@ -25,8 +25,9 @@ private:
     std::shared_ptr<const Findings> findings_;
     juce::ComboBox rung_, channel_, level_;
     juce::Label error_;
+    juce::ToggleButton overlay_ {"All rungs"};
     PlotView spectrum_, wave_;
-    std::vector<std::unique_ptr<PlotView>> residuals_;
+    PlotGrid residuals_ {"Missing force and voltage", true};
 };
 
 }  // namespace excursion::plugin

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Plugin/CandidateCard.h"
 #include "Plugin/Page.h"
-#include "Plugin/PlotView.h"
+#include "Plugin/PlotGrid.h"
 
 #include <memory>
 #include <vector>
@@ -14,7 +15,6 @@ namespace excursion::plugin {
 class DiagnosePage : public Page {
 public:
     explicit DiagnosePage(Window&);
-    ~DiagnosePage() override;
 
     void show(const std::shared_ptr<const Findings>&) override;
     void tick() override;
@@ -22,23 +22,22 @@ public:
     void resized() override;
 
     /// As if the button beside that effect had been pressed.
-    void add(std::size_t place);
+    void addCandidate(std::size_t place);
 
 private:
-    class Candidate;
-    class Advice;
     static constexpr auto noCandidate = static_cast<std::size_t>(-1);  ///< selects the advice
     void select(std::size_t place);
+    void layOutList();
 
     std::shared_ptr<const Findings> findings_;
     juce::Label verdict_, truth_;
     juce::Viewport list_;
     juce::Component rows_;
-    std::unique_ptr<Advice> advice_;
-    std::vector<std::unique_ptr<Candidate>> candidates_;
+    std::unique_ptr<TextCard> advice_;
+    std::vector<std::unique_ptr<CandidateCard>> candidates_;
     std::size_t selected_ = 0;
     PlotView evidence_;
-    std::vector<std::unique_ptr<PlotView>> falls_;
+    PlotGrid falls_ {"How the errors fall"};
     juce::TextButton undo_ {"Take the last effect back"}, linearize_ {"Linearize with this model"},
         report_ {"Save the report..."}, reveal_ {"Reveal what was hidden"};
     std::unique_ptr<juce::FileChooser> chooser_;

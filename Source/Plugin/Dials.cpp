@@ -1,9 +1,61 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Dials.h"
 
+#include <cmath>
+
 namespace excursion::plugin {
 
-NumberDial::NumberDial(Number& number) : number_(number)
+Dial::Dial(SliderStyle style, TextEntryBoxPosition place) : Slider(style, place)
+{
+    setWantsKeyboardFocus(true);
+    setFocusContainerType(FocusContainerType::keyboardFocusContainer);  // Tab goes past its box, which Return opens
+    setMouseClickGrabsKeyboardFocus(true);
+}
+
+bool Dial::keyPressed(const juce::KeyPress& key)
+{
+    const auto by = [this](double steps) {
+        // a hundredth of its length, or as many as one of its steps is
+        const double before = getValue(), share = valueToProportionOfLength(before);
+        for (double reach = 0.01 * steps; std::abs(reach) < 1.0 && getValue() == before; reach += 0.01 * steps)
+            setValue(proportionOfLengthToValue(juce::jlimit(0.0, 1.0, share + reach)), juce::sendNotificationSync);
+        return true;
+    };
+    const bool counts = getInterval() > 0.0 && getSliderStyle() == IncDecButtons;
+    const auto step = [&](double steps) {
+        if (!counts)
+            return by(steps);
+        setValue(getValue() + steps * getInterval(), juce::sendNotificationSync);
+        return true;
+    };
+    if (key == juce::KeyPress::rightKey || key == juce::KeyPress::upKey)
+        return step(1.0);
+    if (key == juce::KeyPress::leftKey || key == juce::KeyPress::downKey)
+        return step(-1.0);
+    if (key == juce::KeyPress::pageUpKey)
+        return step(10.0);
+    if (key == juce::KeyPress::pageDownKey)
+        return step(-10.0);
+    if (key == juce::KeyPress::homeKey && isDoubleClickReturnEnabled()) {
+        setValue(getDoubleClickReturnValue(), juce::sendNotificationSync);
+        return true;
+    }
+    if (key == juce::KeyPress::returnKey && getTextBoxPosition() != NoTextBox) {
+        showTextBox();
+        return true;
+    }
+    return false;
+}
+
+void Dial::mouseWheelMove(const juce::MouseEvent& event, const juce::MouseWheelDetails& wheel)
+{
+    if (hasKeyboardFocus(true) || event.mods.isCtrlDown())
+        Slider::mouseWheelMove(event, wheel);
+    else
+        Component::mouseWheelMove(event, wheel);  // scrolls what it lies in
+}
+
+NumberDial::NumberDial(Number& number, History* history) : number_(number), history_(history)
 {
     const auto& scale = number.scale();
     slider_.setTextBoxStyle(juce::Slider::TextBoxRight, false, 90, 20);
@@ -16,13 +68,18 @@ NumberDial::NumberDial(Number& number) : number_(number)
         return text.getDoubleValue() / number.scale().shown;
     };
     slider_.setDoubleClickReturnValue(true, number.first());
+    slider_.setTitle(number.getName(80));
+    slider_.setDescription("From " + number.text(scale.range.least) + " to " + number.text(scale.range.most) + " "
+                           + scale.unit);
     slider_.onDragStart = [this] {
         held_ = true;
+        before_ = number_.get();
         number_.beginChangeGesture();
     };
     slider_.onDragEnd = [this] {
         number_.endChangeGesture();
         held_ = false;
+        remember(before_);
     };
     slider_.onValueChange = [this] { moved(); };
     follow();
@@ -31,13 +88,30 @@ NumberDial::NumberDial(Number& number) : number_(number)
 
 void NumberDial::moved()
 {
-    const double value = number_.snapped(slider_.getValue());
-    if (!held_)
-        number_.beginChangeGesture();
-    number_.set(value);
-    if (!held_)
-        number_.endChangeGesture();
+    const double value = number_.snapped(slider_.getValue()), before = number_.get();
+    if (held_) {
+        number_.set(value);
+    } else {
+        put(value);
+        remember(before);
+    }
     follow();
+}
+
+/// As one gesture of its own.
+void NumberDial::put(double value)
+{
+    number_.beginChangeGesture();
+    number_.set(value);
+    number_.endChangeGesture();
+    follow();
+}
+
+void NumberDial::remember(double before)
+{
+    if (const double now = number_.get(); history_ != nullptr && now != before)
+        history_->did(
+            number_.getName(80), [this, before] { put(before); }, [this, now] { put(now); });
 }
 
 void NumberDial::follow()
@@ -46,26 +120,49 @@ void NumberDial::follow()
         slider_.setValue(now, juce::dontSendNotification);
 }
 
-OnOffButton::OnOffButton(OnOff& which) : switch_(which), button_(which.getName(80))
+OnOffButton::OnOffButton(OnOff& which, History* history) : switch_(which), history_(history), button_(which.getName(80))
 {
+    button_.setTitle(which.getName(80));
+    button_.setDescription("Whether the model has this effect");
     button_.onClick = [this] {
-        switch_.beginChangeGesture();
-        switch_ = button_.getToggleState();
-        switch_.endChangeGesture();
+        const bool before = switch_.get(), now = button_.getToggleState();
+        put(now);
+        if (history_ != nullptr && before != now)
+            history_->did(
+                button_.getButtonText(), [this, before] { put(before); }, [this, now] { put(now); });
     };
+    follow();
+}
+
+void OnOffButton::put(bool on)
+{
+    switch_.beginChangeGesture();
+    switch_ = on;
+    switch_.endChangeGesture();
     follow();
 }
 
 void OnOffButton::follow() { button_.setToggleState(switch_.get(), juce::dontSendNotification); }
 
-ChoiceBox::ChoiceBox(Choice& choice) : choice_(choice)
+ChoiceBox::ChoiceBox(Choice& choice, History* history) : choice_(choice), history_(history)
 {
     box_.addItemList(choice.choices, 1);
+    box_.setTitle(choice.getName(80));
     box_.onChange = [this] {
-        choice_.beginChangeGesture();
-        choice_ = box_.getSelectedItemIndex();
-        choice_.endChangeGesture();
+        const int before = choice_.getIndex(), now = box_.getSelectedItemIndex();
+        put(now);
+        if (history_ != nullptr && before != now)
+            history_->did(
+                choice_.getName(80), [this, before] { put(before); }, [this, now] { put(now); });
     };
+    follow();
+}
+
+void ChoiceBox::put(int index)
+{
+    choice_.beginChangeGesture();
+    choice_ = index;
+    choice_.endChangeGesture();
     follow();
 }
 

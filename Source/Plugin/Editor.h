@@ -3,20 +3,29 @@
 
 #include "Plugin/ComparePage.h"
 #include "Plugin/DiagnosePage.h"
+#include "Plugin/FocusRing.h"
+#include "Plugin/History.h"
 #include "Plugin/LinearizePage.h"
 #include "Plugin/MeasurePage.h"
+#include "Plugin/Preferences.h"
 
 #include <array>
 
 namespace excursion::plugin {
 
 /// The window: four pages, from the measurement to the linearization, and a status line with the progress of what is
-/// under way. A take or a model is taken wherever it is dropped.
+/// under way. A take or a model is taken wherever it is dropped. Everything is laid out on a body of at least 800 x 560
+/// that is drawn at a scale: as a person chose, or growing with the window, and smaller where the window is. Keys:
+/// Ctrl+1 to Ctrl+4 the pages, Ctrl+Page Up and Down one on, Ctrl+Z and Ctrl+Shift+Z take back and do again, Ctrl+O
+/// opens, Ctrl with + - 0 scales.
 class Editor : public juce::AudioProcessorEditor,
                public juce::FileDragAndDropTarget,
                public Window,
+               private juce::DarkModeSettingListener,
                private juce::Timer {
 public:
+    static constexpr int leastWidth = 800, leastHeight = 560;  ///< of what is laid out
+
     /// @param devices  for measuring; null: those of the app, none within a host
     explicit Editor(Processor&, juce::AudioDeviceManager* devices = nullptr);
     ~Editor() override;
@@ -26,40 +35,71 @@ public:
     void load(const juce::File&);
     const juce::String status() const { return status_.getText(); }
 
+    /// Within Preferences::leastScale and mostScale; 0: grows with the window. Kept for the next window.
+    void setScale(double);
+    double shownScale() const;          ///< at which it is drawn now
+    void setTheme(look::Theme);         ///< kept as well
+    juce::Rectangle<int> room() const;  ///< of the screen that the window may take, 90 % of it
+    juce::Component& body() { return body_; }
+    FocusRing& ring() { return ring_; }
+    void undo();
+    void redo();
+
     void update();  ///< what the timer does
+    void show(const std::shared_ptr<const Findings>&);
+    Page& page(PageName name) { return *pages_[static_cast<std::size_t>(name)]; }
     MeasurePage& measure() { return measure_; }
     DiagnosePage& diagnose() { return diagnose_; }
 
     Processor& processor() override { return owner_; }
+    History& history() override { return history_; }
     void go(PageName) override;
     void use(const Model&, const juce::String& from) override;
     void tell(const juce::String&, bool trouble) override;
 
     void paint(juce::Graphics&) override;
     void resized() override;
+    bool keyPressed(const juce::KeyPress&) override;
     bool isInterestedInFileDrag(const juce::StringArray&) override { return true; }
     void filesDropped(const juce::StringArray&, int, int) override;
 
 private:
     void timerCallback() override { update(); }
+    void darkModeSettingChanged() override { recolour(); }
+    void recolour();
+    void keep();
+    void layOut(juce::Rectangle<int>);
+    void showView();
+    void noteLadder(const std::shared_ptr<const Findings>&);
 
+    juce::SharedResourcePointer<look::Look> look_;
     Processor& owner_;
+    Preferences preferences_ = readPreferences(preferencesFile());
+    History history_;
+    juce::Component body_;
+    FocusRing ring_;
+    juce::TooltipWindow tips_ {this};
     juce::Label status_;
     std::array<juce::TextButton, 4> tabs_ {juce::TextButton {"Measure"}, juce::TextButton {"Compare"},
                                            juce::TextButton {"Diagnose"}, juce::TextButton {"Linearize"}};
     double fraction_ = 0.0;
     juce::ProgressBar progress_ {fraction_};
-    juce::TextButton cancel_ {"Cancel"};
+    juce::TextButton cancel_ {"Cancel"}, undo_ {"Undo"}, redo_ {"Redo"}, view_ {"View"};
     MeasurePage measure_;
     ComparePage compare_ {*this};
     DiagnosePage diagnose_ {*this};
     LinearizePage linearize_ {*this};
     const std::array<Page*, 4> pages_ {&measure_, &compare_, &diagnose_, &linearize_};
     std::size_t page_ = 0;
-    std::uint64_t seen_ = 0;   ///< version of the findings that the pages show
-    std::string said_;         ///< of the session's status
-    std::string standstill_;   ///< of the processor, as it was told
-    std::uint64_t shown_ = 0;  ///< version of the model that the last page shows
+    std::uint64_t seen_ = 0;            ///< version of the findings that the pages show
+    std::string said_;                  ///< of the session's status
+    std::string standstill_;            ///< of the processor, as it was told
+    std::uint64_t shown_ = 0;           ///< version of the model that the last page shows
+    bool focused_ = false;              ///< has asked for the keyboard
+    int coloured_ = -1;                 ///< version of the look that the window has
+    std::shared_ptr<const Take> take_;  ///< that the history is of
+    std::vector<std::string> rungs_;    ///< effects of the ladder, as the history knows it
+    bool laddering_ = false;            ///< the history itself moves the ladder
 };
 
 }  // namespace excursion::plugin

@@ -15,11 +15,12 @@
 namespace excursion::plugin {
 
 LinearizePage::LinearizePage(Window& window)
-    : Page(window), processor_(window.processor()), mode_(processor_.parameters().mode())
+    : Page(window), processor_(window.processor()), mode_(processor_.parameters().mode(), &window.history())
 {
-    name_.setFont(juce::Font(20.0f));
-    for (auto* label : {&name_, &forecastWords_})
-        addAndMakeVisible(label);
+    name_.setFont(juce::Font(19.0f));
+    forecastWords_.setFont(juce::Font(14.0f));
+    name_.setBorderSize({1, 0, 1, 0});
+    distortion_.getProperties().set("empty", "The distortion to be expected is being computed.");
     drivers_.setTextWhenNothingSelected("Factory drivers");
     for (std::size_t k = 0; k < factoryDrivers().size(); ++k)
         drivers_.addItem(factoryDrivers()[k].title, static_cast<int>(k) + 1);
@@ -36,25 +37,39 @@ LinearizePage::LinearizePage(Window& window)
         if (const int k = recipes_.getSelectedItemIndex(); k >= 0) {
             const auto& factory = factoryRecipes()[static_cast<std::size_t>(k)];
             const auto recipe = recipeFromText(factory.text, factory.title);
-            processor_.parameters().set(recipe);
+            const auto put = [this](const Recipe& which, const Between& between) {
+                processor_.parameters().set(which, between);
+                follow();
+            };
+            auto& parameters = processor_.parameters();
+            window_.history().did(
+                "Recipe", [put, before = parameters.recipe(), between = parameters.between()] { put(before, between); },
+                [put, recipe] { put(recipe, {}); });
+            put(recipe, {});
             window_.tell(words(recipe.words), false);
         }
     };
     load_.onClick = [this] { choose(); };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {
-             &drivers_, &recipes_, &mode_.box(), &load_, &excursion_, &voltage_, &distortion_})
-        addAndMakeVisible(component);
-    addChildComponent(power_);
+    drivers_.setTitle("Factory drivers");
+    recipes_.setTitle("Recipes");
+    recipes_.setTooltip("Mode, limits and effects for a purpose");
+    load_.setTooltip("Or drop the model's file anywhere on this window");
+    const auto tell = [this](const juce::String& text, bool trouble) { window_.tell(text, trouble); };
+    laws_.told = tell;
+    distortion_.told = tell;
+    add({&name_, &recipes_, &drivers_, &load_, &mode_.box()});
     for (auto* number : processor_.parameters().numbers()) {
-        dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number));
+        dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number, &window.history()));
         dials_.back().first->setText(number->getName(40), juce::dontSendNotification);
-        addAndMakeVisible(*dials_.back().first);
-        addAndMakeVisible(dials_.back().second->slider());
+        dials_.back().first->setFont(juce::Font(14.0f));
+        add({dials_.back().first.get(), &dials_.back().second->slider()});
     }
     for (auto* effect : processor_.parameters().effects()) {
-        switches_.push_back(std::make_unique<OnOffButton>(*effect));
-        addAndMakeVisible(switches_.back()->button());
+        switches_.push_back(std::make_unique<OnOffButton>(*effect, &window.history()));
+        add({&switches_.back()->button()});
     }
+    add({&excursion_, &voltage_, &power_, &laws_, &distortion_, &forecastWords_});
+    power_.setVisible(false);
     showModel(processor_.model());
 }
 
@@ -62,15 +77,13 @@ void LinearizePage::showModel(const Model& model)
 {
     name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name),
                   juce::dontSendNotification);
-    laws_.clear();
-    for (auto& plot : lawPlots(model)) {
-        laws_.push_back(std::make_unique<PlotView>());
+    auto plots = lawPlots(model);
+    for (auto& plot : plots)
         plot.key = false;
-        laws_.back()->show(std::move(plot));
-        addAndMakeVisible(*laws_.back());
-    }
+    laws_.show(std::move(plots));
+    // A switch of an effect that the model has not would do nothing.
     for (std::size_t k = 0; k < switches_.size(); ++k)
-        switches_[k]->button().setEnabled(model.has(catalogue()[k]->id()));
+        switches_[k]->button().setVisible(model.has(catalogue()[k]->id()));
     resized();
 }
 
@@ -167,43 +180,55 @@ void LinearizePage::tick()
 void LinearizePage::resized()
 {
     auto area = getLocalBounds();
-    auto head = area.removeFromTop(30);
-    load_.setBounds(head.removeFromRight(140));
+    auto head = area.removeFromTop(28);
+    const bool wide = getWidth() >= 960;
+    load_.setBounds(head.removeFromRight(130));
     head.removeFromRight(8);
-    drivers_.setBounds(head.removeFromRight(220));
+    drivers_.setBounds(head.removeFromRight(wide ? 220 : 180));
     head.removeFromRight(8);
-    recipes_.setBounds(head.removeFromRight(210));
+    recipes_.setBounds(head.removeFromRight(wide ? 220 : 190));
+    head.removeFromRight(8);
     name_.setBounds(head);
     area.removeFromTop(8);
-    auto left = area.removeFromLeft(juce::jmax(380, area.getWidth() * 2 / 5));
+    auto left = area.removeFromLeft(juce::jmax(376, area.getWidth() * 2 / 5));
     area.removeFromLeft(12);
-    mode_.box().setBounds(left.removeFromTop(30));
+    std::vector<juce::ToggleButton*> shown;
+    for (auto& one : switches_)
+        if (one->button().isVisible())
+            shown.push_back(&one->button());
+    // Where the room is short, lines stand closer.
+    const auto titled = [width = left.getWidth() / 2](const juce::ToggleButton& one) {
+        return juce::Font(14.0f).getStringWidth(one.getButtonText()) + 28 <= width;
+    };
+    int lines = static_cast<int>(dials_.size());
+    for (std::size_t k = 0; k < shown.size(); ++lines)
+        k += k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]) ? 2 : 1;
+    const int rest = 28 + 3 * 8 + 3 * 30 + 3 * 4,
+              row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
+    mode_.box().setBounds(left.removeFromTop(28));
     left.removeFromTop(8);
     for (auto& dial : dials_) {
-        auto row = left.removeFromTop(28);
-        dial.first->setBounds(row.removeFromLeft(130));
-        dial.second->slider().setBounds(row);
+        auto line = left.removeFromTop(row);
+        dial.first->setBounds(line.removeFromLeft(130));
+        dial.second->slider().setBounds(line);
     }
     left.removeFromTop(8);
-    auto switches = left.removeFromTop(24 * ((static_cast<int>(switches_.size()) + 1) / 2));
-    auto second = switches.removeFromRight(switches.getWidth() / 2);
-    for (std::size_t k = 0; k < switches_.size(); ++k)
-        switches_[k]->button().setBounds((2 * k < switches_.size() ? switches : second).removeFromTop(24));
-    left.removeFromTop(12);
+    for (std::size_t k = 0; k < shown.size();) {
+        auto line = left.removeFromTop(juce::jmin(row, 26));
+        // Two beside each other where both titles have room.
+        const bool two = k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]);
+        shown[k++]->setBounds(two ? line.removeFromLeft(line.getWidth() / 2) : line);
+        if (two)
+            shown[k++]->setBounds(line);
+    }
+    left.removeFromTop(8);
     for (auto* meter : {&excursion_, &voltage_, &power_}) {
-        meter->setBounds(left.removeFromTop(32));
-        left.removeFromTop(6);
+        meter->setBounds(left.removeFromTop(30));
+        left.removeFromTop(4);
     }
     forecastWords_.setBounds(area.removeFromBottom(24));
-    distortion_.setBounds(area.removeFromBottom(area.getHeight() * 2 / 5));
-    const int columns = laws_.size() > 1 ? 2 : 1,
-              rows = juce::jmax(1, (static_cast<int>(laws_.size()) + columns - 1) / columns);
-    for (std::size_t k = 0; k < laws_.size(); ++k) {
-        const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
-        laws_[k]->setBounds(area.getX() + column * area.getWidth() / columns,
-                            area.getY() + row * area.getHeight() / rows, area.getWidth() / columns,
-                            area.getHeight() / rows);
-    }
+    distortion_.setBounds(area.removeFromBottom(area.getHeight() * 9 / 20));
+    laws_.setBounds(area);
 }
 
 }  // namespace excursion::plugin

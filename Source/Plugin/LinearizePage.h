@@ -5,7 +5,7 @@
 #include "Plugin/Forecast.h"
 #include "Plugin/Meter.h"
 #include "Plugin/Page.h"
-#include "Plugin/PlotView.h"
+#include "Plugin/PlotGrid.h"
 
 #include <cstdint>
 #include <memory>
@@ -39,7 +39,7 @@ private:
     /// each behind its title
     std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;
     std::vector<std::unique_ptr<OnOffButton>> switches_;
-    std::vector<std::unique_ptr<PlotView>> laws_;
+    PlotGrid laws_ {"Laws of the model"};
     PlotView distortion_;
     Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
     Forecast forecast_;

@@ -72,10 +72,12 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
 {
     for (auto* title : {&openTitle_, &virtualTitle_, &measuringTitle_})
         title->setFont(juce::Font(16.0f));
+    for (auto* label : {&openTitle_, &openHint_, &virtualTitle_, &measuringTitle_, &verdict_})
+        label->setBorderSize({1, 0, 1, 0});  // in line with what stands below
     openTitle_.setText("A take that you have", juce::dontSendNotification);
     openHint_.setText("Or drop it anywhere on this window: a folder, a .csv, .zma or .frd.",
                       juce::dontSendNotification);
-    openHint_.setColour(juce::Label::textColourId, look::dim);
+    look::setTone(openHint_, look::Tone::dim);
     openHint_.setFont(juce::Font(12.5f));
     virtualTitle_.setText("A virtual loudspeaker with a hidden effect", juce::dontSendNotification);
     measuringTitle_.setText("A loudspeaker of your own", juce::dontSendNotification);
@@ -85,11 +87,18 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
     report_.setMultiLine(true);
     report_.setReadOnly(true);
     report_.setCaretVisible(false);
-    report_.setColour(juce::TextEditor::backgroundColourId, look::panel);
-    report_.setColour(juce::TextEditor::outlineColourId, juce::Colours::transparentBlack);
+    report_.setFont(juce::Font(14.0f));
+    report_.setTitle("What the check says of the take");
+    signal_.told = [this](const juce::String& text, bool trouble) { window_.tell(text, trouble); };
     for (std::size_t k = 0; k < bench::driverClasses().size(); ++k)
         driver_.addItem(words(bench::driverClasses()[k]), static_cast<int>(k) + 1);
     driver_.setSelectedItemIndex(2, juce::dontSendNotification);
+    driver_.setTitle("Class of the virtual loudspeaker");
+    driver_.setTooltip("What kind of loudspeaker is drawn");
+    seed_.setTitle("Seed of the virtual loudspeaker");
+    seed_.setTooltip("The same seed draws the same loudspeaker");
+    draw_.setTooltip("Draws a virtual loudspeaker, hides an effect in it and measures it");
+    open_.setTooltip("Ctrl+O");
     seed_.setRange(1.0, 9999.0, 1.0);
     seed_.setValue(7.0, juce::dontSendNotification);
     draw_.onClick = [this] {
@@ -113,20 +122,18 @@ MeasurePage::MeasurePage(Window& window, juce::AudioDeviceManager* devices) : Pa
                 session().saveTake(chosen.getResult().getFullPathName().toStdString());
         });
     };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {
-             &openTitle_, &openHint_, &virtualTitle_, &measuringTitle_, &verdict_, &open_, &folder_, &draw_, &save_,
-             &driver_, &seed_, &report_, &signal_})
-        addAndMakeVisible(component);
+    add({&openTitle_, &open_, &folder_, &openHint_, &virtualTitle_, &driver_, &seed_, &draw_, &measuringTitle_});
     save_.setEnabled(false);
     if (devices != nullptr) {
         measuring_ = std::make_unique<MeasuringPanel>(window, *devices);
-        addAndMakeVisible(*measuring_);
+        add({measuring_.get()});
     } else {
         measuringTitle_.setText("To measure a loudspeaker, start the app: within a host the devices are the host's.",
                                 juce::dontSendNotification);
         measuringTitle_.setFont(juce::Font(13.0f));
-        measuringTitle_.setColour(juce::Label::textColourId, look::dim);
+        look::setTone(measuringTitle_, look::Tone::dim);
     }
+    add({&verdict_, &report_, &signal_, &save_});
 }
 
 void MeasurePage::choose()
@@ -146,8 +153,9 @@ void MeasurePage::show(const std::shared_ptr<const Findings>& fresh)
     verdict_.setText(spectra ? juce::String("A frequency response: its linear effects can be told.")
                              : words(findings.report.verdict()),
                      juce::dontSendNotification);
-    verdict_.setColour(juce::Label::textColourId, findings.report.fitForUse() ? look::good : look::warning);
+    look::setTone(verdict_, findings.report.fitForUse() ? look::Tone::good : look::Tone::warning);
     report_.setText(textOf(findings), juce::dontSendNotification);
+    report_.moveCaretToTop(false);
     signal_.show(signalPlot(findings.report));
     save_.setEnabled(!spectra);
 }
@@ -158,33 +166,38 @@ void MeasurePage::tick()
         measuring_->tick();
 }
 
+void MeasurePage::recolour() { report_.applyColourToAllText(look::palette().text); }
+
 void MeasurePage::resized()
 {
     auto area = getLocalBounds();
-    auto left = area.removeFromLeft(410);
+    auto left = area.removeFromLeft(juce::jlimit(370, 430, getWidth() * 2 / 5));
     area.removeFromLeft(16);
-    openTitle_.setBounds(left.removeFromTop(24));
-    auto line = left.removeFromTop(30);
+    // What is left over of the height goes between the groups.
+    const int least = 22 + 28 + 20 + 22 + 28 + 22 + MeasuringPanel::leastHeight,
+              gap = juce::jlimit(4, 18, (getHeight() - least) / 3);
+    openTitle_.setBounds(left.removeFromTop(22));
+    auto line = left.removeFromTop(28);
     open_.setBounds(line.removeFromLeft(140));
     line.removeFromLeft(8);
     folder_.setBounds(line.removeFromLeft(140));
-    openHint_.setBounds(left.removeFromTop(24));
-    left.removeFromTop(16);
-    virtualTitle_.setBounds(left.removeFromTop(24));
-    line = left.removeFromTop(30);
-    driver_.setBounds(line.removeFromLeft(130));
+    openHint_.setBounds(left.removeFromTop(20));
+    left.removeFromTop(gap);
+    virtualTitle_.setBounds(left.removeFromTop(22));
+    line = left.removeFromTop(28);
+    driver_.setBounds(line.removeFromLeft(120));
     line.removeFromLeft(8);
-    seed_.setBounds(line.removeFromLeft(130));
+    seed_.setBounds(line.removeFromLeft(124));
     line.removeFromLeft(8);
-    draw_.setBounds(line.removeFromLeft(120));
-    left.removeFromTop(16);
-    measuringTitle_.setBounds(left.removeFromTop(24));
+    draw_.setBounds(line.removeFromLeft(106));
+    left.removeFromTop(gap);
+    measuringTitle_.setBounds(left.removeFromTop(measuring_ ? 22 : 40));
     if (measuring_)
-        measuring_->setBounds(left);
+        measuring_->setBounds(left.removeFromTop(juce::jmin(left.getHeight(), MeasuringPanel::leastHeight + 60)));
     verdict_.setBounds(area.removeFromTop(44));
-    save_.setBounds(area.removeFromBottom(30).removeFromLeft(140));
+    save_.setBounds(area.removeFromBottom(28).removeFromLeft(140));
     area.removeFromBottom(8);
-    report_.setBounds(area.removeFromTop(area.getHeight() / 2));
+    report_.setBounds(area.removeFromTop(area.getHeight() * 2 / 5));
     area.removeFromTop(8);
     signal_.setBounds(area);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Plugin/Dials.h"
 #include "Plugin/MeasuringPanel.h"
 #include "Plugin/Page.h"
 #include "Plugin/PlotView.h"
@@ -18,18 +19,18 @@ public:
 
     void show(const std::shared_ptr<const Findings>&) override;
     void tick() override;
+    void recolour() override;
     void resized() override;
 
     MeasuringPanel* measuring() { return measuring_.get(); }
+    void choose();  ///< asks for a take
 
 private:
-    void choose();
-
     juce::Label openTitle_, openHint_, virtualTitle_, measuringTitle_, verdict_;
     juce::TextButton open_ {"Open a take..."}, folder_ {"Open a folder..."}, draw_ {"Measure it"},
         save_ {"Save the take..."};
     juce::ComboBox driver_;
-    juce::Slider seed_ {juce::Slider::IncDecButtons, juce::Slider::TextBoxLeft};
+    Dial seed_ {juce::Slider::IncDecButtons, juce::Slider::TextBoxLeft};
     std::unique_ptr<MeasuringPanel> measuring_;
     juce::TextEditor report_;
     PlotView signal_;

@@ -5,6 +5,7 @@
 #include "Plugin/Look.h"
 
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 
 namespace excursion::plugin {
@@ -35,10 +36,14 @@ MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices
 {
     device_.onClick = [this] { showDevices(); };
     go_.onClick = [this] { running() ? cancel() : start(); };
-    for (juce::Component* component : std::initializer_list<juce::Component*> {
-             &device_, &go_, &deviceName_, &preview_, &levelsTitle_, &bandTitle_, &fullScaleTitle_, &outputTitle_,
-             &levels_, &low_, &high_, &fullScale_, &outputChannel_})
-        addAndMakeVisible(component);
+    int order = 0;
+    const auto add = [this, &order](std::initializer_list<juce::Component*> parts) {
+        for (auto* part : parts) {
+            part->setExplicitFocusOrder(++order);
+            addAndMakeVisible(part);
+        }
+    };
+    add({&device_, &deviceName_});
     for (int k = 0; k < inputs; ++k) {
         auto& input = inputs_[static_cast<std::size_t>(k)];
         input.title.setText("Input " + juce::String(k + 1), juce::dontSendNotification);
@@ -48,10 +53,18 @@ MeasuringPanel::MeasuringPanel(Window& window, juce::AudioDeviceManager& devices
         input.role.setSelectedId(1, juce::dontSendNotification);
         input.role.onChange = [this, &input] { relabel(input); };
         input.fullScale.setText("1");
-        for (juce::Component* component :
-             std::initializer_list<juce::Component*> {&input.title, &input.role, &input.fullScale, &input.unit})
-            addAndMakeVisible(component);
+        input.role.setTitle("What input " + juce::String(k + 1) + " is");
+        input.fullScale.setTitle("Full scale of input " + juce::String(k + 1));
+        input.fullScale.setTooltip("What a sample of 1.0 stands for");
+        add({&input.title, &input.role, &input.fullScale, &input.unit});
     }
+    add({&outputTitle_, &outputChannel_, &fullScaleTitle_, &fullScale_, &levelsTitle_, &levels_, &bandTitle_, &low_,
+         &high_, &preview_, &go_});
+    outputChannel_.setTitle("Output channel");
+    fullScale_.setTitle("Volts at the output's full scale");
+    levels_.setTitle("Levels, volts rms");
+    low_.setTitle("Lower end of the band, Hz");
+    high_.setTitle("Upper end of the band, Hz");
     setRole(0, Quantity::voltage, 16.0);
     setRole(1, Quantity::current, 4.0);
     outputTitle_.setText("Output", juce::dontSendNotification);
@@ -151,10 +164,10 @@ void MeasuringPanel::preview()
         preview_.setText("Plays " + whole(seconds) + " s of odd multisines, to about " + juce::String(peak, 1)
                              + " V peak" + (peak > most ? ", more than the output can give!" : "."),
                          juce::dontSendNotification);
-        preview_.setColour(juce::Label::textColourId, peak > most ? look::warning : look::dim);
+        look::setTone(preview_, peak > most ? look::Tone::warning : look::Tone::dim);
     } catch (const Error& error) {
         preview_.setText(words(error.what()), juce::dontSendNotification);
-        preview_.setColour(juce::Label::textColourId, look::warning);
+        look::setTone(preview_, look::Tone::warning);
     }
 }
 
@@ -234,7 +247,7 @@ void MeasuringPanel::tick()
             window_.tell(words(error.what()), true);
         }
     } else {
-        preview_.setColour(juce::Label::textColourId, look::text);
+        look::setTone(preview_, look::Tone::text);
         preview_.setText("Measuring, " + whole(100.0 * recorder_->fraction()) + " %", juce::dontSendNotification);
     }
 }
@@ -246,7 +259,7 @@ void MeasuringPanel::showDevices()
     selector->setSize(500, 420);
     dialog.content.setOwned(selector);
     dialog.dialogTitle = "Audio device";
-    dialog.dialogBackgroundColour = look::background;
+    dialog.dialogBackgroundColour = look::palette().background;
     dialog.resizable = false;
     dialog.launchAsync();
 }
@@ -254,39 +267,43 @@ void MeasuringPanel::showDevices()
 void MeasuringPanel::resized()
 {
     auto area = getLocalBounds();
-    const auto row = [&area] {
-        auto line = area.removeFromTop(26);
-        area.removeFromTop(4);
+    constexpr int rows = 8, foot = 36 + 28;
+    const int height = juce::jlimit(24, 27, (getHeight() - foot) / rows - 3),
+              gap = juce::jlimit(2, 6, (getHeight() - foot) / rows - height);
+    const auto row = [&] {
+        auto line = area.removeFromTop(height);
+        area.removeFromTop(gap);
         return line;
     };
+    constexpr int title = 64, wide = 108;
     auto line = row();
-    device_.setBounds(line.removeFromLeft(130));
-    line.removeFromLeft(8);
+    device_.setBounds(line.removeFromLeft(122));
+    line.removeFromLeft(6);
     deviceName_.setBounds(line);
     for (auto& input : inputs_) {
         line = row();
-        input.title.setBounds(line.removeFromLeft(64));
-        input.role.setBounds(line.removeFromLeft(130));
+        input.title.setBounds(line.removeFromLeft(title));
+        input.role.setBounds(line.removeFromLeft(126));
         line.removeFromLeft(8);
-        input.fullScale.setBounds(line.removeFromLeft(64));
+        input.fullScale.setBounds(line.removeFromLeft(58));
         input.unit.setBounds(line);
     }
     line = row();
-    outputTitle_.setBounds(line.removeFromLeft(64));
+    outputTitle_.setBounds(line.removeFromLeft(title));
     outputChannel_.setBounds(line.removeFromLeft(64));
     line.removeFromLeft(8);
-    fullScaleTitle_.setBounds(line.removeFromLeft(104));
+    fullScaleTitle_.setBounds(line.removeFromLeft(112));
     fullScale_.setBounds(line.removeFromLeft(64));
     line = row();
-    levelsTitle_.setBounds(line.removeFromLeft(104));
+    levelsTitle_.setBounds(line.removeFromLeft(wide));
     levels_.setBounds(line);
     line = row();
-    bandTitle_.setBounds(line.removeFromLeft(104));
+    bandTitle_.setBounds(line.removeFromLeft(wide));
     low_.setBounds(line.removeFromLeft(72));
     line.removeFromLeft(8);
     high_.setBounds(line.removeFromLeft(72));
-    preview_.setBounds(area.removeFromTop(40));
-    go_.setBounds(area.removeFromTop(30).removeFromLeft(130));
+    preview_.setBounds(area.removeFromTop(36));
+    go_.setBounds(area.removeFromTop(28).removeFromLeft(140));
 }
 
 }  // namespace excursion::plugin

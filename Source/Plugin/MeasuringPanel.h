@@ -15,6 +15,8 @@ namespace excursion::plugin {
 /// go and stop.
 class MeasuringPanel : public juce::Component {
 public:
+    static constexpr int leastHeight = 288;  ///< px
+
     MeasuringPanel(Window&, juce::AudioDeviceManager&);
     ~MeasuringPanel() override;
 

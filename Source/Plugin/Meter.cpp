@@ -23,7 +23,10 @@ void Meter::show(double share, const juce::String& words, double reduction)
         reduction_ = std::max(reduction, reduction_);
         told_ = second;
     }
-    words_ = words;
+    if (words_ != words) {
+        words_ = words;
+        setDescription(this->words());
+    }
     repaint();
 }
 
@@ -34,18 +37,25 @@ juce::String Meter::words() const
 
 void Meter::paint(juce::Graphics& g)
 {
+    const auto& colours = look::palette();
     auto area = getLocalBounds().toFloat();
     auto head = area.removeFromTop(18.0f);
     g.setFont(13.0f);
-    g.setColour(look::text);
-    g.drawText(title_, head.removeFromLeft(70.0f), juce::Justification::left);
-    g.setColour(told_ > 0 ? look::warning : look::dim);
-    g.drawFittedText(words(), head.toNearestInt(), juce::Justification::right, 1);
+    g.setColour(colours.text);
+    g.drawText(title_, head.removeFromLeft(68.0f), juce::Justification::centredLeft);
+    g.setColour(told_ > 0 ? colours.warning : colours.dim);
+    g.setFont(look::heightThatFits(words(), 13.0f, head.getWidth(), 0.0f, false));
+    g.drawText(words(), head, juce::Justification::centredRight);
     area = area.removeFromTop(8.0f);
-    g.setColour(look::panel);
+    g.setColour(colours.grid);
     g.fillRoundedRectangle(area, 4.0f);
-    g.setColour(told_ > 0 ? look::warning : look::accent);
+    g.setColour(told_ > 0 ? colours.warning : colours.accent);
     g.fillRoundedRectangle(area.withWidth(static_cast<float>(share_) * area.getWidth()), 4.0f);
+}
+
+std::unique_ptr<juce::AccessibilityHandler> Meter::createAccessibilityHandler()
+{
+    return std::make_unique<juce::AccessibilityHandler>(*this, juce::AccessibilityRole::progressBar);
 }
 
 }  // namespace excursion::plugin

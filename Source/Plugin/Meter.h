@@ -9,7 +9,7 @@ namespace excursion::plugin {
 /// work.
 class Meter : public juce::Component {
 public:
-    explicit Meter(juce::String title) : title_(std::move(title)) {}
+    explicit Meter(const juce::String& title) : title_(title) { setTitle(title); }
 
     /// @param share      of the limit, 1: as far as allowed
     /// @param words      the value with its unit
@@ -19,6 +19,8 @@ public:
     void paint(juce::Graphics&) override;
 
 private:
+    std::unique_ptr<juce::AccessibilityHandler> createAccessibilityHandler() override;
+
     juce::String title_, words_;
     double share_ = 0.0;
     double reduction_ = 0.0;  ///< the largest of those that are told

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Plugin/History.h"
 #include "Plugin/Juce.h"
 #include "Plugin/Processor.h"
 #include "Plugin/Session.h"
@@ -17,6 +18,7 @@ class Window {
 public:
     virtual ~Window() = default;
     virtual Processor& processor() = 0;
+    virtual History& history() = 0;
     virtual void go(PageName) = 0;
     /// loads it into the processor; tells when it can't be run
     virtual void use(const Model&, const juce::String& from) = 0;
@@ -30,11 +32,23 @@ public:
 
     virtual void show(const std::shared_ptr<const Findings>&) {}  ///< they are new; never null
     virtual void tick() {}                                        ///< 20 times a second, while the page is seen
+    virtual void recolour() {}                                    ///< the theme is another
 
 protected:
+    /// Makes them visible; Tab goes through them in this order.
+    void add(std::initializer_list<juce::Component*> parts)
+    {
+        for (auto* part : parts) {
+            part->setExplicitFocusOrder(++parts_);
+            addAndMakeVisible(part);
+        }
+    }
     Session& session() { return window_.processor().session(); }
 
     Window& window_;
+
+private:
+    int parts_ = 0;
 };
 
 }  // namespace excursion::plugin

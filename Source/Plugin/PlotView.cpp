@@ -1,301 +1,397 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/PlotView.h"
 
+#include "Engine/Error.h"
+#include "Plots/PlotCsv.h"
 #include "Plugin/Look.h"
 #include "Plugin/Text.h"
+#include "Report/Draw.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace excursion::plugin {
 namespace {
 
-juce::Colour colourOf(Role role)
+constexpr float menuWidth = 26.0f;
+constexpr float shortestFrame = 6.0f;  // px; what is shorter was a click
+constexpr int pictureScale = 2;        // of a PNG, as its pixels are to be printed
+
+/// Digits by which a thousandth of the range is told.
+juce::String readingText(double value, const AxisRange& range)
 {
-    switch (role) {
-    case Role::measured: return juce::Colour(0xffe6ebf0);
-    case Role::model: return juce::Colour(0xff56b4e9);
-    case Role::error: return juce::Colour(0xffe69f00);
-    case Role::noise: return juce::Colour(0xff8793a0);
-    case Role::before: return juce::Colour(0xffe69f00);
-    case Role::after: return juce::Colour(0xff2bc48a);
-    case Role::reference: return juce::Colour(0xff8793a0);
-    }
-    return look::text;
+    const double span = range.logarithmic ? std::abs(value) : range.most - range.least;
+    return numberText(value, std::pow(10.0, std::floor(std::log10(std::max(1e-300, 1e-3 * span)))));
 }
 
-/// With as many digits as tell neighbours apart that are `step` from each other.
-juce::String number(double value, double step)
+juce::String withUnit(const juce::String& text, const std::string& unit)
 {
-    const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
-    return decimals == 0 ? whole(value) : juce::String(value, decimals);
+    return unit.empty() ? text : text + " " + words(unit);
 }
 
 }  // namespace
 
-double PlotView::Range::share(double value) const
+PlotView::PlotView()
 {
-    return logarithmic ? std::log(value / least) / std::log(most / least) : (value - least) / (most - least);
+    setWantsKeyboardFocus(true);
+    setTitle("Plot");
+    menu_.setButtonText(words("\u22ef"));
+    menu_.setTitle("Save or zoom this plot");
+    menu_.setTooltip("Save as PNG, SVG or CSV");
+    menu_.setWantsKeyboardFocus(false);  // Return on the plot does the same
+    menu_.onClick = [this] { offer(); };
+    addChildComponent(menu_);
 }
 
-double PlotView::Range::value(double share) const
-{
-    return logarithmic ? least * std::pow(most / least, share) : least + share * (most - least);
-}
-
-PlotView::Range PlotView::rangeOf(const Plot& plot, const Axis& axis, bool across)
-{
-    Range range {axis.least, axis.most, axis.logarithmic};
-    if (axis.least < axis.most)
-        return range;
-    range.least = std::numeric_limits<double>::infinity();
-    range.most = -range.least;
-    const auto include = [&](double value) {
-        if (std::isfinite(value) && (!axis.logarithmic || value > 0.0)) {
-            range.least = std::min(range.least, value);
-            range.most = std::max(range.most, value);
-        }
-    };
-    for (const auto& series : plot.series)
-        for (const auto* values : across ? std::array {&series.x, &series.x, &series.x}
-                                         : std::array {&series.y, &series.lower, &series.upper})
-            for (const double value : *values)
-                include(value);
-    if (!(range.least <= range.most))
-        return {axis.logarithmic ? 0.1 : 0.0, 1.0, axis.logarithmic};
-    if (range.least == range.most)
-        range = axis.logarithmic ? Range {range.least / 2.0, range.most * 2.0, true}
-                                 : Range {range.least - 1.0, range.most + 1.0, false};
-    if (!across && !axis.logarithmic) {
-        const double room = 0.06 * (range.most - range.least);
-        range.least -= room;
-        range.most += room;
-    }
-    return range;
-}
-
-std::vector<PlotView::Tick> PlotView::ticksOf(const Axis& axis, const Range& range, int most)
-{
-    std::vector<Tick> ticks;
-    if (!axis.names.empty()) {
-        for (std::size_t k = 0; k < axis.names.size(); ++k)
-            ticks.push_back({static_cast<double>(k), words(axis.names[k])});
-        return ticks;
-    }
-    if (range.logarithmic) {
-        const bool many = std::log10(range.most / range.least) > 0.6 * most;
-        for (int decade = static_cast<int>(std::floor(std::log10(range.least)));
-             decade <= std::ceil(std::log10(range.most)); ++decade)
-            for (const int digit : {1, 2, 5}) {
-                const double value = digit * std::pow(10.0, decade);
-                if (value >= range.least * 0.999 && value <= range.most * 1.001 && (digit == 1 || !many))
-                    ticks.push_back({value, value >= 1e3 ? number(value / 1e3, 1.0) + "k"
-                                                         : number(value, value >= 1.0 ? 1.0 : value)});
-            }
-        return ticks;
-    }
-    const double rough = (range.most - range.least) / std::max(1, most),
-                 decade = std::pow(10.0, std::floor(std::log10(rough)));
-    const double step = decade
-                        * (rough / decade <= 1.0   ? 1.0
-                           : rough / decade <= 2.0 ? 2.0
-                           : rough / decade <= 5.0 ? 5.0
-                                                   : 10.0);
-    for (double value = std::ceil(range.least / step - 1e-9) * step; value <= range.most + 1e-9 * step; value += step)
-        ticks.push_back({value, number(std::abs(value) < 1e-9 * step ? 0.0 : value, step)});
-    return ticks;
-}
+PlotView::~PlotView() = default;
 
 void PlotView::show(Plot plot)
 {
+    const bool same = plot.title == plot_.title && plot.x.title == plot_.x.title && plot.y.title == plot_.y.title
+                      && plot.x.unit == plot_.x.unit && plot.y.unit == plot_.y.unit && zoomed();
     plot_ = std::move(plot);
-    across_ = rangeOf(plot_, plot_.x, true);
-    up_ = rangeOf(plot_, plot_.y, false);
+    wholeAcross_ = rangeOf(plot_, true);
+    wholeUp_ = rangeOf(plot_, false);
+    if (!same) {
+        across_ = wholeAcross_;
+        up_ = wholeUp_;
+    }
+    const bool empty = plot_.series.empty();
+    menu_.setVisible(!empty);
+    setWantsKeyboardFocus(!empty);
+    const auto title = words(plot_.title.empty() ? plot_.y.title + " against " + plot_.x.title : plot_.title);
+    setTitle(empty ? juce::String("Empty plot") : title);
+    juce::StringArray lines;
+    for (const auto& series : plot_.series)
+        if (!series.title.empty())
+            lines.add(words(series.title));
+    setDescription(empty ? juce::String()
+                         : "Plot of " + words(plot_.y.title) + " against " + words(plot_.x.title) + ": "
+                               + lines.joinIntoString(", ")
+                               + ". The arrow keys read it, plus and minus zoom, Return saves it.");
     repaint();
 }
 
-juce::Point<float> PlotView::place(double x, double y) const
+Plot PlotView::seen() const
 {
-    return {area_.getX() + static_cast<float>(std::clamp(across_.share(x), -1.0, 2.0)) * area_.getWidth(),
-            area_.getBottom() - static_cast<float>(std::clamp(up_.share(y), -1.0, 2.0)) * area_.getHeight()};
+    auto plot = plot_;
+    plot.x.least = across_.least;
+    plot.x.most = across_.most;
+    plot.y.least = up_.least;
+    plot.y.most = up_.most;
+    return plot;
 }
 
-void PlotView::follow(juce::Point<float> where)
+PlotPicture PlotView::picture() const
 {
-    mouse_ = where;
+    return {plot_, across_, up_, getLocalBounds().toFloat().reduced(2.0f), menuWidth};
+}
+
+std::vector<AxisLabel> PlotView::labels(bool across) const { return picture().labels(across); }
+
+void PlotView::zoom(const AxisRange& across, const AxisRange& up)
+{
+    across_ = across;
+    up_ = up;
     repaint();
 }
 
-void PlotView::drawGrid(juce::Graphics& g) const
+void PlotView::showAll() { zoom(wholeAcross_, wholeUp_); }
+
+juce::Point<double> PlotView::sharesAt(juce::Point<float> where) const
 {
-    g.setFont(11.5f);
-    float free = -1e9f;  // labels do not run into each other
-    for (const auto& tick : ticksOf(plot_.x, across_, std::max(3, static_cast<int>(area_.getWidth() / 60.0f)))) {
-        const float x = place(tick.value, up_.least).x;
-        g.setColour(look::grid);
-        g.drawVerticalLine(juce::roundToInt(x), area_.getY(), area_.getBottom());
-        if (x - 20.0f < free)
-            continue;
-        free = x + 14.0f;
-        g.setColour(look::dim);
-        g.drawText(tick.text, juce::Rectangle<float>(x - 30.0f, area_.getBottom() + 2.0f, 60.0f, 14.0f),
-                   juce::Justification::centred);
-    }
-    for (const auto& tick : ticksOf(plot_.y, up_, std::max(3, static_cast<int>(area_.getHeight() / 32.0f)))) {
-        const float y = place(across_.least, tick.value).y;
-        g.setColour(look::grid);
-        g.drawHorizontalLine(juce::roundToInt(y), area_.getX(), area_.getRight());
-        g.setColour(look::dim);
-        g.drawText(tick.text, juce::Rectangle<float>(area_.getX() - 48.0f, y - 7.0f, 44.0f, 14.0f),
-                   juce::Justification::right);
-    }
+    const auto area = picture().area();
+    return {(where.x - area.getX()) / static_cast<double>(area.getWidth()),
+            (area.getBottom() - where.y) / static_cast<double>(area.getHeight())};
 }
 
-void PlotView::drawSeries(juce::Graphics& g, const Series& series) const
+void PlotView::zoomAbout(juce::Point<double> shares, double factor, bool across, bool up)
 {
-    const auto colour = colourOf(series.role);
-    const auto count = std::min(series.x.size(), series.y.size());
-    const auto drawable = [&](std::size_t k) {
-        return std::isfinite(series.x[k]) && std::isfinite(series.y[k]) && (!across_.logarithmic || series.x[k] > 0.0)
-               && (!up_.logarithmic || series.y[k] > 0.0);
+    const auto part = [factor](const AxisRange& range, const AxisRange& whole, double share) {
+        auto result = range.part(share - share * factor, share + (1.0 - share) * factor);
+        result.least = std::max(result.least, whole.least);
+        result.most = std::min(result.most, whole.most);
+        return result;
     };
-    if (series.lower.size() == count && series.upper.size() == count && count > 1) {
-        // A quadrilateral from point to point: the rasterizer leaves holes in one polygon round the whole band.
-        juce::Path band;
-        std::size_t before = count;
-        for (std::size_t k = 0; k < count; ++k) {
-            if (!drawable(k) || !std::isfinite(series.lower[k]) || !std::isfinite(series.upper[k]))
-                continue;
-            if (before < k)
-                band.addQuadrilateral(
-                    place(series.x[before], series.lower[before]).x, place(series.x[before], series.lower[before]).y,
-                    place(series.x[before], series.upper[before]).x, place(series.x[before], series.upper[before]).y,
-                    place(series.x[k], series.upper[k]).x, place(series.x[k], series.upper[k]).y,
-                    place(series.x[k], series.lower[k]).x, place(series.x[k], series.lower[k]).y);
-            before = k;
-        }
-        g.setColour(colour.withAlpha(0.18f));
-        g.fillPath(band);
-    }
-    juce::Path path;
-    bool down = false;
-    g.setColour(colour);
-    for (std::size_t k = 0; k < count; ++k) {
-        if (!drawable(k)) {
-            down = false;
-            continue;
-        }
-        const auto point = place(series.x[k], series.y[k]);
-        down ? path.lineTo(point) : path.startNewSubPath(point);
-        down = true;
-        if (series.shape == Series::Shape::pointsAndLine)
-            g.fillEllipse(juce::Rectangle<float>(7.0f, 7.0f).withCentre(point));
-    }
-    const juce::PathStrokeType stroke(series.role == Role::measured || series.role == Role::after ? 2.0f : 1.5f);
-    if (series.role == Role::noise || series.role == Role::reference || series.dash > 1) {
-        const float dashes[] {5.0f, 4.0f};
-        stroke.createDashedStroke(path, path, dashes, 2);
-        g.fillPath(path);
-    } else {
-        g.strokePath(path, stroke);
-    }
+    zoom(across ? part(across_, wholeAcross_, shares.x) : across_, up ? part(up_, wholeUp_, shares.y) : up_);
 }
 
-void PlotView::drawKey(juce::Graphics& g, juce::Rectangle<float> row) const
+void PlotView::putCursor(double x)
 {
-    g.setFont(12.0f);
-    for (const auto& series : plot_.series) {
-        if (series.title.empty())
-            continue;
-        const auto text = words(series.title);
-        const float width = g.getCurrentFont().getStringWidthFloat(text) + 30.0f;
-        if (row.getWidth() < width)
-            return;
-        auto entry = row.removeFromLeft(width);
-        g.setColour(colourOf(series.role));
-        g.fillRect(entry.removeFromLeft(14.0f).withSizeKeepingCentre(14.0f, 2.5f));
-        g.setColour(look::dim);
-        g.drawText(text, entry.withTrimmedLeft(5.0f), juce::Justification::left);
-    }
+    cursor_ = x;
+    repaint();
 }
 
-void PlotView::drawReading(juce::Graphics& g) const
+void PlotView::mouseMove(const juce::MouseEvent& event)
 {
-    if (!area_.contains(mouse_))
+    if (picture().area().contains(event.position) && !plot_.series.empty())
+        putCursor(across_.value(sharesAt(event.position).x));
+    else
+        mouseExit(event);
+}
+
+void PlotView::mouseExit(const juce::MouseEvent&)
+{
+    cursor_.reset();
+    repaint();
+}
+
+void PlotView::mouseDown(const juce::MouseEvent& event)
+{
+    if (event.mods.isPopupMenu()) {
+        offer();
         return;
-    g.setColour(look::dim);
-    g.drawVerticalLine(juce::roundToInt(mouse_.x), area_.getY(), area_.getBottom());
-    const double x = across_.value((mouse_.x - area_.getX()) / area_.getWidth());
-    juce::StringArray lines {number(x, std::abs(x) < 10.0    ? 0.01
-                                       : std::abs(x) < 100.0 ? 0.1
-                                                             : 1.0)
-                             + " " + words(plot_.x.unit)};
+    }
+    from_ = sharesAt(event.position);
+    draggedAcross_ = across_;
+    draggedUp_ = up_;
+    frame_ = {};
+}
+
+void PlotView::mouseDrag(const juce::MouseEvent& event)
+{
+    if (event.mods.isPopupMenu() || plot_.series.empty())
+        return;
+    if (event.mods.isCtrlDown()) {
+        const auto area = picture().area();
+        const double dx = event.getOffsetFromDragStart().x / static_cast<double>(area.getWidth()),
+                     dy = event.getOffsetFromDragStart().y / static_cast<double>(area.getHeight());
+        zoom(draggedAcross_.part(-dx, 1.0 - dx), draggedUp_.part(dy, 1.0 + dy));
+        return;
+    }
+    frame_ = juce::Rectangle<float>(event.mouseDownPosition, event.position).getIntersection(picture().area());
+    repaint();
+}
+
+void PlotView::mouseUp(const juce::MouseEvent&)
+{
+    const auto frame = std::exchange(frame_, {});
+    if (frame.getWidth() < shortestFrame && frame.getHeight() < shortestFrame)
+        return;
+    const auto from = sharesAt(frame.getBottomLeft()), to = sharesAt(frame.getTopRight());
+    // A frame that is nearly a line stands for one axis.
+    zoom(frame.getWidth() >= shortestFrame ? across_.part(from.x, to.x) : across_,
+         frame.getHeight() >= shortestFrame ? up_.part(from.y, to.y) : up_);
+}
+
+void PlotView::mouseWheelMove(const juce::MouseEvent& event, const juce::MouseWheelDetails& wheel)
+{
+    if (!picture().area().contains(event.position) || plot_.series.empty()) {
+        Component::mouseWheelMove(event, wheel);
+        return;
+    }
+    const bool up = event.mods.isShiftDown();
+    // with Shift some systems turn the wheel sideways
+    const float turned = wheel.deltaY != 0.0f ? wheel.deltaY : wheel.deltaX;
+    zoomAbout(sharesAt(event.position), std::exp(-static_cast<double>(turned)), !up, up);
+}
+
+bool PlotView::keyPressed(const juce::KeyPress& key)
+{
+    if (plot_.series.empty())
+        return false;
+    const auto move = [this](double by) {
+        const double share = cursor_ ? across_.share(*cursor_) + by : 0.5;
+        putCursor(across_.value(juce::jlimit(0.0, 1.0, share)));
+        return true;
+    };
+    const auto about = [this] {
+        return juce::Point<double>(cursor_ ? juce::jlimit(0.0, 1.0, across_.share(*cursor_)) : 0.5, 0.5);
+    };
+    if (key == juce::KeyPress::leftKey)
+        return move(-0.01);
+    if (key == juce::KeyPress::rightKey)
+        return move(0.01);
+    if (key == juce::KeyPress::returnKey
+        || key == juce::KeyPress(juce::KeyPress::F10Key, juce::ModifierKeys::shiftModifier, 0)) {
+        offer();
+        return true;
+    }
+    if (key == juce::KeyPress::homeKey) {
+        showAll();
+        return true;
+    }
+    if (const auto c = key.getTextCharacter(); c == '+' || c == '-') {
+        zoomAbout(about(), c == '+' ? 0.8 : 1.25, true, true);
+        return true;
+    }
+    return false;
+}
+
+void PlotView::focusLost(FocusChangeType)
+{
+    cursor_.reset();
+    repaint();
+}
+
+std::size_t PlotView::nearest(const Series& series, double x) const
+{
+    std::size_t best = 0;
+    double least = 1e300;
+    for (std::size_t k = 0; k < std::min(series.x.size(), series.y.size()); ++k)
+        if (const double far = std::abs(across_.share(series.x[k]) - across_.share(x)); far < least) {
+            least = far;
+            best = k;
+        }
+    return best;
+}
+
+juce::StringArray PlotView::reading() const
+{
+    if (!cursor_)
+        return {};
+    const auto at = static_cast<std::size_t>(std::max(0.0, std::round(*cursor_)));
+    juce::StringArray lines {plot_.x.names.empty()
+                                 ? withUnit(readingText(*cursor_, across_), plot_.x.unit)
+                                 : words(plot_.x.title) + " "
+                                       + words(plot_.x.names[std::min(at, plot_.x.names.size() - 1)])};
     for (const auto& series : plot_.series) {
         if (series.title.empty() || series.x.empty())
             continue;
-        std::size_t nearest = 0;
-        for (std::size_t k = 1; k < std::min(series.x.size(), series.y.size()); ++k)
-            if (std::abs(across_.share(series.x[k]) - across_.share(x))
-                < std::abs(across_.share(series.x[nearest]) - across_.share(x)))
-                nearest = k;
-        if (std::isfinite(series.y[nearest]))
-            lines.add(words(series.title) + "  " + juce::String(series.y[nearest], 2) + " " + words(plot_.y.unit));
+        if (const auto k = nearest(series, *cursor_); k < series.y.size() && std::isfinite(series.y[k]))
+            lines.add(words(series.title) + "  " + withUnit(readingText(series.y[k], up_), plot_.y.unit));
     }
+    return lines;
+}
+
+void PlotView::drawReading(juce::Graphics& g, const PlotPicture& picture) const
+{
+    if (!cursor_ || !frame_.isEmpty())
+        return;
+    const auto& colours = look::palette();
+    const auto area = picture.area();
+    const float x = picture.at(*cursor_, up_.least).x;
+    g.setColour(colours.dim);
+    g.drawVerticalLine(juce::roundToInt(x), area.getY(), area.getBottom());
+    for (const auto& series : plot_.series)
+        if (!series.title.empty() && !series.x.empty())
+            if (const auto k = nearest(series, *cursor_);
+                k < series.y.size() && std::isfinite(series.y[k]) && (!up_.logarithmic || series.y[k] > 0.0))
+                if (const auto point = picture.at(series.x[k], series.y[k]); area.contains(point)) {
+                    g.setColour(look::colourOf(series.role));
+                    g.fillEllipse(juce::Rectangle<float>(6.0f, 6.0f).withCentre(point));
+                }
+    const auto lines = reading();
     g.setFont(12.0f);
     float width = 0.0f;
     for (const auto& line : lines)
         width = std::max(width, g.getCurrentFont().getStringWidthFloat(line) + 14.0f);
-    auto box = juce::Rectangle<float>(mouse_.x + 10.0f, area_.getY() + 4.0f, width,
-                                      6.0f + 15.0f * static_cast<float>(lines.size()));
-    if (box.getRight() > area_.getRight())
-        box.setX(mouse_.x - 10.0f - width);
-    g.setColour(look::background.withAlpha(0.9f));
-    g.fillRoundedRectangle(box, 3.0f);
-    g.setColour(look::text);
+    auto box = juce::Rectangle<float>(x + 10.0f, area.getY() + 4.0f, width,
+                                      15.0f * static_cast<float>(lines.size()) + 6.0f);
+    if (box.getRight() > area.getRight())
+        box.setX(std::max(2.0f, x - 10.0f - width));
+    box.setY(std::max(2.0f, std::min(box.getY(), static_cast<float>(getHeight()) - 2.0f - box.getHeight())));
+    g.setColour(colours.background.withAlpha(0.94f));
+    g.fillRoundedRectangle(box, 4.0f);
+    g.setColour(colours.outline);
+    g.drawRoundedRectangle(box, 4.0f, 1.0f);
+    g.setColour(colours.text);
     box.reduce(7.0f, 3.0f);
     for (const auto& line : lines)
-        g.drawText(line, box.removeFromTop(15.0f), juce::Justification::left);
+        g.drawText(line, box.removeFromTop(15.0f), juce::Justification::centredLeft);
 }
 
 void PlotView::paint(juce::Graphics& g)
 {
-    auto panel = getLocalBounds().toFloat().reduced(2.0f);
-    g.setColour(look::panel);
+    const auto& colours = look::palette();
+    const auto panel = getLocalBounds().toFloat().reduced(2.0f);
+    g.setColour(colours.panel);
     g.fillRoundedRectangle(panel, 4.0f);
+    if (plot_.series.empty()) {
+        g.setColour(colours.dim);
+        g.setFont(14.0f);
+        g.drawFittedText(getProperties()["empty"].toString(), getLocalBounds().reduced(20),
+                         juce::Justification::centred, 3, 1.0f);
+        return;
+    }
+    const auto shown = picture();
+    shown.paint(g);
+    if (!frame_.isEmpty()) {
+        g.setColour(colours.accent.withAlpha(0.18f));
+        g.fillRect(frame_);
+        g.setColour(colours.accent);
+        g.drawRect(frame_, 1.0f);
+    }
+    drawReading(g, shown);
+}
+
+void PlotView::resized() { menu_.setBounds(getWidth() - 34, 6, 26, 18); }
+
+void PlotView::offer()
+{
     if (plot_.series.empty())
         return;
-    panel.reduce(10.0f, 6.0f);
-    const auto label = [](const Axis& axis) {
-        return words(axis.unit.empty() ? axis.title : axis.title + " (" + axis.unit + ")");
+    juce::PopupMenu menu;
+    menu.setLookAndFeel(&getLookAndFeel());
+    const auto save = [this](const char* ending) {
+        return [safe = juce::Component::SafePointer<PlotView>(this), ending] {
+            if (safe != nullptr)
+                safe->choose(ending);
+        };
     };
-    g.setColour(look::text);
-    g.setFont(14.0f);
-    if (!plot_.title.empty())
-        g.drawText(words(plot_.title), panel.removeFromTop(18.0f), juce::Justification::left);
-    auto key = panel.removeFromTop(16.0f);
-    g.setFont(12.0f);
-    g.setColour(look::dim);
-    const auto upTitle = label(plot_.y);
-    const auto upWidth = g.getCurrentFont().getStringWidthFloat(upTitle) + 16.0f;
-    g.drawText(upTitle, key.removeFromLeft(upWidth), juce::Justification::left);
-    if (plot_.key)
-        drawKey(g, key);
-    g.setFont(12.0f);
-    g.setColour(look::dim);
-    g.drawText(label(plot_.x), panel.removeFromBottom(15.0f), juce::Justification::centred);
-    panel.removeFromBottom(16.0f);
-    panel.removeFromTop(4.0f);
-    area_ = panel.withTrimmedLeft(44.0f).withTrimmedRight(8.0f);
-    drawGrid(g);
-    {
-        const juce::Graphics::ScopedSaveState inside(g);
-        g.reduceClipRegion(area_.getSmallestIntegerContainer().expanded(4));
-        for (const auto& series : plot_.series)
-            drawSeries(g, series);
+    menu.addItem("Save the picture as PNG...", save("png"));
+    menu.addItem("Save the picture as SVG...", save("svg"));
+    menu.addItem("Save the numbers as CSV...", save("csv"));
+    menu.addSeparator();
+    menu.addItem("Show all (double click)", zoomed(), false, [safe = juce::Component::SafePointer<PlotView>(this)] {
+        if (safe != nullptr)
+            safe->showAll();
+    });
+    menu.showMenuAsync(juce::PopupMenu::Options().withTargetComponent(menu_));
+}
+
+void PlotView::choose(const juce::String& ending)
+{
+    const auto first = juce::File::getSpecialLocation(juce::File::userHomeDirectory)
+                           .getChildFile(
+                               juce::File::createLegalFileName(getTitle().toLowerCase().replaceCharacter(' ', '-'))
+                               + "." + ending);
+    chooser_ = std::make_unique<juce::FileChooser>("Save the plot", first, "*." + ending);
+    chooser_->launchAsync(juce::FileBrowserComponent::saveMode | juce::FileBrowserComponent::warnAboutOverwriting,
+                          [this, ending](const juce::FileChooser& chosen) {
+                              if (chosen.getResult() == juce::File())
+                                  return;
+                              const auto file = chosen.getResult().withFileExtension(ending);
+                              try {
+                                  save(file);
+                                  if (told)
+                                      told("Wrote " + file.getFullPathName() + ".", false);
+                              } catch (const Error& error) {
+                                  if (told)
+                                      told(words(error.what()), true);
+                              }
+                          });
+}
+
+void PlotView::save(const juce::File& file) const
+{
+    juce::MemoryOutputStream bytes;
+    if (file.hasFileExtension("png")) {
+        const auto plot = seen();
+        const int width = std::max(getWidth(), plot.width), height = std::max(getHeight(), plot.height);
+        juce::Image image(juce::Image::RGB, pictureScale * width, pictureScale * height, true);
+        juce::Graphics g(image);
+        g.addTransform(juce::AffineTransform::scale(static_cast<float>(pictureScale)));
+        g.fillAll(look::palette().panel);
+        PlotPicture(plot, across_, up_, juce::Rectangle<int>(width, height).toFloat().reduced(4.0f), 0.0f).paint(g);
+        juce::PNGImageFormat().writeImageToStream(image, bytes);
+    } else if (file.hasFileExtension("svg")) {
+        bytes << words(svgDocument(seen()));
+    } else if (file.hasFileExtension("csv")) {
+        bytes << words(plotCsv(plot_));
+    } else {
+        throw Error(Error::Kind::usage, "A plot is saved as .png, .svg or .csv, not as '"
+                                            + file.getFileName().toStdString() + "': give it one of these endings.");
     }
-    drawReading(g);
+    if (!file.replaceWithData(bytes.getData(), bytes.getDataSize()))
+        throw Error(Error::Kind::input,
+                    "'" + file.getFullPathName().toStdString() + "' cannot be written: choose another folder.");
+}
+
+std::unique_ptr<juce::AccessibilityHandler> PlotView::createAccessibilityHandler()
+{
+    return std::make_unique<juce::AccessibilityHandler>(*this, juce::AccessibilityRole::image);
 }
 
 }  // namespace excursion::plugin

@@ -12,4 +12,8 @@ namespace excursion {
 /// colours of style.css. Same plots, same text. Throws Error (numerical) when gnuplot is not there or refuses.
 std::vector<std::string> draw(const std::vector<Plot>&);
 
+/// One plot with its title as an SVG document of its own, in the page's light colours, for a word processor or a
+/// browser. Throws as draw() does.
+std::string svgDocument(const Plot&);
+
 }  // namespace excursion

@@ -120,6 +120,16 @@ TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clic
     click(editor, "Take the last effect back");
     settle(editor);
     CHECK(processor.session().findings()->file.ladder.rungs.size() == 1);
+    // A rung is a step of the history, whichever way it went.
+    editor.undo();
+    settle(editor);
+    REQUIRE(processor.session().findings()->file.ladder.rungs.size() == 2);
+    CHECK(processor.session().findings()->file.ladder.rungs[1].added == second->file.ladder.rungs[1].added);
+    editor.redo();
+    settle(editor);
+    CHECK(processor.session().findings()->file.ladder.rungs.size() == 1);
+    CHECK(editor.history().canUndo());
+    CHECK_FALSE(editor.history().canRedo());
 }
 
 TEST_CASE("The last page shows every limit and what it does, and nothing on it is cut off or covered", "[plugin]")
@@ -129,11 +139,7 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     Editor editor(processor);
     editor.go(PageName::linearize);
     editor.update();
-    plugin::LinearizePage* page = nullptr;
-    for (auto* child : editor.getChildren())
-        if (auto* found = dynamic_cast<plugin::LinearizePage*>(child))
-            page = found;
-    REQUIRE(page != nullptr);
+    auto* const page = &editor.page(PageName::linearize);
     const auto meters = [page] {
         std::vector<plugin::Meter*> all;
         for (auto* child : page->getChildren())
@@ -165,7 +171,7 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     CHECK(meters()[0]->words().contains("% of what was measured, turned down by "));
     CHECK(meters()[1]->words().contains(" V, turned down by "));
     CHECK(meters()[2]->words().contains(" W"));
-    for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {1000, 680}}) {
+    for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {800, 560}}) {
         editor.setSize(width, height);
         play();
         editor.update();

@@ -9,9 +9,11 @@
 
 namespace excursion {
 
-/// Why an effect is held to be missing, in one sentence that a person can check on a plot: how far the errors fall, how
-/// the law bends or the linear parameters come out, what betrays the effect, and the parity of the error.
+/// What speaks for an effect and for no other, in three short sentences that a person can check on a plot: by how much
+/// the error of each channel falls, what shape its law has or what its linear parameters come out as, and where to look
+/// for it. What is the same for all that compete, such as the error before, is left to those who show them.
 /// @param with  the model with the effect, refitted (or as the score test proposes it)
+/// @param errorDbAfter  dB, of the channels that are known with the effect
 std::string reasonFor(const Effect&, const Model& with, const Comparison& before,
                       const std::map<Quantity, double>& errorDbAfter);
 

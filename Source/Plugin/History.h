@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Plugin/Juce.h"
+
+#include <functional>
+
+namespace excursion::plugin {
+
+/// What a person did, to be taken back and done again. All on the message thread.
+class History {
+public:
+    /// It has been done already. @param what  in words, as in "Undo: Voltage limit"
+    void did(const juce::String& what, std::function<void()> back, std::function<void()> again);
+    void clear() { steps_.clearUndoHistory(); }
+
+    bool canUndo() const { return steps_.canUndo(); }
+    bool canRedo() const { return steps_.canRedo(); }
+    juce::String nextBack() const { return steps_.getUndoDescription(); }
+    juce::String nextAgain() const { return steps_.getRedoDescription(); }
+    void undo();
+    void redo();
+    bool moving() const { return moving_; }  ///< within undo() or redo()
+
+private:
+    juce::UndoManager steps_;
+    bool moving_ = false;
+};
+
+}  // namespace excursion::plugin

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Diagnosis/SyntheticLadder.h"
+#include "Plugin/Editor.h"
+#include "Plugin/Text.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace excursion::plugin {
+
+/// The component and all below it that are visible.
+inline void walk(juce::Component& root, const std::function<void(juce::Component&)>& seen)
+{
+    seen(root);
+    for (auto* child : root.getChildren())
+        if (child->isVisible())
+            walk(*child, seen);
+}
+
+/// All of a kind that are visible.
+template <class Kind>
+std::vector<Kind*> all(juce::Component& root)
+{
+    std::vector<Kind*> found;
+    walk(root, [&found](juce::Component& one) {
+        if (auto* kind = dynamic_cast<Kind*>(&one))
+            found.push_back(kind);
+    });
+    return found;
+}
+
+/// What the pages show of a take of three levels and a ladder of so many rungs, as a session could have made it.
+inline std::shared_ptr<const Findings> syntheticFindings(std::size_t rungs)
+{
+    auto findings = std::make_shared<Findings>();
+    findings->source = "Virtual midbass, seed 7";
+    findings->truth = "Stiffness K(x), Force factor Bl(x)";
+    findings->file = test::syntheticLadder();
+    auto& ladder = findings->file.ladder;
+    ladder.rungs.resize(rungs);
+    if (rungs < 4) {
+        ladder.verdict = Verdict::missingEffect;
+        ladder.sentence =
+            "Missing: the stiffness depends on the displacement, K(x) (96 % sure). With it the displacement "
+            "error falls by 27.0 dB to -55.3 dB, and the noise stands at -74.2 dB.";
+    }
+    Measurement take;
+    findings->take = std::make_shared<const Take>(take);
+    findings->file.take.sampleRate = 48000.0;
+    findings->file.take.seconds = 12.3;
+    findings->file.take.realizations = 3;
+    for (const auto quantity : {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure}) {
+        ChannelFigures channel;
+        channel.quantity = quantity;
+        channel.unit = siUnit(quantity);
+        channel.rms = 0.3;
+        channel.peak = 1.2;
+        channel.snrDb = 71.5;
+        for (double f = 16.0; f < 16000.0; f *= 2.0)
+            channel.bands.push_back({f, 2.0 * f, 70.0 - 3.0 * std::log2(f / 16.0)});
+        findings->report.channels.push_back(channel);
+    }
+    for (std::size_t level = 0; level < 3; ++level) {
+        std::vector<Waveform> waves;
+        for (const auto& channel : ladder.rungs.back().comparison.channels) {
+            Waveform wave {channel.quantity, channel.unit, 48000.0, {}, {}};
+            for (int n = 0; n < 9600; ++n) {
+                wave.measured.push_back(1e-3 * std::sin(0.011 * n) * std::cos(0.0007 * n));
+                wave.model.push_back(0.98 * wave.measured.back());
+            }
+            waves.push_back(std::move(wave));
+        }
+        findings->waveforms.push_back(std::move(waves));
+    }
+    return findings;
+}
+
+}  // namespace excursion::plugin
