@@ -17,6 +17,7 @@ namespace excursion {
 struct RecordingOptions {
     std::vector<std::filesystem::path> files;  ///< WAV, AIFF, CAF or FLAC; each was recorded by one device
     std::optional<Measurement> plan;           ///< what was played; absent: one file is taken as it is
+    std::optional<SweepExcitation> sweep {};   ///< of a plan that plays sweeps
     std::vector<ChannelMapping> map;           ///< empty: what the calibration says
     std::optional<Calibration> calibration;
     std::string calibrationFile;  ///< for sentences
@@ -37,6 +38,7 @@ struct ImportedFile {
 
 struct ImportedRecording {
     Measurement take;
+    std::optional<SweepExcitation> sweep {};  ///< of a plan of sweeps: those that were recorded, at their levels
     std::vector<ImportedFile> files;
     std::vector<std::string> remarks;  ///< sentences for a person: what was assumed, left out or is odd
 };
