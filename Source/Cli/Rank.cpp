@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/TakeFile.h"
@@ -17,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct RankArguments {
-    std::string take, output;
+    std::string take, output, keep;
     RankOptions options;
 };
 
@@ -38,8 +40,28 @@ Json json(const RankedModel& model)
     return object;
 }
 
+/// One document a class, DIR/<class>.json, and the best one's name.
+void keep(const Ranking& ranking, const std::string& folder, nlohmann::ordered_json& document, Terminal& terminal)
+{
+    std::string kept;
+    for (std::size_t i = 0; i < ranking.models.size(); ++i) {
+        const auto& model = ranking.models[i];
+        if (model.document.empty())
+            continue;
+        const auto path = folder + "/" + model.name + ".json";
+        publish(path, model.document);
+        document["models"][i]["kept"] = path;
+        kept += (kept.empty() ? "" : ", ") + model.name + ".json";
+    }
+    if (!ranking.best.empty())
+        document["best"] = ranking.best;
+    terminal.say("Kept in " + folder + ": " + (kept.empty() ? "nothing" : kept) + ".");
+}
+
 void run(const RankArguments& arguments, Terminal& terminal)
 {
+    if (!arguments.keep.empty())
+        requireFolderPlace(arguments.keep);
     auto options = arguments.options;
     if (!arguments.output.empty()) {
         options.output = quantityNamed(arguments.output);
@@ -73,6 +95,8 @@ void run(const RankArguments& arguments, Terminal& terminal)
     document["models"] = Json::array();
     for (const auto& m : ranking.models)
         document["models"].push_back(json(m));
+    if (!arguments.keep.empty())
+        keep(ranking, arguments.keep, document, terminal);
     terminal.document(document);
 }
 
@@ -110,6 +134,7 @@ void addRank(CLI::App& app, Terminal& terminal)
         ->delimiter(',')
         ->check(CLI::IsMember(names))
         ->type_name("CLASS");
+    verb->add_option("--keep", o->keep, "keep the model of each class as its document, CLASS.json")->type_name("DIR");
     verb->footer(told);
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

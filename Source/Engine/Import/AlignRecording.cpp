@@ -105,8 +105,8 @@ private:
                                 + (witnesses_.size() > 1 ? " and the others" : "")
                                 + "; check the cables, the inputs and --map.");
         if (static_cast<double>(witnesses_.front().samples.size()) / ratio_ < static_cast<double>(periods_.length))
-            refuse(source_, "is only " + length + " s long, less than one "
-                                + (periods_.sweeps ? "sweep" : "period") + " of the plan; record all of it.");
+            refuse(source_, "is only " + length + " s long, less than one " + (periods_.sweeps ? "sweep" : "period")
+                                + " of the plan; record all of it.");
         refuse(source_, "does not hold the plan: what was played was not found in " + witnesses_.front().label
                             + (witnesses_.size() > 1 ? " nor in the others" : "")
                             + "; check that the plan is the one that was played, and --map.");
@@ -125,7 +125,8 @@ private:
             const auto first = std::find_if(place.sightings.begin(), place.sightings.end(),
                                             [](const Sighting& s) { return s.inside && !s.seen; });
             refuse(source_, "follows the plan in only " + std::to_string(place.seen()) + " of " + std::to_string(within)
-                                + (periods_.sweeps ? " sweeps, and not at " : " periods, and not at ") + figure(first->at / plan_.sampleRate, "%.2f")
+                                + (periods_.sweeps ? " sweeps, and not at " : " periods, and not at ")
+                                + figure(first->at / plan_.sampleRate, "%.2f")
                                 + " s; either the plan is not the one that was played, or something interrupted it.");
         }
     }
@@ -145,8 +146,8 @@ private:
             inTime += n < behind || n >= h.size() - ahead ? h[n] * h[n] : 0.0;
         }
         if (!(inTime >= leastAnswer * all))
-            refuse(source_, "does not answer the plan's sweeps: only " + figure(100.0 * inTime / all, "%.0f")
-                                + " % of " + witnesses_[result_.witness].label
+            refuse(source_, "does not answer the plan's sweeps: only " + figure(100.0 * inTime / all, "%.0f") + " % of "
+                                + witnesses_[result_.witness].label
                                 + " comes when an impulse response would; either another sweep was played, or noise "
                                   "buries it.");
     }

@@ -210,8 +210,7 @@ private:
                     at = sighting.at;
                     const double span = time - timeOf(anchor_);
                     const double least = (plan_.sweeps ? 1.0 : 2.0) * static_cast<double>(plan_.length);
-                    if (sighting.jump == 0.0 && std::abs(span) >= 0.999 * least
-                        && !jumped(sightings))
+                    if (sighting.jump == 0.0 && std::abs(span) >= 0.999 * least && !jumped(sightings))
                         drift_ = std::clamp((at - at_) / span - 1, -mostDrift, mostDrift);
                 }
             }
@@ -256,10 +255,7 @@ private:
     }
 
     /// What was found is the middle of a sweep, half of one after its beginning on the recorder's clock.
-    double lateBy(double step) const
-    {
-        return plan_.sweeps ? (step - 1) * static_cast<double>(plan_.length) / 2 : 0.0;
-    }
+    double lateBy(double step) const { return plan_.sweeps ? (step - 1) * static_cast<double>(plan_.length) / 2 : 0.0; }
 
     const PlanPeriods& plan_;
     std::span<const double> recorded_;

@@ -242,12 +242,9 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement, const std
             document["channels"].back()["assumed"] = true;
     }
     if (sweep) {
-        document["excitation"] = {{"kind", "sweep"},
-                                  {"band", {sweep->bandLow, sweep->bandHigh}},
-                                  {"seconds", sweep->seconds},
-                                  {"fades", {sweep->fadeIn, sweep->fadeOut}},
-                                  {"silence", sweep->silence},
-                                  {"repeats", sweep->repeats},
+        document["excitation"] = {{"kind", "sweep"},           {"band", {sweep->bandLow, sweep->bandHigh}},
+                                  {"seconds", sweep->seconds}, {"fades", {sweep->fadeIn, sweep->fadeOut}},
+                                  {"silence", sweep->silence}, {"repeats", sweep->repeats},
                                   {"levels", sweep->levels}};
     } else if (const auto& e = measurement.excitation) {
         document["excitation"] = {{"kind", "multisine"},

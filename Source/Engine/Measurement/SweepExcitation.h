@@ -12,11 +12,11 @@ namespace excursion {
 /// How a record was excited with synchronized exponential sweeps (see ExponentialSweep). Time runs level by level,
 /// quiet to loud; each level is the same sweep `repeats` times, each time followed by silence.
 struct SweepExcitation {
-    double bandLow = 20.0, bandHigh = 20000.0;  ///< Hz, where the sweep begins and ends
-    double seconds = 8.0;                       ///< of one sweep, wished: see ExponentialSweepOptions
-    double fadeIn = 0.1, fadeOut = 0.01;        ///< s, raised cosines at the ends of the sweep
-    double silence = 1.0;                       ///< s behind each sweep, for the loudspeaker to come to rest
-    int repeats = 1;                            ///< of each level
+    double bandLow = 20.0, bandHigh = 20000.0;   ///< Hz, where the sweep begins and ends
+    double seconds = 8.0;                        ///< of one sweep, wished: see ExponentialSweepOptions
+    double fadeIn = 0.1, fadeOut = 0.01;         ///< s, raised cosines at the ends of the sweep
+    double silence = 1.0;                        ///< s behind each sweep, for the loudspeaker to come to rest
+    int repeats = 1;                             ///< of each level
     std::vector<double> levels {0.5, 1.5, 4.0};  ///< V rms of the sine where it is not faded, peak / sqrt(2)
 
     /// @param reason  where not null: one sentence that says what is wrong

@@ -152,8 +152,9 @@ void write(const Measurement& measurement, const fs::path& json, const std::stri
     }
     DraftFile wav(json.parent_path() / audio), header(json);
     writeWav(wav.path(), wavRate(measurement.sampleRate), samples, format);
-    header.write(measurementJson(measurement, audio, sweep).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                 + "\n");
+    header.write(
+        measurementJson(measurement, audio, sweep).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+        + "\n");
     wav.publish();
     header.publish();
 }
@@ -206,7 +207,8 @@ void writeSweepTake(const SweepTake& sweepTake, const fs::path& folder)
 void writeSweepPlan(const SweepTake& plan, const fs::path& folder)
 {
     requireWritable(plan.take);
-    write(plan.take, folder / "plan.json", "excitation.wav", SampleFormat::float32, plan.sweep ? &*plan.sweep : nullptr);
+    write(plan.take, folder / "plan.json", "excitation.wav", SampleFormat::float32,
+          plan.sweep ? &*plan.sweep : nullptr);
 }
 
 void writeMeasurement(const Measurement& measurement, const fs::path& folder)

@@ -2,15 +2,23 @@
 // The classes that know no loudspeaker.
 #include "Engine/Ranking/ModelClasses.h"
 
+#include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
+#include "Engine/Fractional/FractionalStateSpaceFile.h"
 #include "Engine/Fractional/MixedImpedance.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Simulation.h"
+#include "Engine/Linear/StateSpaceFile.h"
+#include "Engine/Polynomial/BlockModelFile.h"
 #include "Engine/Polynomial/BlockModelFit.h"
+#include "Engine/Polynomial/FractionalPnlssFile.h"
 #include "Engine/Polynomial/FractionalPnlssFit.h"
 #include "Engine/Polynomial/FractionalRecursion.h"
 #include "Engine/Polynomial/HammersteinFit.h"
+#include "Engine/Polynomial/NarxFile.h"
 #include "Engine/Polynomial/NarxFit.h"
+#include "Engine/Polynomial/ParallelHammersteinFile.h"
+#include "Engine/Polynomial/PnlssFile.h"
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Polynomial/Recursion.h"
 
@@ -34,6 +42,17 @@ std::string withAlpha(double alpha)
     std::array<char, 32> text {};
     std::snprintf(text.data(), text.size(), ", alpha %.3f", alpha);
     return text.data();
+}
+
+std::string driverName(const RankedTake& data) { return data.take.measurement().driver.name; }
+std::string inputName(const RankedTake& data) { return std::string(name(data.input.quantity)); }
+std::string outputName(const RankedTake& data) { return std::string(name(data.output.quantity)); }
+
+/// The document of a model of one input and one output.
+template <class Model>
+std::string documentText(const RankedTake& data, const Model& model)
+{
+    return jsonText(toJson(Named<Model> {driverName(data), inputName(data), outputName(data), model}));
 }
 
 /// A driver's coil of fractional order beside a resonance, monomials at zero.
@@ -67,8 +86,11 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
             run.output = Eigen::MatrixXd::Constant(record.input.rows(), 1, std::numeric_limits<double>::quiet_NaN());
         return run.output;
     };
-    return {play, ofOrder("", model.form.linear.order(), degree) + withAlpha(model.alpha), parameters,
-            isStable(model, grid)};
+    return {play,
+            ofOrder("", model.form.linear.order(), degree) + withAlpha(model.alpha),
+            parameters,
+            isStable(model, grid),
+            {}};
 }
 
 }  // namespace
@@ -77,7 +99,8 @@ FittedClass fitLinearClass(const RankedTake& data, const Progress&)
 {
     const auto n = data.linear.order();
     return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); },
-            ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear)};
+            ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear),
+            jsonText(toJson(NamedStateSpace {driverName(data), {inputName(data)}, {outputName(data)}, data.linear}))};
 }
 
 FittedClass fitFractionalClass(const RankedTake& data, const Progress&)
@@ -87,7 +110,10 @@ FittedClass fitFractionalClass(const RankedTake& data, const Progress&)
     model.form.E.resize(model.form.E.rows(), 0);
     model.form.F.resize(model.form.F.rows(), 0);
     model.form.free.resize(model.form.free.rows(), 0);
-    return fractionalClass(model, gridOf(data, model), 1, MixedImpedance::parameters);
+    auto fitted = fractionalClass(model, gridOf(data, model), 1, MixedImpedance::parameters);
+    fitted.document = jsonText(toJson(NamedFractionalStateSpace {
+        driverName(data), {inputName(data)}, {outputName(data)}, {model.alpha, model.form.linear}}));
+    return fitted;
 }
 
 FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress)
@@ -98,7 +124,7 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
                                     data.records.validation, fitting, progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
-            static_cast<int>(fit.model.parameters()), true};
+            static_cast<int>(fit.model.parameters()), true, documentText(data, fit.model)};
 }
 
 FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
@@ -112,7 +138,7 @@ FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
         if (step.branch)
             description += ", " + std::string(name(*step.branch));
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); }, description,
-            static_cast<int>(fit.model.parameters()), fit.stable};
+            static_cast<int>(fit.model.parameters()), fit.stable, documentText(data, fit.model)};
 }
 
 FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
@@ -126,7 +152,7 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
             std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree "
                 + std::to_string(fitting.degree),
-            static_cast<int>(fit.model.parameters()), fit.stable};
+            static_cast<int>(fit.model.parameters()), fit.stable, documentText(data, fit.model)};
 }
 
 FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
@@ -167,7 +193,8 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
         }
     return {[model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
             ofOrder("", best.model.linear.order(), data.options.degree),
-            static_cast<int>(Recursion(best.model, true).parameters()), best.stable};
+            static_cast<int>(Recursion(best.model, true).parameters()), best.stable,
+            jsonText(toJson(NamedPnlss {driverName(data), {inputName(data)}, {outputName(data)}, best.model}))};
 }
 
 FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& progress)
@@ -182,6 +209,8 @@ FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& prog
     auto fitted = fractionalClass(fit.model, grid, data.options.degree,
                                   static_cast<int>(FractionalRecursion(fit.model, grid, true, true).parameters()));
     fitted.stable = fit.stable;
+    fitted.document = jsonText(
+        toJson(NamedFractionalPnlss {driverName(data), {inputName(data)}, {outputName(data)}, fit.model, grid}));
     return fitted;
 }
 

@@ -4,7 +4,9 @@
 
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Document/JsonText.h"
 #include "Engine/Driver/Linearize.h"
+#include "Engine/Driver/ModelFile.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
 
@@ -30,7 +32,8 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
             throw Error(Error::Kind::data, "The physical driver does not know this channel.");
         return Eigen::Map<const Eigen::VectorXd>(channel->samples.data(), u.size());
     };
-    return {play, description.empty() ? "base alone" : description, parameters, isStable(model)};
+    return {play, description.empty() ? "base alone" : description, parameters, isStable(model),
+            jsonText(toJson(model))};
 }
 
 }  // namespace

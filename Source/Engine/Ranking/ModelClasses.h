@@ -6,6 +6,7 @@
 #include "Engine/Ranking/Rank.h"
 
 #include <functional>
+#include <string>
 
 namespace excursion {
 
@@ -28,6 +29,7 @@ struct FittedClass {
     std::string description;
     int parameters = 0;
     bool stable = false;
+    std::string document;  ///< of the model, as text
 };
 
 FittedClass fitLinearClass(const RankedTake&, const Progress&);

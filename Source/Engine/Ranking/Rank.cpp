@@ -64,6 +64,7 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
         const auto fitted = fitting.fit(data, progress);
         model.fitSeconds = secondsSince(start);
         model.description = fitted.description;
+        model.document = fitted.document;
         model.parameters = fitted.parameters;
         model.estimationDb = errorDb(fitted, data.records.estimation);
         const auto& judges = data.records.validation.empty() ? data.records.estimation : data.records.validation;
@@ -162,6 +163,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
         if (model.trouble.empty() && model.stable && error(model) < error(ranking.models.front()) + 0.5
             && (!chosen || model.parameters < chosen->parameters))
             chosen = &model;
+    ranking.best = chosen ? chosen->name : "";
     ranking.sentence = chosen ? "\"" + chosen->name + "\" explains most with " + std::to_string(chosen->parameters)
                                     + " parameters."
                               : "No stable model explains the take best.";

@@ -36,6 +36,7 @@ struct RankedModel {
     bool stable = false;  ///< around rest, and no record made it run away
     /// a sentence where the class could not be fitted; the figures then mean nothing
     std::string trouble;
+    std::string document;  ///< the model, as text: of the kind that its class has (Docs/Formats.md)
 };
 
 struct Ranking {
@@ -44,6 +45,7 @@ struct Ranking {
     std::optional<double> noiseDb;
     /// by ascending error on the validation records (without any: on the estimation records), troubled ones last
     std::vector<RankedModel> models;
+    std::string best;      ///< the class that explains most; empty: none is stable
     std::string sentence;  ///< which one explains most, and what its peers lack
 };
 
