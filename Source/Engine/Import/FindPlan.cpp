@@ -380,7 +380,7 @@ PlanPlace findPlan(const std::vector<double>& played, const PlanPeriods& plan, s
         if (!bestAt)
             continue;
         best = track.from(anchor, *bestAt, all).value();
-        best.found = best.seen() >= std::min<std::size_t>(2, all.size()) && 2 * best.seen() > best.inside();
+        best.found = best.seen() >= (plan.sweeps ? 1u : 2u) && 2 * best.seen() > best.inside();
         if (best.start >= -8.0 && 10 * best.seen() >= 9 * all.size())
             break;  // nothing could fit better
     }
