@@ -95,7 +95,7 @@ nlohmann::ordered_json tellChannels(const Measurement& take, Terminal& terminal)
     return channels;
 }
 
-void sayWritten(const SimulateArguments& options, const Measurement& take, Terminal& terminal)
+void sayTake(const SimulateArguments& options, const Measurement& take, Terminal& terminal)
 {
     terminal.say("Wrote the take " + options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 2)
                  + " s at " + significant(take.sampleRate, 8) + " Hz.");
@@ -139,7 +139,7 @@ void runDocument(const SimulateArguments& options, const PlayedDocument& model, 
         {"input", options.input},         {"take", options.out}, {"sampleRate", take.sampleRate},
         {"samples", take.length()}};
     document["channels"] = tellChannels(take, terminal);
-    sayWritten(options, take, terminal);
+    sayTake(options, take, terminal);
     terminal.document(document);
 }
 
@@ -195,7 +195,7 @@ void run(const SimulateArguments& options, Terminal& terminal)
         terminal.say(warning);
         document["warning"] = warning;
     }
-    sayWritten(options, take, terminal);
+    sayTake(options, take, terminal);
     terminal.document(document);
     if (!summary.converged)
         terminal.answer = 1;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace excursion {
 namespace {
@@ -28,29 +29,43 @@ Complex multipleAngle(int n, int m)
     return n % 2 == 0 ? Complex(0.0, B) : Complex(B, 0.0);
 }
 
-/// x of T x = b, T_ij = r_|i-j| positive definite, by Levinson's recursion (Golub & Van Loan 2013, 4.7.3).
+/// x of T x = b, T_ij = r_|i-j| positive definite, by conjugate gradients with products by DFT. T is that of a band:
+/// but for some log(length) of them its eigenvalues are near 1 or near the regularization (Slepian), so a few dozen
+/// iterations do at any length, where Levinson's recursion loses all digits at some thousand.
 std::vector<double> solvedToeplitz(const std::vector<double>& r, const std::vector<double>& b, std::size_t length)
 {
-    std::vector<double> x(length), y(length), old(length);
-    const auto row = [&](std::size_t k) { return r[k] / r[0]; };
-    x[0] = b[0] / r[0];
-    double alpha = length > 1 ? -row(1) : 0.0, beta = 1.0;
-    y[0] = alpha;
-    for (std::size_t k = 1; k < length; ++k) {
-        beta *= 1.0 - alpha * alpha;
-        double missing = b[k] / r[0], next = k + 1 < length ? row(k + 1) : 0.0;
-        for (std::size_t i = 1; i <= k; ++i) {
-            missing -= row(i) * x[k - i];
-            next += row(i) * y[k - i];
+    const auto L = quickLength(2 * length);
+    std::vector<double> circle(L, 0.0);
+    for (std::size_t k = 0; k < length; ++k)
+        circle[k] = circle[(L - k) % L] = r[k];
+    const auto C = fft(circle);
+    const auto times = [&](std::vector<double> x) {
+        x.resize(L, 0.0);
+        auto X = fft(x);
+        for (std::size_t k = 0; k < X.size(); ++k)
+            X[k] *= C[k].real();
+        auto y = inverseFft(X, L);
+        y.resize(length);
+        return y;
+    };
+    const auto dot = [](const std::vector<double>& a, const std::vector<double>& c) {
+        return std::inner_product(a.begin(), a.end(), c.begin(), 0.0);
+    };
+    std::vector<double> x(length, 0.0), left(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(length));
+    auto direction = left;
+    double squares = dot(left, left);
+    const double enough = 1e-24 * squares;
+    for (int iteration = 0; iteration < 1000 && squares > enough; ++iteration) {
+        const auto ahead = times(direction);
+        const double step = squares / dot(direction, ahead);
+        for (std::size_t k = 0; k < length; ++k) {
+            x[k] += step * direction[k];
+            left[k] -= step * ahead[k];
         }
-        x[k] = missing / beta;
-        alpha = -next / beta;
-        old = y;
-        for (std::size_t i = 0; i < k; ++i) {
-            x[i] += x[k] * old[k - 1 - i];
-            y[i] += alpha * old[k - 1 - i];
-        }
-        y[k] = alpha;
+        const double next = dot(left, left);
+        for (std::size_t k = 0; k < length; ++k)
+            direction[k] = left[k] + next / squares * direction[k];
+        squares = next;
     }
     return x;
 }

@@ -20,11 +20,11 @@ namespace {
 using Eigen::Index;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double seldom = 4.6;          // times the mean of a power of noise: exceeded once in a hundred
-constexpr double takenOff = 0.01;       // of the drive's own harmonics, in power, that may be left
-constexpr double longest = 0.5;         // s of a response
-constexpr double highestOfRate = 0.45;  // of the sample rate: where converters' filters begin
-constexpr double edge = 0.02;           // s, see HammersteinSweepOptions
+constexpr double seldom = 4.6;           // times the mean of a power of noise: exceeded once in a hundred
+constexpr double takenOff = 0.01;        // of the drive's own harmonics, in power, that may be left
+constexpr double longestResponse = 0.5;  // s of a response
+constexpr double highestOfRate = 0.45;   // of the sample rate: where converters' filters begin
+constexpr double windowEdge = 0.02;      // s, see HammersteinSweepOptions
 
 /// A take of sweeps, cut into blocks.
 class SweepBlocks {
@@ -76,18 +76,18 @@ HammersteinSweepOptions cutting(const SweepBlocks& blocks, const HarmonicOptions
 {
     const auto L = blocks.plan.sweep(blocks.rate(), 0).rate();
     const double apart = L * std::log((options.highest + 1.0) / options.highest);
-    double kept = std::min(apart, longest);
-    if (blocks.plan.silence >= 8.0 * edge)
+    double kept = std::min(apart, longestResponse);
+    if (blocks.plan.silence >= 8.0 * windowEdge)
         kept = std::min(kept, blocks.plan.silence / 2.0);
-    if (kept < 3.0 * edge)
+    if (kept < 3.0 * windowEdge)
         throw Error(Error::Kind::data,
                     "The sweeps are too short to keep " + std::to_string(options.highest)
                         + " harmonics apart: the last two come " + figure(1e3 * apart, "%.0f")
                         + " ms apart, and a response needs 60 ms; ask for fewer harmonics, or play longer sweeps.");
     HammersteinSweepOptions result;
     result.degree = options.highest;
-    result.edge = edge;
-    const double taps = (kept - 2.0 * edge) * blocks.rate() - 4.0;
+    result.edge = windowEdge;
+    const double taps = (kept - 2.0 * windowEdge) * blocks.rate() - 4.0;
     result.length = static_cast<Index>(std::clamp(taps, 1.0, 65536.0));
     return result;
 }
@@ -150,7 +150,7 @@ std::vector<double> silentPower(const SweepBlocks& blocks, const std::vector<dou
         return {};
     const auto silence = std::span(mean).subspan(begin);
     const double offset = std::accumulate(silence.begin(), silence.end(), 0.0) / static_cast<double>(silence.size());
-    const auto grid = 2 * (lines - 1), fade = static_cast<std::size_t>(std::ceil(edge * blocks.rate()));
+    const auto grid = 2 * (lines - 1), fade = static_cast<std::size_t>(std::ceil(windowEdge * blocks.rate()));
     std::vector<double> power(lines, 0.0);
     std::size_t parts = 0;
     for (std::size_t at = 0; at + kept <= silence.size(); at += std::max<std::size_t>(1, kept / 2), ++parts) {
@@ -175,7 +175,7 @@ Answer answerOf(const SweepBlocks& blocks, const Channel& channel, std::size_t l
     answer.harmonics = harmonicResponses(sweep, mean, cut);
     const auto& frequency = answer.harmonics.frequency;
     const auto kept = static_cast<std::size_t>(cut.length)
-                      + 2 * static_cast<std::size_t>(std::ceil(edge * blocks.rate()));
+                      + 2 * static_cast<std::size_t>(std::ceil(windowEdge * blocks.rate()));
     if (auto power = silentPower(blocks, mean, kept, frequency.size()); !power.empty()) {
         power[0] = 0.0;
         for (std::size_t k = 1; k < power.size(); ++k)
@@ -301,7 +301,7 @@ HarmonicDistortion harmonicDistortion(const SweepTake& sweepTake, const Harmonic
     auto band = knownBand(sweep, ends);
     HarmonicDistortion result;
     result.highest = options.highest;
-    result.response = static_cast<double>(cut.length) / blocks.rate() + 2.0 * edge;
+    result.response = static_cast<double>(cut.length) / blocks.rate() + 2.0 * windowEdge;
     band.low += 1.0 / result.response;
     band.high -= 1.0 / result.response;
     if (!(band.low * 2.0 < band.high))
@@ -363,7 +363,7 @@ SweepModel sweepModel(const SweepTake& sweepTake, Quantity output, const Harmoni
     const auto timeOf = [&](double f) {
         return static_cast<Index>(loudest.rate() * std::log(f / blocks.plan.bandLow) * blocks.rate());
     };
-    const Index from = timeOf(options.highest * band.low + 1.0 / edge), to = timeOf(band.high - 1.0 / edge);
+    const Index from = timeOf(options.highest * band.low + 1.0 / windowEdge), to = timeOf(band.high - 1.0 / windowEdge);
     const auto judged = [&](const Eigen::MatrixXd& y) -> Eigen::MatrixXd {
         const Eigen::MatrixXd part = y.middleRows(from, to - from);
         return part.array() - part.mean();

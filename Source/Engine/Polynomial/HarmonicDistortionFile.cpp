@@ -7,7 +7,7 @@
 namespace excursion {
 namespace {
 
-std::vector<double> columnOf(const Eigen::MatrixXd& values, Eigen::Index column)
+std::vector<double> curveColumn(const Eigen::MatrixXd& values, Eigen::Index column)
 {
     const Eigen::VectorXd one = values.col(column);
     return {one.begin(), one.end()};
@@ -31,8 +31,8 @@ nlohmann::ordered_json toJson(const HarmonicDistortion& distortion)
         curve["harmonics"] = nlohmann::ordered_json::array();
         for (int m = 2; m <= distortion.highest; ++m)
             curve["harmonics"].push_back({{"order", m},
-                                          {"db", curveJson(columnOf(c.db, m - 2))},
-                                          {"floorDb", curveJson(columnOf(c.floorDb, m - 2))}});
+                                          {"db", curveJson(curveColumn(c.db, m - 2))},
+                                          {"floorDb", curveJson(curveColumn(c.floorDb, m - 2))}});
         curve["thd"] = {{"db", curveJson(c.thdDb)}, {"floorDb", curveJson(c.thdFloorDb)}};
         document["curves"].push_back(std::move(curve));
     }
