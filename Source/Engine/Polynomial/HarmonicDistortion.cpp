@@ -352,18 +352,18 @@ SweepModel sweepModel(const SweepTake& sweepTake, Quantity output, const Harmoni
         throw Error(Error::Kind::data,
                     "The take has no channel \"" + std::string(name(output)) + "\" beside its input.");
     auto cut = cutting(blocks, options);
-    cut.length = std::min<Index>(cut.length, 8192);
+    cut.length = std::clamp<Index>(cut.length, 128, 8192);
     const auto levels = blocks.plan.levels.size();
     const auto loudest = blocks.plan.sweep(blocks.rate(), levels - 1);
-    SweepModel result;
-    result.level = blocks.plan.levels.back();
-    result.model = identifyHammerstein(loudest, blocks.mean(*channel, levels - 1), cut).model;
-
     const auto band = knownBand(loudest, cut);
     const auto timeOf = [&](double f) {
         return static_cast<Index>(loudest.rate() * std::log(f / blocks.plan.bandLow) * blocks.rate());
     };
     const Index from = timeOf(options.highest * band.low + 1.0 / windowEdge), to = timeOf(band.high - 1.0 / windowEdge);
+    if (to <= from)
+        throw Error(Error::Kind::data, "The sweeps are too narrow, or too short, for a model of degree "
+                                           + std::to_string(options.highest)
+                                           + ": where all its branches are known there is no band left.");
     const auto judged = [&](const Eigen::MatrixXd& y) -> Eigen::MatrixXd {
         const Eigen::MatrixXd part = y.middleRows(from, to - from);
         return part.array() - part.mean();
@@ -371,12 +371,25 @@ SweepModel sweepModel(const SweepTake& sweepTake, Quantity output, const Harmoni
     const auto column = [&](const std::vector<double>& x) -> Eigen::MatrixXd {
         return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
     };
-    for (std::size_t level = 0; level < levels; ++level) {
+    const auto errorAt = [&](const ParallelHammerstein& model, std::size_t level) {
         PnlssRecord record;
         record.output = judged(column(blocks.mean(*channel, level)));
-        result.errorDb.push_back(
-            outputErrorDb({judged(simulate(result.model, column(blocks.mean(input, level))))}, {record}));
+        return outputErrorDb({judged(simulate(model, column(blocks.mean(input, level))))}, {record});
+    };
+    SweepModel result;
+    result.level = blocks.plan.levels.back();
+    const auto answer = blocks.mean(*channel, levels - 1);
+    double least = std::numeric_limits<double>::infinity();
+    for (; cut.length >= 128; cut.length /= 2) {
+        auto model = identifyHammerstein(loudest, answer, cut).model;
+        const double error = errorAt(model, levels - 1);
+        if (error < least) {
+            least = error;
+            result.model = std::move(model);
+        }
     }
+    for (std::size_t level = 0; level < levels; ++level)
+        result.errorDb.push_back(errorAt(result.model, level));
     return result;
 }
 

@@ -65,8 +65,9 @@ struct SweepModel {
     std::vector<double> errorDb;  ///< of each level of the take; the last is the one that it has seen
 };
 
-/// identifyHammerstein() of degree `highest`, as long as the harmonics' distance and the silence allow, 8192 taps at
-/// most. Throws as harmonicDistortion() does.
+/// identifyHammerstein() of degree `highest`, with as many taps as the harmonics' distance and the silence allow, 8192
+/// at most, or a half, a quarter, .. of them: where branches end in a band that is not known, long ones ring there, so
+/// the number that leaves the least error at the loudest level is taken. Throws as harmonicDistortion() does.
 SweepModel sweepModel(const SweepTake&, Quantity output, const HarmonicOptions& = {});
 
 }  // namespace excursion
