@@ -170,16 +170,15 @@ TEST_CASE("rank keeps the model of each class as its document, which simulate pl
 {
     const Scratch scratch;
     const auto kept = (scratch / "kept").string();
-    const auto ranked = runProgram(scratch.folder(), {"rank", Chain::get().take(), "--output", "displacement",
-                                                      "--classes", "linear,hammerstein,block,narx,driver",
-                                                      "--iterations", "3", "--keep", kept, "--json"});
+    const auto ranked = runProgram(scratch.folder(),
+                                   {"rank", Chain::get().take(), "--output", "displacement", "--classes",
+                                    "linear,hammerstein,narx,driver", "--iterations", "3", "--keep", kept, "--json"});
     INFO(ranked.err);
     REQUIRE(ranked.code == 0);
     const auto document = Json::parse(ranked.out);
     CHECK(document.contains("best"));
     const std::map<std::string, std::string> formats {{"linear", "excursion-state-space"},
                                                       {"hammerstein", "excursion-parallel-hammerstein"},
-                                                      {"block", "excursion-block-model"},
                                                       {"narx", "excursion-narx"},
                                                       {"driver", "excursion-model"}};
     const auto truth = displacementOf(Chain::get().take());
