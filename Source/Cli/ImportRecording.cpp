@@ -8,7 +8,7 @@
 #include "Engine/Error.h"
 #include "Engine/Import/ImportRecording.h"
 #include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Measurement/SweepTake.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
@@ -25,8 +25,11 @@ RecordingOptions recordingOptions(const RecordingArguments& arguments)
     options.files.assign(arguments.files.begin(), arguments.files.end());
     for (const auto& mapping : arguments.map)
         options.map.push_back(parseChannelMapping(mapping));
-    if (!arguments.plan.empty())
-        options.plan = readMeasurement(arguments.plan);
+    if (!arguments.plan.empty()) {
+        auto plan = readSweepTake(arguments.plan);
+        options.plan = std::move(plan.take);
+        options.sweep = std::move(plan.sweep);
+    }
     if (!arguments.calibration.empty()) {
         options.calibration = readCalibration(arguments.calibration);
         options.calibrationFile = arguments.calibration;
@@ -50,7 +53,9 @@ std::string timeOf(const ImportedFile& file)
     std::string text = file.name + ": the plan begins at " + fixed(start, 4) + " s (sample " + fixed(a.clock.start, 3)
                        + ", known to " + significant(std::max(a.startError, 0.0005), 1) + "), told by " + file.witness
                        + ". ";
-    if (a.synchronous)
+    if (a.driftUnknown)
+        text += "Its clock was taken for the player's.";
+    else if (a.synchronous)
         text += "Its clock is the player's (within " + significant(std::max(3 * a.driftError, 0.01), 1) + " ppm).";
     else
         text += "Its clock is " + fixed(std::abs(a.driftPpm), 2) + " ppm (+-"
@@ -169,7 +174,7 @@ void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
     auto imported = importRecording(options, terminal.progress());
     if (!arguments.name.empty())
         imported.take.driver.name = arguments.name;
-    text ? writeCsv(imported.take, arguments.out) : writeMeasurement(imported.take, arguments.out);
+    text ? writeCsv(imported.take, arguments.out) : writeSweepTake({imported.take, imported.sweep}, arguments.out);
     sayImported(imported, options.plan.has_value(), arguments.out, terminal);
     terminal.document(importJson(imported, options.plan.has_value(), arguments.out));
 }

@@ -4,6 +4,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Document/JsonText.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Engine/Ranking/Rank.h"
@@ -40,6 +41,25 @@ Json json(const RankedModel& model)
     return object;
 }
 
+/// One document a class, DIR/<class>.json, and the best one's name.
+void keep(const Ranking& ranking, const std::string& folder, Json& document, Terminal& terminal)
+{
+    std::vector<std::string> kept;
+    std::filesystem::create_directories(folder);
+    for (std::size_t i = 0; i < ranking.models.size(); ++i) {
+        const auto& model = ranking.models[i];
+        if (model.document.is_null())
+            continue;
+        const auto path = std::filesystem::path(folder) / (model.name + ".json");
+        writeJson(model.document, path);
+        document["models"][i]["kept"] = path.string();
+        kept.push_back(path.filename().string());
+    }
+    if (!ranking.best.empty())
+        document["best"] = ranking.best;
+    terminal.say("Kept in " + folder + ": " + (kept.empty() ? "nothing" : joined(kept)) + ".");
+}
+
 void run(const RankArguments& arguments, Terminal& terminal)
 {
     auto options = arguments.options;
@@ -66,18 +86,6 @@ void run(const RankArguments& arguments, Terminal& terminal)
         if (!m.trouble.empty())
             terminal.say(m.name + ": " + m.trouble);
     terminal.say(ranking.sentence);
-    if (!arguments.keep.empty()) {
-        std::string kept;
-        std::filesystem::create_directories(arguments.keep);
-        for (const auto& m : ranking.models)
-            if (!m.document.is_null()) {
-                writeJson(m.document, std::filesystem::path(arguments.keep) / (m.name + ".json"));
-                kept += (kept.empty() ? "" : ", ") + m.name + ".json";
-            }
-        terminal.say(kept.empty() ? "None of these classes has a document of its own to be kept."
-                                  : "Kept in " + arguments.keep + ": " + kept + ".");
-    }
-
     Json document {{"format", "excursion-ranking"},
                    {"version", 1},
                    {"take", arguments.take},
@@ -88,6 +96,8 @@ void run(const RankArguments& arguments, Terminal& terminal)
     document["models"] = Json::array();
     for (const auto& m : ranking.models)
         document["models"].push_back(json(m));
+    if (!arguments.keep.empty())
+        keep(ranking, arguments.keep, document, terminal);
     terminal.document(document);
 }
 
@@ -125,10 +135,7 @@ void addRank(CLI::App& app, Terminal& terminal)
         ->delimiter(',')
         ->check(CLI::IsMember(names))
         ->type_name("CLASS");
-    verb->add_option("--keep", o->keep,
-                     "write the models of the classes hammerstein, block, narx, pnlss and fractional-pnlss there, each "
-                     "to a file of its name, as predistort takes them")
-        ->type_name("DIR");
+    verb->add_option("--keep", o->keep, "keep the model of each class as its document, CLASS.json")->type_name("DIR");
     verb->footer(told);
     verb->callback([o, &terminal] { run(*o, terminal); });
 }

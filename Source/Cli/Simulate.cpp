@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/PlayDocument.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
@@ -7,7 +8,7 @@
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Measurement/SweepTake.h"
 #include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
 #include "Plots/Engineering.h"
@@ -33,13 +34,15 @@ struct Played {
     double sampleRate = 0.0;
     Channel channel;
     std::optional<Excitation> excitation;
+    std::optional<SweepExcitation> sweep;
 };
 
-Played fromWav(const SimulateArguments& options, const Model& model)
+/// @param electrical  whether the model is driven by a voltage
+Played fromWav(const SimulateArguments& options, bool electrical)
 {
     if (options.fullScale == 0.0)
         throw Error(Error::Kind::usage, std::string("A WAV has no unit: say with --full-scale how many ")
-                                            + (model.electrical() ? "V at the loudspeaker" : "N")
+                                            + (electrical ? "V at the loudspeaker" : "N")
                                             + " a sample of 1.0 stands for.");
     auto wav = readWav(options.input);
     if (wav.channels.size() != 1)
@@ -55,17 +58,89 @@ Played fromWav(const SimulateArguments& options, const Model& model)
     return played;
 }
 
-Played fromTake(const SimulateArguments& options, const Model& model)
+Played fromTake(const SimulateArguments& options, bool electrical)
 {
     if (options.fullScale != 0.0)
         throw Error(Error::Kind::usage, "--full-scale is for a WAV; a take has its own.");
-    const auto take = readMeasurement(options.input);
+    const auto [take, sweep] = readSweepTake(options.input);
     const auto& input = take.input();
-    if ((input.quantity == Quantity::voltage) != model.electrical())
-        throw Error(Error::Kind::data, std::string("The model is driven by a ")
-                                           + (model.electrical() ? "voltage" : "force") + ", but the take holds a "
-                                           + std::string(name(input.quantity)) + ".");
-    return {take.sampleRate, input, take.excitation};
+    if ((input.quantity == Quantity::voltage) != electrical)
+        throw Error(Error::Kind::data, std::string("The model is driven by a ") + (electrical ? "voltage" : "force")
+                                           + ", but the take holds a " + std::string(name(input.quantity)) + ".");
+    return {take.sampleRate, input, take.excitation, sweep};
+}
+
+Played played(const SimulateArguments& options, bool electrical)
+{
+    return endingOf(options.input) == ".wav" ? fromWav(options, electrical) : fromTake(options, electrical);
+}
+
+/// One row and one object a channel of what was simulated.
+nlohmann::ordered_json tellChannels(const Measurement& take, Terminal& terminal)
+{
+    auto channels = nlohmann::ordered_json::array();
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& channel : take.channels) {
+        const double rms = rmsOf(channel.samples), peak = peakOf(channel.samples);
+        const auto unit = displayUnit(peak, channel.unit);
+        rows.push_back({std::string(name(channel.quantity)), significant(rms * unit.factor),
+                        significant(peak * unit.factor), unit.unit});
+        channels.push_back({{"quantity", name(channel.quantity)},
+                            {"unit", channel.unit},
+                            {"rms", rms},
+                            {"peak", peak},
+                            {"fullScale", channel.fullScale}});
+    }
+    terminal.table({"channel", "rms", "peak", "unit"}, rows);
+    return channels;
+}
+
+void sayTake(const SimulateArguments& options, const Measurement& take, Terminal& terminal)
+{
+    terminal.say("Wrote the take " + options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 2)
+                 + " s at " + significant(take.sampleRate, 8) + " Hz.");
+}
+
+/// A model that knows no physics: its one output for its one input, at the rate that it was identified at.
+void runDocument(const SimulateArguments& options, const PlayedDocument& model, Terminal& terminal)
+{
+    const auto input = quantityNamed(model.input), output = quantityNamed(model.output);
+    if (!input || !output || (*input != Quantity::voltage && *input != Quantity::force))
+        throw Error(Error::Kind::data, "'" + options.model + "' makes a " + model.output + " of a " + model.input
+                                           + "; what a voltage or a force makes is played.");
+    const auto given = played(options, *input == Quantity::voltage);
+    if (std::abs(given.sampleRate - model.sampleRate) > 1e-6 * model.sampleRate)
+        throw Error(Error::Kind::data, "'" + options.model + "' plays at " + significant(model.sampleRate, 8)
+                                           + " Hz, but '" + options.input + "' is sampled at "
+                                           + significant(given.sampleRate, 8) + " Hz; resample it, or identify the "
+                                           + "model at that rate.");
+    const auto& u = given.channel.samples;
+    const Eigen::MatrixXd y = model.play(
+        Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())));
+    if (!y.allFinite())
+        throw Error(Error::Kind::numerical, "The model runs away with this input.");
+    SweepTake result;
+    auto& take = result.take;
+    take.sampleRate = given.sampleRate;
+    take.excitation = given.excitation;
+    result.sweep = given.sweep;
+    take.channels.push_back(given.channel);
+    take.channels.front().fullScale = std::max(given.channel.fullScale, peakOf(u));
+    Channel channel;
+    channel.quantity = *output;
+    channel.unit = siUnit(*output);
+    channel.samples.assign(y.data(), y.data() + y.rows());
+    if (const double peak = peakOf(channel.samples); peak > 0.0)
+        channel.fullScale = peak;
+    take.channels.push_back(std::move(channel));
+    writeSweepTake(result, options.out);
+    nlohmann::ordered_json document {
+        {"format", "excursion-simulate"}, {"version", 1},        {"model", options.model},
+        {"input", options.input},         {"take", options.out}, {"sampleRate", take.sampleRate},
+        {"samples", take.length()}};
+    document["channels"] = tellChannels(take, terminal);
+    sayTake(options, take, terminal);
+    terminal.document(document);
 }
 
 /// How far the model is driven beyond what it was measured at; empty where all of it was.
@@ -89,14 +164,16 @@ void run(const SimulateArguments& options, Terminal& terminal)
     if (!options.simulation.isValid(&reason))
         throw Error(Error::Kind::usage, "The simulation cannot run: " + reason + ".");
     requireFolderPlace(options.out);
+    if (const auto document = playedDocument(options.model))
+        return runDocument(options, *document, terminal);
     const auto model = readModel(options.model);
-    const auto played = endingOf(options.input) == ".wav" ? fromWav(options, model) : fromTake(options, model);
+    const auto given = played(options, model.electrical());
     SimulationSummary summary;
-    auto take = simulate(model, played.channel.samples, played.sampleRate, options.simulation, &summary,
+    auto take = simulate(model, given.channel.samples, given.sampleRate, options.simulation, &summary,
                          terminal.progress());
-    take.channels.front().fullScale = std::max(played.channel.fullScale, peakOf(played.channel.samples));
-    take.excitation = played.excitation;
-    writeMeasurement(take, options.out);
+    take.channels.front().fullScale = std::max(given.channel.fullScale, peakOf(given.channel.samples));
+    take.excitation = given.excitation;
+    writeSweepTake({take, given.sweep}, options.out);
 
     nlohmann::ordered_json document {{"format", "excursion-simulate"},
                                      {"version", 1},
@@ -109,20 +186,7 @@ void run(const SimulateArguments& options, Terminal& terminal)
                                      {"accuracy", summary.accuracy},
                                      {"tolerance", options.simulation.tolerance},
                                      {"converged", summary.converged}};
-    document["channels"] = nlohmann::ordered_json::array();
-    std::vector<std::vector<std::string>> rows;
-    for (const auto& channel : take.channels) {
-        const double rms = rmsOf(channel.samples), peak = peakOf(channel.samples);
-        const auto unit = displayUnit(peak, channel.unit);
-        rows.push_back({std::string(name(channel.quantity)), significant(rms * unit.factor),
-                        significant(peak * unit.factor), unit.unit});
-        document["channels"].push_back({{"quantity", name(channel.quantity)},
-                                        {"unit", channel.unit},
-                                        {"rms", rms},
-                                        {"peak", peak},
-                                        {"fullScale", channel.fullScale}});
-    }
-    terminal.table({"channel", "rms", "peak", "unit"}, rows);
+    document["channels"] = tellChannels(take, terminal);
     terminal.say(std::to_string(summary.substeps) + (summary.substeps == 1 ? " step" : " steps")
                  + " a sample; half the step changes the result by "
                  + fixed(20.0 * std::log10(std::max(summary.accuracy, 1e-12)), 0) + " dB"
@@ -131,8 +195,7 @@ void run(const SimulateArguments& options, Terminal& terminal)
         terminal.say(warning);
         document["warning"] = warning;
     }
-    terminal.say("Wrote the take " + options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 2)
-                 + " s at " + significant(take.sampleRate, 8) + " Hz.");
+    sayTake(options, take, terminal);
     terminal.document(document);
     if (!summary.converged)
         terminal.answer = 1;
@@ -145,7 +208,10 @@ void addSimulate(CLI::App& app, Terminal& terminal)
     auto o = std::make_shared<SimulateArguments>();
     auto* verb = app.add_subcommand("simulate", "What the loudspeaker will do: every channel of the model, as a take")
                      ->group(step::use);
-    verb->add_option("MODEL", o->model, "the model, a .json")->required();
+    verb->add_option("MODEL", o->model,
+                     "the model, a .json: of a driver, or one that rank --keep, harmonics --model, "
+                     "pnlss or identify kept and that plays one channel at its own rate")
+        ->required();
     verb->add_option("IN", o->input,
                      "what is played: a .wav of one channel, or a take or plan, whose voltage is played")
         ->required();

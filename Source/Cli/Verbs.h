@@ -29,6 +29,7 @@ void addMeasure(CLI::App&, Terminal&);
 void addImport(CLI::App&, Terminal&);
 void addCheck(CLI::App&, Terminal&);
 void addBla(CLI::App&, Terminal&);
+void addHarmonics(CLI::App&, Terminal&);
 void addIdentify(CLI::App&, Terminal&);
 void addReduce(CLI::App&, Terminal&);
 void addStabilize(CLI::App&, Terminal&);

@@ -3,12 +3,14 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Bench/Bench.h"
 #include "Bench/Draw.h"
 #include "Bench/Truth.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Measurement/SweepTake.h"
+#include "Engine/Signal/Level.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,7 +24,7 @@ namespace {
 struct VirtualArguments {
     std::uint64_t seed = 1;
     std::vector<std::string> hidden, channels;
-    std::string driver, out, truth;
+    std::string driver, plan, out, truth;
     double noise = 0.0, rate = 0.0, seconds = 12.0;
     bool hasHidden = false, hasNoise = false;
 };
@@ -86,27 +88,59 @@ bench::DrawOptions drawOptions(const VirtualArguments& options)
     return draw;
 }
 
+/// What the loudspeaker does with a plan, whatever it is, in its own volts: the drawn excitation is left aside.
+SweepTake played(const VirtualArguments& options, const bench::Draw& drawn, Terminal& terminal)
+{
+    const auto plan = readSweepTake(options.plan);
+    if (plan.take.input().quantity != Quantity::voltage)
+        throw Error(Error::Kind::data, "The virtual loudspeaker plays a voltage, but the plan holds none.");
+    SweepTake result;
+    result.sweep = plan.sweep;
+    result.take = bench::play(drawn.speaker, plan.take.input().samples, plan.take.sampleRate, drawn.setup.channels,
+                              drawn.setup.microphoneDistance, terminal.progress());
+    result.take.excitation = plan.take.excitation;
+    // The noise goes by the loudest level, as the bench's own does.
+    const auto& levels = plan.sweep             ? plan.sweep->levels
+                         : plan.take.excitation ? plan.take.excitation->levels
+                                                : std::vector<double> {1.0};
+    const auto part = result.take.length() / levels.size();
+    for (auto& channel : result.take.channels) {
+        const double rms = rmsOf(std::span(channel.samples).subspan((levels.size() - 1) * part, part));
+        bench::Random hiss(options.seed, 1000 + static_cast<std::uint64_t>(channel.quantity));
+        bench::sense(channel, result.take.sampleRate, rms, drawn.setup.noiseDb, drawn.setup.noiseColour, {}, hiss);
+    }
+    return result;
+}
+
 void run(const VirtualArguments& options, Terminal& terminal)
 {
     requireFolderPlace(options.out);
     if (!options.truth.empty())
         requireFilePlace(options.truth);
     const auto drawn = bench::draw(options.seed, drawOptions(options));
-    const auto take = bench::measure(drawn.speaker, drawn.setup, terminal.progress());
-    writeMeasurement(take, options.out);
+    const auto measured = options.plan.empty()
+                              ? SweepTake {bench::measure(drawn.speaker, drawn.setup, terminal.progress()), {}}
+                              : played(options, drawn, terminal);
+    const auto& take = measured.take;
+    writeSweepTake(measured, options.out);
     if (!options.truth.empty())
         publish(options.truth, bench::truthOf(drawn).dump(2) + "\n");
 
-    const auto& plan = *take.excitation;
     nlohmann::ordered_json document {{"format", "excursion-virtual"},
                                      {"version", 1},
                                      {"take", options.out},
                                      {"seed", options.seed},
                                      {"driver", drawn.driver},
                                      {"sampleRate", take.sampleRate},
-                                     {"seconds", static_cast<double>(take.length()) / take.sampleRate},
-                                     {"period", plan.period},
-                                     {"levels", plan.levels}};
+                                     {"seconds", static_cast<double>(take.length()) / take.sampleRate}};
+    if (options.plan.empty())
+        document["period"] = take.excitation->period;
+    else
+        document["plan"] = options.plan;
+    const auto levels = measured.sweep    ? measured.sweep->levels
+                        : take.excitation ? take.excitation->levels
+                                          : std::vector<double> {rmsOf(take.input().samples)};
+    document["levels"] = levels;
     for (const auto& channel : take.channels)
         document["channels"].push_back(name(channel.quantity));
     terminal.document(document);
@@ -115,7 +149,7 @@ void run(const VirtualArguments& options, Terminal& terminal)
                                  [&](const auto& channel) { return std::string(name(channel.quantity)); });
     terminal.say(options.out + ": " + fixed(static_cast<double>(take.length()) / take.sampleRate, 1)
                  + " s of a virtual " + drawn.driver + " at " + fixed(take.sampleRate, 0) + " Hz (" + channels
-                 + "), up to " + significant(plan.levels.back(), 3) + " V rms.");
+                 + "), up to " + significant(levels.back(), 3) + " V rms.");
     if (!options.truth.empty())
         terminal.say("What was hidden is in " + options.truth + ".");
 }
@@ -135,8 +169,14 @@ void addVirtual(CLI::App& app, Terminal& terminal)
     verb->add_option("--driver", options->driver, "micro, midrange, midbass, woofer, subwoofer or seed");
     auto* noise = verb->add_option("--noise", options->noise, "sensor noise in dB against the loudest level")
                       ->check(CLI::Range(-200.0, 0.0));
-    verb->add_option("--rate", options->rate, "sample rate in Hz");
-    verb->add_option("--seconds", options->seconds, "length of the take, about")->check(CLI::Range(1.0, 120.0));
+    auto* plan = verb->add_option("--plan", options->plan,
+                                  "what is played, in its own volts, in place of multisines that suit the loudspeaker: "
+                                  "a folder of excursion excite")
+                     ->type_name("DIR");
+    verb->add_option("--rate", options->rate, "sample rate in Hz")->excludes(plan);
+    verb->add_option("--seconds", options->seconds, "length of the take, about")
+        ->check(CLI::Range(1.0, 120.0))
+        ->excludes(plan);
     verb->add_option("--channels", options->channels, "what is recorded, beside voltage")->delimiter(',');
     verb->add_option("--out", options->out, "folder of the take")->required()->type_name("DIR");
     verb->add_option("--truth", options->truth, "JSON file that tells what was hidden")->type_name("FILE");

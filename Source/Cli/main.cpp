@@ -130,6 +130,7 @@ int main(int argc, char** argv)
     cli::addVirtual(app, terminal);
     cli::addCheck(app, terminal);
     cli::addBla(app, terminal);
+    cli::addHarmonics(app, terminal);
     cli::addIdentify(app, terminal);
     cli::addReduce(app, terminal);
     cli::addStabilize(app, terminal);

@@ -4,6 +4,7 @@
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
 #include "Plots/Engineering.h"
+#include "Plots/HarmonicPlots.h"
 #include "Plots/ModelPlots.h"
 #include "Report/Page.h"
 
@@ -216,6 +217,58 @@ void addRankingOfClasses(Page& page, const JsonField& document)
                      "simulates for.");
 }
 
+void addHarmonicCurves(Page& page, const JsonField& document)
+{
+    double most = -std::numeric_limits<double>::infinity(), mostAt = 0.0;
+    std::string mostOf;
+    std::vector<std::pair<std::string, std::vector<Plot>>> channels;
+    for (const auto& curve : document.at("curves").items()) {
+        const auto channel = curve.at("channel").text();
+        const auto frequency = curve.at("frequency").numbers();
+        const auto sized = [&](const JsonField& field) {
+            auto values = field.numbers();
+            if (values.size() != frequency.size())
+                field.refuse("a number for each frequency");
+            return values;
+        };
+        std::vector<HarmonicLine> harmonics;
+        for (const auto& harmonic : curve.at("harmonics").items())
+            harmonics.push_back({harmonic.at("order").count(2, 100), sized(harmonic.at("db"))});
+        const auto thd = sized(curve.at("thd").at("db")), floor = sized(curve.at("thd").at("floorDb"));
+        for (std::size_t i = 0; i < thd.size(); ++i)
+            if (thd[i] > most) {
+                most = thd[i];
+                mostAt = frequency[i];
+                mostOf = channel;
+            }
+        if (channels.empty() || channels.back().first != channel)
+            channels.push_back({channel, {}});
+        auto plot = harmonicPlot(nominal(curve.at("level").number(), "V") + " rms", frequency, harmonics, thd, floor);
+        if (!plot.series.empty())
+            channels.back().second.push_back(std::move(plot));
+    }
+    if (std::isfinite(most))
+        page.headline("At most " + fixedText(100.0 * std::pow(10.0, most / 20.0), 2) + " % of harmonics, in the "
+                          + mostOf + " at " + fixedText(mostAt, 0) + " Hz",
+                      "good");
+    else
+        page.headline("No harmonic rises above the noise", "good");
+    for (const auto& remark : document.at("remarks").items())
+        page.paragraph(remark.text());
+    for (auto& [channel, plots] : channels) {
+        page.section("Harmonics of the " + channel);
+        if (plots.empty()) {
+            page.paragraph("Nothing of it rises above the noise.");
+            continue;
+        }
+        const int columns = plots.size() == 1 ? 1 : 2;
+        page.figures(std::move(plots), columns,
+                     "Level of each harmonic over that of the fundamental whose frequency is on the axis; a line ends "
+                     "where the harmonic leaves the band or does not rise above what noise may look like. THD is the "
+                     "root of the sum of squares of what does.");
+    }
+}
+
 struct PageOf {
     const char* format;
     const char* title;
@@ -229,6 +282,7 @@ constexpr PageOf pagesOf[] {
     {"excursion-fractional-identification", "Fractional identification", addFractionalIdentification},
     {"excursion-motor-cone", "Motor and cone", addMotorCone},
     {"excursion-pnlss-fit", "Polynomial model", addPnlssFit},
+    {"excursion-harmonics", "Harmonic distortion", addHarmonicCurves},
     {"excursion-ranking", "Classes of models", addRankingOfClasses}};
 
 }  // namespace

@@ -81,17 +81,22 @@ Played play(const PlayedOptions& options)
     planned.levels = options.levels;
     planned.realizations = options.realizations;
     planned.periods = options.periods;
+    return play(planExcitation(planned), options.seed, options.bandLow);
+}
+
+Played play(const Measurement& plan, std::uint64_t seed, double lowest)
+{
     Played played;
-    played.plan = planExcitation(planned);
+    played.plan = plan;
     played.lead = 2048;
     std::vector<double> voltage(played.lead, 0.0);
     const auto& wanted = played.plan.input().samples;
     voltage.insert(voltage.end(), wanted.begin(), wanted.end());
     voltage.resize((voltage.size() + 4096) / 2 * 2, 0.0);
-    const auto speaker = bench::drawLoudspeaker(options.seed, {{"stiffness", 0.3}});
+    const auto speaker = bench::drawLoudspeaker(seed, {{"stiffness", 0.3}});
     played.quantities = {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure};
-    const auto run = bench::run(speaker, voltage, options.sampleRate,
-                                {Quantity::current, Quantity::displacement, Quantity::pressure}, 0.1, options.bandLow);
+    const auto run = bench::run(speaker, voltage, plan.sampleRate,
+                                {Quantity::current, Quantity::displacement, Quantity::pressure}, 0.1, lowest);
     for (const auto quantity : played.quantities) {
         const auto& fine = run.signals.at(quantity);
         // Twice the plan's rate is kept; what the loudspeaker adds above the plan's band is far below the noise.

@@ -29,6 +29,9 @@ struct PlayedOptions {
 
 Played play(const PlayedOptions&);
 
+/// Any plan of one voltage, to the loudspeaker of that seed. @param lowest  Hz that it plays
+Played play(const Measurement& plan, std::uint64_t seed, double lowest);
+
 /// One recorder, and what is wrong with it.
 struct Recorder {
     double sampleRate = 48000.0;    ///< nominal

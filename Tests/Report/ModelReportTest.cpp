@@ -134,14 +134,28 @@ TEST_CASE("Every document that has a page makes one, and others are refused by w
                                  {"stable", true},
                                  {"motor", linear},
                                  {"cone", linear}};
+    const nlohmann::json curve {
+        {"channel", "pressure"},
+        {"unit", "Pa"},
+        {"level", 2.0},
+        {"frequency", {100.0, 200.0, 400.0}},
+        {"fundamental", {1.0, 1.0, 1.0}},
+        {"harmonics",
+         {{{"order", 2}, {"db", {-40.0, -41.0, nullptr}}, {"floorDb", {-90.0, -90.0, -90.0}}},
+          {{"order", 3}, {"db", {nullptr, nullptr, nullptr}}, {"floorDb", {-90.0, -90.0, -90.0}}}}},
+        {"thd", {{"db", {-40.0, -41.0, nullptr}}, {"floorDb", {-87.0, -87.0, -87.0}}}}};
+    const nlohmann::json harmonics {
+        {"format", "excursion-harmonics"}, {"version", 1}, {"remarks", {"<it> may be noise"}}, {"curves", {curve}}};
     try {
-        for (const auto& document : {linear, fractional, sweep, other, fit, ranking, halves}) {
+        for (const auto& document : {linear, fractional, sweep, other, fit, ranking, halves, harmonics}) {
             CAPTURE(document.at("format").get<std::string>());
             const auto html = page(document);
             CHECK(html.find("<svg") != std::string::npos);
             CHECK(html.find("<it>") == std::string::npos);
         }
         CHECK(page(ranking).find("ran &amp; away") != std::string::npos);
+        CHECK(page(harmonics).find("At most 1.00 % of harmonics, in the pressure at 100 Hz") != std::string::npos);
+        CHECK(page(harmonics).find("H2") != std::string::npos);
     } catch (const Error& e) {
         if (std::string(e.what()).find("gnuplot") == std::string::npos)
             throw;
@@ -152,6 +166,9 @@ TEST_CASE("Every document that has a page makes one, and others are refused by w
     auto newer = ranking;
     newer["version"] = 2;
     CHECK_THROWS_AS(page(newer), Error);
+    auto shortened = harmonics;
+    shortened["curves"][0]["thd"]["db"] = {-40.0};
+    CHECK_THROWS_AS(page(shortened), Error);
     auto broken = sweep;
     broken["orders"][0].erase("errorDb");
     CHECK_THROWS_AS(page(broken), Error);

@@ -5,10 +5,12 @@
 #include "Engine/Error.h"
 #include "Engine/Import/FindPlan.h"
 #include "Engine/Import/PeriodDelays.h"
+#include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Resample.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace excursion {
@@ -19,6 +21,7 @@ constexpr double lateStart = 8.0;     // samples that the beginning may lack: it
 constexpr std::size_t earlyEnd = 8;   // and the end: what is periodic tells them
 constexpr double mostScatter = 0.25;  // samples rms of the periods about a steady clock
 constexpr double leastShare = 0.8;    // of the periods within the recording that must follow the plan
+constexpr double leastAnswer = 0.6;   // of the energy of a response to sweeps, in the time of an impulse response
 
 [[noreturn]] void refuse(const std::string& source, const std::string& why)
 {
@@ -60,6 +63,8 @@ public:
         refine();
         chooseWitness();
         countRealizations();
+        if (periods_.sweeps)
+            requireAnswer();
         return result_;
     }
 
@@ -100,7 +105,8 @@ private:
                                 + (witnesses_.size() > 1 ? " and the others" : "")
                                 + "; check the cables, the inputs and --map.");
         if (static_cast<double>(witnesses_.front().samples.size()) / ratio_ < static_cast<double>(periods_.length))
-            refuse(source_, "is only " + length + " s long, less than one period of the plan; record all of it.");
+            refuse(source_, "is only " + length + " s long, less than one " + (periods_.sweeps ? "sweep" : "period")
+                                + " of the plan; record all of it.");
         refuse(source_, "does not hold the plan: what was played was not found in " + witnesses_.front().label
                             + (witnesses_.size() > 1 ? " nor in the others" : "")
                             + "; check that the plan is the one that was played, and --map.");
@@ -119,9 +125,31 @@ private:
             const auto first = std::find_if(place.sightings.begin(), place.sightings.end(),
                                             [](const Sighting& s) { return s.inside && !s.seen; });
             refuse(source_, "follows the plan in only " + std::to_string(place.seen()) + " of " + std::to_string(within)
-                                + " periods, and not at " + figure(first->at / plan_.sampleRate, "%.2f")
+                                + (periods_.sweeps ? " sweeps, and not at " : " periods, and not at ")
+                                + figure(first->at / plan_.sampleRate, "%.2f")
                                 + " s; either the plan is not the one that was played, or something interrupted it.");
         }
+    }
+
+    /// Another sweep than the plan's is answered at the wrong times, and so is noise: at all times.
+    void requireAnswer() const
+    {
+        const auto response = delaysOf(result_.witness, false).response;
+        std::vector<std::complex<double>> spectrum(periods_.length / 2 + 1);
+        for (std::size_t i = 0; i < response.size(); ++i)
+            spectrum[static_cast<std::size_t>(periods_.lines[i])] = response[i];
+        const auto h = inverseFft(spectrum, periods_.length);
+        const auto ahead = periods_.length / 200, behind = periods_.length / 10;
+        double inTime = 0.0, all = 0.0;
+        for (std::size_t n = 0; n < h.size(); ++n) {
+            all += h[n] * h[n];
+            inTime += n < behind || n >= h.size() - ahead ? h[n] * h[n] : 0.0;
+        }
+        if (!(inTime >= leastAnswer * all))
+            refuse(source_, "does not answer the plan's sweeps: only " + figure(100.0 * inTime / all, "%.0f") + " % of "
+                                + witnesses_[result_.witness].label
+                                + " comes when an impulse response would; either another sweep was played, or noise "
+                                  "buries it.");
     }
 
     /// @param jump  samples of the plan by which what comes later is late
@@ -169,7 +197,7 @@ private:
             const auto delays = delaysOf(result_.witness, byLevel);
             fit = fitClock(delays.periods);
             const bool wasByLevel = byLevel;
-            byLevel = delays.likeness < 0.99;
+            byLevel = delays.likeness < 0.99 && (!periods_.sweeps || plan_.excitation->realizations > 1);
             const double shift = delays.delay + fit.offset;
             result_.clock.start += shift * result_.clock.step;
             result_.clock.step *= 1 + fit.drift;
@@ -184,6 +212,13 @@ private:
                    "does not run on a steady clock: its periods lie " + figure(fit.scatter, "%.2f")
                        + " samples (rms) off one; samples were lost, or the recorder's clock wanders. Record again.");
         const double drift = result_.clock.step / ratio_ - 1;
+        if (periods_.sweeps && result_.realizations < 2) {
+            result_.driftUnknown = result_.synchronous = true;
+            result_.driftPpm = 0.0;
+            result_.driftError = std::numeric_limits<double>::infinity();
+            result_.clock.step = ratio_;
+            return;
+        }
         result_.driftPpm = 1e6 * drift;
         result_.driftError = 1e6 * fit.driftError;
         result_.scatter = fit.scatter;

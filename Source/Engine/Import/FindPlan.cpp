@@ -209,8 +209,8 @@ private:
                     time = timeOf(period);
                     at = sighting.at;
                     const double span = time - timeOf(anchor_);
-                    if (sighting.jump == 0.0 && std::abs(span) >= 2.0 * static_cast<double>(plan_.length)
-                        && !jumped(sightings))
+                    const double least = (plan_.sweeps ? 1.0 : 2.0) * static_cast<double>(plan_.length);
+                    if (sighting.jump == 0.0 && std::abs(span) >= 0.999 * least && !jumped(sightings))
                         drift_ = std::clamp((at - at_) / span - 1, -mostDrift, mostDrift);
                 }
             }
@@ -235,8 +235,10 @@ private:
             }
         place.step = 1 + drift_;
         place.start = at_ - timeOf(anchor_) * place.step;
-        if (count < 3)
+        if (count < (plan_.sweeps ? 2 : 3)) {
+            place.start -= lateBy(place.step);
             return;
+        }
         meanTime /= count;
         meanAt /= count;
         double square = 0.0, product = 0.0;
@@ -249,7 +251,11 @@ private:
             place.step = product / square;
             place.start = meanAt - place.step * meanTime;
         }
+        place.start -= lateBy(place.step);
     }
+
+    /// What was found is the middle of a sweep, half of one after its beginning on the recorder's clock.
+    double lateBy(double step) const { return plan_.sweeps ? (step - 1) * static_cast<double>(plan_.length) / 2 : 0.0; }
 
     const PlanPeriods& plan_;
     std::span<const double> recorded_;
@@ -309,6 +315,11 @@ std::vector<std::size_t> judges(const PlanPeriods& plan)
 /// Samples of a period to correlate with: so few that drift does not blur the middle of its power.
 std::size_t templateLength(const std::vector<Complex>& X, const PlanPeriods& plan)
 {
+    if (plan.sweeps) {  // its middle plays the middle of the band
+        const double middle = std::sqrt(static_cast<double>(plan.lines.front()) * plan.lines.back())
+                              / static_cast<double>(plan.length);
+        return std::min(plan.length, static_cast<std::size_t>(1.0 / (2 * mostDrift * middle)));
+    }
     double power = 0.0, moment = 0.0;
     for (std::size_t i = 0; i < X.size(); ++i) {
         power += std::norm(X[i]);
@@ -369,7 +380,7 @@ PlanPlace findPlan(const std::vector<double>& played, const PlanPeriods& plan, s
         if (!bestAt)
             continue;
         best = track.from(anchor, *bestAt, all).value();
-        best.found = best.seen() >= 2 && 2 * best.seen() > best.inside();
+        best.found = best.seen() >= (plan.sweeps ? 1u : 2u) && 2 * best.seen() > best.inside();
         if (best.start >= -8.0 && 10 * best.seen() >= 9 * all.size())
             break;  // nothing could fit better
     }

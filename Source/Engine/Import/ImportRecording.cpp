@@ -90,8 +90,13 @@ class Assembly {
 public:
     Assembly(const RecordingOptions& options, const std::vector<Source>& sources,
              const std::vector<AssignedChannel>& assigned)
-        : options_(options), sources_(sources), assigned_(assigned), plan_(*options.plan), periods_(periodsOf(plan_))
+        : options_(options),
+          sources_(sources),
+          assigned_(assigned),
+          plan_(withPeriods(options)),
+          periods_(periodsOf(plan_))
     {
+        periods_.sweeps = options.sweep.has_value();
     }
 
     ImportedRecording build(const Progress& progress)
@@ -114,6 +119,8 @@ public:
         }
         std::erase_if(result_.take.channels, [](const Channel& c) { return c.samples.empty(); });  // loopbacks
         setLevels();
+        if (periods_.sweeps)
+            describeSweeps();
         return std::move(result_);
     }
 
@@ -162,6 +169,11 @@ private:
             result_.remarks.push_back("The clock of '" + done.name + "' wanders by "
                                       + figure(done.alignment.scatter, "%.2f")
                                       + " samples (rms) about a steady one, which is left in.");
+        if (done.alignment.driftUnknown)
+            result_.remarks.push_back(
+                "One sweep cannot tell a clock's drift from a phase that goes with frequency: '" + done.name
+                + "' was taken at its nominal rate. Where player and recorder are not one device, play two levels or "
+                  "repeats, which tell it.");
         result_.files.push_back(std::move(done));
     }
 
@@ -173,8 +185,10 @@ private:
         const auto& samples = sources_[witness.file].sound.channels[witness.channel];
         Measurement pair;
         pair.sampleRate = plan_.sampleRate;
-        pair.excitation = shortened(*result_.take.excitation, alignment.realizations);
-        const auto length = static_cast<std::size_t>(pair.excitation->totalSamples());
+        const auto excitation = shortened(*result_.take.excitation, alignment.realizations);
+        const auto length = static_cast<std::size_t>(excitation.totalSamples());
+        if (!periods_.sweeps)
+            pair.excitation = excitation;
         const auto& played = plan_.input().samples;
         pair.channels.push_back(
             {Quantity::voltage, "V", 1.0, {played.begin(), played.begin() + static_cast<std::ptrdiff_t>(length)}});
@@ -210,6 +224,24 @@ private:
             e.levels.resize(levels);
         }
         return e;
+    }
+
+    static Measurement withPeriods(const RecordingOptions& options)
+    {
+        auto plan = *options.plan;
+        if (options.sweep)
+            plan.excitation = periodsOfSweeps(*options.sweep, plan.sampleRate);
+        return plan;
+    }
+
+    /// What is left of the sweeps, and a take that has no periods.
+    void describeSweeps()
+    {
+        result_.sweep = options_.sweep;
+        const auto& e = *result_.take.excitation;
+        result_.sweep->levels = e.levels;
+        result_.sweep->repeats = e.realizations;
+        result_.take.excitation.reset();
     }
 
     /// All files to the end of the one that ends first.
@@ -263,7 +295,7 @@ private:
             const bool toTheEnd = alignment.realizations
                                       * static_cast<std::size_t>(plan_.excitation->samplesPerRealization())
                                   == length_;
-            if (toTheEnd)  // the steady state of the period before
+            if (toTheEnd && !periods_.sweeps)  // the steady state of the period before
                 for (auto n = length_ - std::min(alignment.missing, length_); n < length_; ++n)
                     channel.samples[n] = channel.samples[n - periods_.length];
             for (double& x : channel.samples)
@@ -309,7 +341,8 @@ private:
         const auto& voltage = take.find(Quantity::voltage)->samples;
         std::vector<double> levels;
         for (std::size_t k = 0; k < e.levels.size(); ++k)
-            levels.push_back(levelOf(voltage, e, k));
+            levels.push_back(periods_.sweeps ? e.levels[k] * levelOf(voltage, e, k) / levelOf(played.samples, e, k)
+                                             : levelOf(voltage, e, k));
         const double ratio = levels.back() / e.levels.back();
         if (recorded(Quantity::voltage) && (ratio < 0.98 || ratio > 1.02))
             result_.remarks.push_back("The recorded voltage is " + figure(ratio, "%.3g")
@@ -322,7 +355,7 @@ private:
     const RecordingOptions& options_;
     const std::vector<Source>& sources_;
     const std::vector<AssignedChannel>& assigned_;
-    const Measurement& plan_;
+    Measurement plan_;
     PlanPeriods periods_;
     std::vector<std::size_t> used_;
     std::size_t length_ = 0;

@@ -23,6 +23,7 @@ struct ImportedFile {
 
 struct ImportedRecording {
     Measurement take;
+    std::optional<SweepExcitation> sweep {};  ///< of a plan of sweeps: those that were recorded, at their levels
     std::vector<ImportedFile> files;
     std::vector<std::string> remarks;  ///< sentences for a person: what was assumed, left out or is odd
 };

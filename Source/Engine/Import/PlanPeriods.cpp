@@ -6,6 +6,7 @@
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace excursion {
 
@@ -43,6 +44,22 @@ PlanPeriods periodsOf(const Measurement& plan)
         result.played.push_back(result.at(std::span(played).subspan(result.periods.back().start, result.length)));
     }
     return result;
+}
+
+Excitation periodsOfSweeps(const SweepExcitation& sweeps, double sampleRate)
+{
+    Excitation e;
+    e.period = static_cast<int>(sweeps.blockSamples(sampleRate));
+    e.settlePeriods = 0;
+    e.periods = 1;
+    e.realizations = sweeps.repeats;
+    e.levels = sweeps.levels;
+    e.bandLow = sweeps.bandLow;
+    e.bandHigh = sweeps.bandHigh;
+    const double line = sampleRate / e.period;
+    for (int k = static_cast<int>(std::ceil(e.bandLow / line)); k * line <= e.bandHigh; ++k)
+        e.lines.push_back(k);
+    return e;
 }
 
 }  // namespace excursion

@@ -4,6 +4,7 @@
 #include "Engine/Import/Calibration.h"
 #include "Engine/Import/ChannelMap.h"
 #include "Engine/Measurement/Measurement.h"
+#include "Engine/Measurement/SweepExcitation.h"
 #include "Engine/Measurement/WavFile.h"
 
 #include <filesystem>
@@ -24,6 +25,7 @@ struct RecordingOptions {
     std::vector<std::filesystem::path> files;  ///< WAV, AIFF, CAF or FLAC; each was recorded by one device
     std::vector<RecordedSound> sounds;         ///< counted behind the files
     std::optional<Measurement> plan;           ///< what was played; absent: one recording is taken as it is
+    std::optional<SweepExcitation> sweep {};   ///< of a plan that plays sweeps
     std::vector<ChannelMapping> map;           ///< empty: what the calibration says
     std::optional<Calibration> calibration;
     std::string calibrationFile;  ///< for sentences

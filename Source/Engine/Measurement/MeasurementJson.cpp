@@ -73,6 +73,51 @@ std::vector<Channel> parseChannels(const JsonField& field)
     return channels;
 }
 
+std::vector<double> parseLevels(const JsonField& field)
+{
+    std::vector<double> levels;
+    for (const auto& level : atLeastOne(field, "a list of at least one level in V rms")) {
+        const double value = positive(level, "a positive number of V rms");
+        if (!levels.empty() && value <= levels.back())
+            level.refuse("more than the level before it: levels go from quiet to loud");
+        levels.push_back(value);
+    }
+    return levels;
+}
+
+/// Synchronized exponential sweeps; nothing where a file tells no more than the kind.
+std::optional<SweepExcitation> parseSweep(const JsonField& field, double sampleRate)
+{
+    if (!field.has("seconds"))
+        return std::nullopt;
+    SweepExcitation e;
+    e.seconds = positive(field.at("seconds"), "a positive number of s");
+    const auto bandField = field.at("band");
+    constexpr auto expected = "two ascending frequencies in Hz, above 0 and below half the sample rate";
+    const auto band = atLeastOne(bandField, expected);
+    if (band.size() != 2)
+        bandField.refuse(expected);
+    e.bandLow = positive(band[0], "a frequency above 0 Hz");
+    e.bandHigh = positive(band[1], "a frequency above 0 Hz");
+    if (e.bandLow >= e.bandHigh || e.bandHigh >= sampleRate / 2)
+        bandField.refuse(expected);
+    e.fadeIn = e.fadeOut = 0.0;
+    if (field.has("fades")) {
+        constexpr auto fades = "two durations in s, 0 or more: of the fade-in and the fade-out";
+        const auto items = atLeastOne(field.at("fades"), fades);
+        if (items.size() != 2)
+            field.at("fades").refuse(fades);
+        e.fadeIn = notNegative(items[0], "a duration in s, 0 or more");
+        e.fadeOut = notNegative(items[1], "a duration in s, 0 or more");
+    }
+    e.silence = field.has("silence") ? notNegative(field.at("silence"), "a duration in s, 0 or more") : 0.0;
+    e.repeats = field.has("repeats") ? field.at("repeats").count(1, 1000) : 1;
+    e.levels = parseLevels(field.at("levels"));
+    if (std::string reason; !e.isValid(sampleRate, &reason))
+        field.refuse("sweeps that can be played. " + reason);
+    return e;
+}
+
 Excitation parseMultisine(const JsonField& field, double sampleRate)
 {
     constexpr int most = std::numeric_limits<int>::max();
@@ -81,12 +126,7 @@ Excitation parseMultisine(const JsonField& field, double sampleRate)
     e.settlePeriods = field.at("settlePeriods").count(0, most / 2);
     e.periods = field.at("periods").count(1, most / 2);
     e.realizations = field.at("realizations").count(1, most);
-    for (const auto& level : atLeastOne(field.at("levels"), "a list of at least one level in V rms")) {
-        const double value = positive(level, "a positive number of V rms");
-        if (!e.levels.empty() && value <= e.levels.back())
-            level.refuse("more than the level before it: levels go from quiet to loud");
-        e.levels.push_back(value);
-    }
+    e.levels = parseLevels(field.at("levels"));
     const double samples = static_cast<double>(e.period) * e.periodsPerRealization() * e.realizations
                            * static_cast<double>(e.levels.size());
     if (samples > static_cast<double>(mostSamples))  // before totalSamples() could overflow
@@ -124,16 +164,17 @@ Excitation parseMultisine(const JsonField& field, double sampleRate)
     return e;
 }
 
-std::optional<Excitation> parseExcitation(const JsonField& field, double sampleRate)
+void parseExcitation(const JsonField& field, MeasurementHeader& header)
 {
     constexpr auto kinds = "multisine, sweep, noise, music or other";
     const auto kindField = field.at("kind");
     const auto kind = kindField.text(kinds);
     if (kind == "multisine")
-        return parseMultisine(field, sampleRate);
-    if (kind != "sweep" && kind != "noise" && kind != "music" && kind != "other")
+        header.measurement.excitation = parseMultisine(field, header.measurement.sampleRate);
+    else if (kind == "sweep")
+        header.sweep = parseSweep(field, header.measurement.sampleRate);
+    else if (kind != "noise" && kind != "music" && kind != "other")
         kindField.refuse(kinds);
-    return std::nullopt;  // no periods to make use of
 }
 
 DriverInfo parseDriver(const JsonField& field)
@@ -180,13 +221,14 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
     header.audio = root.at("audio").text("the name of the WAV");
     measurement.channels = parseChannels(root.at("channels"));
     if (root.has("excitation"))
-        measurement.excitation = parseExcitation(root.at("excitation"), measurement.sampleRate);
+        parseExcitation(root.at("excitation"), header);
     if (root.has("driver"))
         measurement.driver = parseDriver(root.at("driver"));
     return header;
 }
 
-nlohmann::ordered_json measurementJson(const Measurement& measurement, const std::string& audio)
+nlohmann::ordered_json measurementJson(const Measurement& measurement, const std::string& audio,
+                                       const SweepExcitation* sweep)
 {
     nlohmann::ordered_json document {{"format", formatName},
                                      {"version", formatVersion},
@@ -199,7 +241,12 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement, const std
         if (channel.assumed)
             document["channels"].back()["assumed"] = true;
     }
-    if (const auto& e = measurement.excitation) {
+    if (sweep) {
+        document["excitation"] = {{"kind", "sweep"},           {"band", {sweep->bandLow, sweep->bandHigh}},
+                                  {"seconds", sweep->seconds}, {"fades", {sweep->fadeIn, sweep->fadeOut}},
+                                  {"silence", sweep->silence}, {"repeats", sweep->repeats},
+                                  {"levels", sweep->levels}};
+    } else if (const auto& e = measurement.excitation) {
         document["excitation"] = {{"kind", "multisine"},
                                   {"period", e->period},
                                   {"settlePeriods", e->settlePeriods},

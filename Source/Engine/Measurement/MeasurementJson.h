@@ -3,9 +3,11 @@
 
 #include "Engine/Document/JsonField.h"
 #include "Engine/Measurement/Measurement.h"
+#include "Engine/Measurement/SweepExcitation.h"
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +18,8 @@ namespace excursion {
 struct MeasurementHeader {
     Measurement measurement;  ///< channels without samples
     std::string audio;        ///< name of the WAV, relative to the folder
+    /// of an excitation of the kind "sweep" that tells more of itself
+    std::optional<SweepExcitation> sweep {};
 };
 
 /// Reads the text of a measurement.json, format "excursion-measurement", version 1. Keys that are not
@@ -26,6 +30,8 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
 /// "current", ...; throws Error (input) for anything that is no quantity.
 Quantity quantityFromJson(const JsonField&);
 
-nlohmann::ordered_json measurementJson(const Measurement&, const std::string& audio);
+/// @param sweep  where not null: the excitation, in place of the Measurement's
+nlohmann::ordered_json measurementJson(const Measurement&, const std::string& audio,
+                                       const SweepExcitation* sweep = nullptr);
 
 }  // namespace excursion

@@ -7,6 +7,7 @@
 #include "Engine/Import/ImportText.h"
 #include "Engine/Measurement/ImportMat.h"
 #include "Engine/Measurement/MeasurementJson.h"
+#include "Engine/Measurement/SweepTake.h"
 #include "Engine/Measurement/WavFile.h"
 
 #include <nlohmann/json.hpp>
@@ -41,7 +42,7 @@ fs::path audioPath(const MeasurementHeader& header, const fs::path& json)
     return json.parent_path() / audio;
 }
 
-Measurement readFolder(const fs::path& json)
+SweepTake readFolder(const fs::path& json)
 {
     auto header = parseMeasurementJson(readText(json, largestJson), json.string());
     auto& measurement = header.measurement;
@@ -61,6 +62,10 @@ Measurement readFolder(const fs::path& json)
     if (measurement.excitation && measurement.excitation->totalSamples() > static_cast<long>(length))
         disagree("the excitation takes " + std::to_string(measurement.excitation->totalSamples())
                  + " samples, but the WAV has only " + std::to_string(length) + "; record it to its end.");
+    if (const auto samples = header.sweep ? header.sweep->totalSamples(measurement.sampleRate) : 0;
+        samples > static_cast<long>(length))
+        disagree("the sweeps take " + std::to_string(samples) + " samples, but the WAV has only "
+                 + std::to_string(length) + "; record it to its end.");
 
     for (std::size_t c = 0; c < wav.channels.size(); ++c) {
         auto& channel = measurement.channels[c];
@@ -77,7 +82,17 @@ Measurement readFolder(const fs::path& json)
     } catch (const Error& e) {
         throw Error(e.kind(), "'" + json.string() + "': " + e.what());
     }
-    return std::move(measurement);
+    return {std::move(measurement), header.sweep};
+}
+
+/// The JSON that a folder, or a path that is one, holds of a take.
+fs::path headerOf(const fs::path& given)
+{
+    std::error_code error;
+    if (!fs::is_directory(given, error))
+        return endingOf(given) == ".json" ? given : fs::path();
+    const auto plan = given / "plan.json", json = given / "measurement.json";
+    return !fs::exists(json, error) && fs::exists(plan, error) ? plan : json;
 }
 
 void requireWritable(const Measurement& measurement)
@@ -126,7 +141,8 @@ SampleFormat sufficientFormat(const Measurement& measurement)
     return noisy ? SampleFormat::float32 : SampleFormat::float64;
 }
 
-void write(const Measurement& measurement, const fs::path& json, const std::string& audio, SampleFormat format)
+void write(const Measurement& measurement, const fs::path& json, const std::string& audio, SampleFormat format,
+           const SweepExcitation* sweep = nullptr)
 {
     std::vector<std::vector<double>> samples;
     for (const auto& channel : measurement.channels) {
@@ -136,8 +152,9 @@ void write(const Measurement& measurement, const fs::path& json, const std::stri
     }
     DraftFile wav(json.parent_path() / audio), header(json);
     writeWav(wav.path(), wavRate(measurement.sampleRate), samples, format);
-    header.write(measurementJson(measurement, audio).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                 + "\n");
+    header.write(
+        measurementJson(measurement, audio, sweep).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+        + "\n");
     wav.publish();
     header.publish();
 }
@@ -146,14 +163,9 @@ void write(const Measurement& measurement, const fs::path& json, const std::stri
 
 Take readTake(const fs::path& given)
 {
-    std::error_code error;
-    if (fs::is_directory(given, error)) {
-        const auto plan = given / "plan.json", json = given / "measurement.json";
-        return readFolder(!fs::exists(json, error) && fs::exists(plan, error) ? plan : json);
-    }
+    if (const auto json = headerOf(given); !json.empty())
+        return readFolder(json).take;
     const auto extension = endingOf(given);
-    if (extension == ".json")
-        return readFolder(given);
     if (extension == ".mat")
         return importMat(given, {});
     sizeOfFile(given);  // a path that does not exist deserves to be told so first
@@ -176,6 +188,27 @@ Measurement readMeasurement(const fs::path& path)
                                        + "' is a frequency response, but this verb needs the samples of a take; "
                                          "identify, fit, compare, diagnose, add, improve and bla "
                                          "work on a response.");
+}
+
+SweepTake readSweepTake(const fs::path& path)
+{
+    if (const auto json = headerOf(path); !json.empty())
+        return readFolder(json);
+    return {readMeasurement(path), std::nullopt};
+}
+
+void writeSweepTake(const SweepTake& sweepTake, const fs::path& folder)
+{
+    requireWritable(sweepTake.take);
+    write(sweepTake.take, folder / "measurement.json", "take.wav", sufficientFormat(sweepTake.take),
+          sweepTake.sweep ? &*sweepTake.sweep : nullptr);
+}
+
+void writeSweepPlan(const SweepTake& plan, const fs::path& folder)
+{
+    requireWritable(plan.take);
+    write(plan.take, folder / "plan.json", "excitation.wav", SampleFormat::float32,
+          plan.sweep ? &*plan.sweep : nullptr);
 }
 
 void writeMeasurement(const Measurement& measurement, const fs::path& folder)

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace excursion {
 namespace {
@@ -28,40 +29,43 @@ Complex multipleAngle(int n, int m)
     return n % 2 == 0 ? Complex(0.0, B) : Complex(B, 0.0);
 }
 
-/// Raised cosines of `edge` samples at both ends.
-double window(std::size_t at, std::size_t length, std::size_t edge)
-{
-    const auto inside = std::min(at, length - 1 - at);
-    return inside >= edge ? 1.0
-                          : 0.5
-                                - 0.5
-                                      * std::cos(std::numbers::pi * (static_cast<double>(inside) + 0.5)
-                                                 / static_cast<double>(edge));
-}
-
-/// x of T x = b, T_ij = r_|i-j| positive definite, by Levinson's recursion (Golub & Van Loan 2013, 4.7.3).
+/// x of T x = b, T_ij = r_|i-j| positive definite, by conjugate gradients with products by DFT. T is that of a band:
+/// but for some log(length) of them its eigenvalues are near 1 or near the regularization (Slepian), so a few dozen
+/// iterations do at any length, where Levinson's recursion loses all digits at some thousand.
 std::vector<double> solvedToeplitz(const std::vector<double>& r, const std::vector<double>& b, std::size_t length)
 {
-    std::vector<double> x(length), y(length), old(length);
-    const auto row = [&](std::size_t k) { return r[k] / r[0]; };
-    x[0] = b[0] / r[0];
-    double alpha = length > 1 ? -row(1) : 0.0, beta = 1.0;
-    y[0] = alpha;
-    for (std::size_t k = 1; k < length; ++k) {
-        beta *= 1.0 - alpha * alpha;
-        double missing = b[k] / r[0], next = k + 1 < length ? row(k + 1) : 0.0;
-        for (std::size_t i = 1; i <= k; ++i) {
-            missing -= row(i) * x[k - i];
-            next += row(i) * y[k - i];
+    const auto L = quickLength(2 * length);
+    std::vector<double> circle(L, 0.0);
+    for (std::size_t k = 0; k < length; ++k)
+        circle[k] = circle[(L - k) % L] = r[k];
+    const auto C = fft(circle);
+    const auto times = [&](std::vector<double> x) {
+        x.resize(L, 0.0);
+        auto X = fft(x);
+        for (std::size_t k = 0; k < X.size(); ++k)
+            X[k] *= C[k].real();
+        auto y = inverseFft(X, L);
+        y.resize(length);
+        return y;
+    };
+    const auto dot = [](const std::vector<double>& a, const std::vector<double>& c) {
+        return std::inner_product(a.begin(), a.end(), c.begin(), 0.0);
+    };
+    std::vector<double> x(length, 0.0), left(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(length));
+    auto direction = left;
+    double squares = dot(left, left);
+    const double enough = 1e-24 * squares;
+    for (int iteration = 0; iteration < 1000 && squares > enough; ++iteration) {
+        const auto ahead = times(direction);
+        const double step = squares / dot(direction, ahead);
+        for (std::size_t k = 0; k < length; ++k) {
+            x[k] += step * direction[k];
+            left[k] -= step * ahead[k];
         }
-        x[k] = missing / beta;
-        alpha = -next / beta;
-        old = y;
-        for (std::size_t i = 0; i < k; ++i) {
-            x[i] += x[k] * old[k - 1 - i];
-            y[i] += alpha * old[k - 1 - i];
-        }
-        y[k] = alpha;
+        const double next = dot(left, left);
+        for (std::size_t k = 0; k < length; ++k)
+            direction[k] = left[k] + next / squares * direction[k];
+        squares = next;
     }
     return x;
 }
@@ -86,12 +90,27 @@ Eigen::VectorXd fittedTaps(const Eigen::VectorXcd& response, const std::vector<b
 
 }  // namespace
 
+SweepBand knownBand(const ExponentialSweep& sweep, const HammersteinSweepOptions& options)
+{
+    const auto& band = sweep.options();
+    const double lasted = band.fadeOut + 2.0 * options.edge + static_cast<double>(options.length) / band.sampleRate;
+    return {band.bandLow * std::exp(band.fadeIn / sweep.rate()), band.bandHigh * std::exp(-lasted / sweep.rate())};
+}
+
+double sweepWindow(std::size_t at, std::size_t length, std::size_t edge)
+{
+    const auto inside = std::min(at, length - 1 - at);
+    if (inside >= edge)
+        return 1.0;
+    return 0.5 - 0.5 * std::cos(std::numbers::pi * (static_cast<double>(inside) + 0.5) / static_cast<double>(edge));
+}
+
 bool HammersteinSweepOptions::isValid(std::string* reason) const
 {
     if (degree < 1 || degree > 20)
         return refuse(reason, "the degree of a parallel Hammerstein model must be 1 to 20");
-    if (length < 1 || length > 16384)
-        return refuse(reason, "the branches of a parallel Hammerstein model have 1 to 16384 taps");
+    if (length < 1 || length > 65536)
+        return refuse(reason, "the branches of a parallel Hammerstein model have 1 to 65536 taps");
     if (!(edge > 0.0 && edge <= 1.0))
         return refuse(reason, "the edge that is kept around a response must be above 0 s and at most 1 s");
     if (!(regularization > 0.0 && regularization < 1.0))
@@ -139,21 +158,20 @@ HarmonicResponses harmonicResponses(const ExponentialSweep& sweep, std::span<con
     for (std::size_t k = 0; k <= grid / 2; ++k)
         result.frequency.push_back(rate * static_cast<double>(k) / static_cast<double>(grid));
     result.value.resize(static_cast<Index>(grid / 2 + 1), N);
+    const auto h = inverseFft(H, length);
     for (int m = 1; m <= N; ++m) {
-        // Its response to sample `edge`
-        const double later = static_cast<double>(edge) / rate + sweep.advance(m);
-        auto moved = H;
-        for (std::size_t k = 1; k < moved.size(); ++k)
-            moved[k] *= std::polar(1.0, -turn * step * static_cast<double>(k) * later);
-        auto h = inverseFft(moved, length);
-        h.resize(grid);
-        for (std::size_t n = 0; n < grid; ++n)
-            h[n] *= n < kept ? window(n, kept, edge) : 0.0;
-        const auto spectrum = fft(h);
+        // Its response to sample `edge`: whole samples are moved here, the part of one in the spectrum.
+        const double later = static_cast<double>(edge) + sweep.advance(m) * rate, whole = std::floor(later);
+        const auto from = (length - static_cast<std::size_t>(whole) % length) % length;
+        std::vector<double> part(grid, 0.0);
+        for (std::size_t n = 0; n < kept; ++n)
+            part[n] = sweepWindow(n, kept, edge) * h[(from + n) % length];
+        const auto spectrum = fft(part);
         for (std::size_t k = 0; k < spectrum.size(); ++k)
-            result.value(static_cast<Index>(k), m - 1) = spectrum[k]
-                                                         * std::polar(1.0, turn * static_cast<double>(k * edge % grid)
-                                                                               / static_cast<double>(grid));
+            result.value(static_cast<Index>(k),
+                         m - 1) = spectrum[k]
+                                  * std::polar(1.0, turn * static_cast<double>(k) / static_cast<double>(grid)
+                                                        * (static_cast<double>(edge) - (later - whole)));
     }
     return result;
 }
@@ -176,9 +194,8 @@ HammersteinSweepFit identifyHammerstein(const ExponentialSweep& sweep, std::span
     const auto harmonics = harmonicResponses(sweep, output, options);
     const auto& band = sweep.options();
     const int N = options.degree;
-    const double unfaded = band.bandLow * std::exp(band.fadeIn / sweep.rate()), resolution = 1.0 / options.edge;
-    const double lasted = band.fadeOut + 2.0 * options.edge + static_cast<double>(options.length) / band.sampleRate;
-    const double high = band.bandHigh * std::exp(-lasted / sweep.rate());
+    const auto [unfaded, high] = knownBand(sweep, options);
+    const double resolution = 1.0 / options.edge;
     if (N * unfaded + 2.0 * resolution >= high)
         throw Error(Error::Kind::usage,
                     "The sweep is too narrow for its degree, or too short: where it and its harmonics are all known "

@@ -21,11 +21,20 @@ struct HammersteinSweepOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
+/// Hz, between which the answer to a sweep is known: the sweep is not faded there, and its end, which rings at all
+/// frequencies that were played shortly before, is as long away as a response lasts.
+struct SweepBand {
+    double low = 0.0, high = 0.0;
+};
+SweepBand knownBand(const ExponentialSweep&, const HammersteinSweepOptions&);
+
+/// The window under which a response is cut out: 1 inside, half cosines of `edge` samples at both ends.
+double sweepWindow(std::size_t at, std::size_t length, std::size_t edge);
+
 /// The higher harmonic frequency responses of an answer to a synchronized sweep (Novak et al. 2015). The answer is
 /// divided by the analytic spectrum,
 ///     h = F^-1[Y/X] = sum_m h_m(t + L ln m):   one response a harmonic, each at its own time,
-/// and what stands around -L ln m is cut out, moved to 0 in the frequency domain (so L ln m need not be whole samples),
-/// and transformed.
+/// and what stands around -L ln m is cut out, transformed, and moved to 0 (L ln m need not be whole samples).
 struct HarmonicResponses {
     double sampleRate = 0.0;
     std::vector<double> frequency;  ///< Hz, 0 .. fs/2 in even steps

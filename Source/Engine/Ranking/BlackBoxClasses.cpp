@@ -6,6 +6,7 @@
 #include "Engine/Fractional/MixedImpedance.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Simulation.h"
+#include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Polynomial/BlockModelFile.h"
 #include "Engine/Polynomial/BlockModelFit.h"
 #include "Engine/Polynomial/FractionalPnlssFile.h"
@@ -90,7 +91,11 @@ FittedClass fitLinearClass(const RankedTake& data, const Progress&)
 {
     const auto n = data.linear.order();
     return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); },
-            ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear), nullptr};
+            ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear),
+            toJson(NamedStateSpace {"linear",
+                                    {std::string(name(data.input.quantity))},
+                                    {std::string(name(data.output.quantity))},
+                                    data.linear})};
 }
 
 FittedClass fitFractionalClass(const RankedTake& data, const Progress&)

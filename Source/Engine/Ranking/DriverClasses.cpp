@@ -6,6 +6,7 @@
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/Simulate.h"
+#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
 
 namespace excursion {
@@ -30,7 +31,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
             throw Error(Error::Kind::data, "The physical driver does not know this channel.");
         return Eigen::Map<const Eigen::VectorXd>(channel->samples.data(), u.size());
     };
-    return {play, description.empty() ? "base alone" : description, parameters, isStable(model), nullptr};
+    return {play, description.empty() ? "base alone" : description, parameters, isStable(model), toJson(model)};
 }
 
 }  // namespace

@@ -68,7 +68,8 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
         model.parameters = fitted.parameters;
         model.document = fitted.document;
         if (!model.document.is_null())
-            model.document["stimulus"] = toJson(stimulusOf(data.records.estimation, data.take.sampleRate));
+            model.document["stimulus"] = toJson(
+                stimulusOf(data.records.estimation, data.take.measurement().sampleRate));
         model.estimationDb = errorDb(fitted, data.records.estimation);
         const auto& judges = data.records.validation.empty() ? data.records.estimation : data.records.validation;
         const auto playing = std::clock();
@@ -166,6 +167,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
         if (model.trouble.empty() && model.stable && error(model) < error(ranking.models.front()) + 0.5
             && (!chosen || model.parameters < chosen->parameters))
             chosen = &model;
+    ranking.best = chosen ? chosen->name : "";
     ranking.sentence = chosen ? "\"" + chosen->name + "\" explains most with " + std::to_string(chosen->parameters)
                                     + " parameters."
                               : "No stable model explains the take best.";

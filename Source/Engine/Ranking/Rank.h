@@ -49,6 +49,7 @@ struct Ranking {
     std::optional<double> noiseDb;
     /// by ascending error on the validation records (without any: on the estimation records), troubled ones last
     std::vector<RankedModel> models;
+    std::string best;      ///< the class that explains most; empty: none is stable
     std::string sentence;  ///< which one explains most, and what its peers lack
 };
 
