@@ -68,7 +68,7 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
         model.parameters = fitted.parameters;
         model.document = fitted.document;
         if (!model.document.is_null())
-            model.document["stimulus"] = toJson(stimulusOf(data.records.estimation, data.take.sampleRate));
+            model.document["stimulus"] = toJson(stimulusOf(data.records.estimation, data.take.measurement().sampleRate));
         model.estimationDb = errorDb(fitted, data.records.estimation);
         const auto& judges = data.records.validation.empty() ? data.records.estimation : data.records.validation;
         const auto playing = std::clock();
