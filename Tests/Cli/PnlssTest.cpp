@@ -62,7 +62,7 @@ TEST_CASE("pnlss of one record arrives at its noise or says that it did not, and
         const double u = normal();
         csv << t / 1000.0 << ',' << u << ',' << x + 6e-4 * normal() << '\n';
         const double next = x + 0.3 * v;
-        v = 0.95 * v - 0.3 * x - 0.1 * x * x * x + 0.2 * u;
+        v = 0.8 * v - 0.3 * x - 0.05 * x * x * x + 0.2 * u;
         x = next;
     }
     const auto take = (scratch / "record.csv").string(), kept = (scratch / "kept.json").string();
