@@ -13,9 +13,11 @@ namespace {
 
 constexpr float headHeight = 24.0f, sureHeight = 18.0f, gaugeWidth = 60.0f, bodyHeight = 13.5f;
 
-/// "current −28.1 → −60.2 dB": as confirmed by a refit, else as predicted.
+/// "current −28.1 → −60.2 dB (predicted)", where no refit has shown it; of one that has, the reason tells.
 juce::String fallOf(const RankedEffect& ranked, const ErrorByChannel& before)
 {
+    if (!ranked.confirmedErrorDb.empty() && !ranked.reason.empty())
+        return {};
     const auto& after = ranked.confirmedErrorDb.empty() ? ranked.predictedErrorDb : ranked.confirmedErrorDb;
     juce::StringArray parts;
     for (const auto& [quantity, error] : before)
@@ -99,7 +101,8 @@ CandidateCard::CandidateCard(const RankedEffect& ranked, const ErrorByChannel& b
       confidence_(ranked.confidence)
 {
     setTitle(title_);
-    setDescription(speaksFor() ? whole(100.0 * confidence_) + " % sure. " + fall_ + ". " + reason_
+    setDescription(speaksFor() ? whole(100.0 * confidence_) + " % sure. "
+                                     + (fall_.isEmpty() ? juce::String() : fall_ + ". ") + reason_
                                : juce::String("Takes nothing away."));
     add_.setTitle("Add " + words(effectTitle(ranked.effect)));
     add_.setTooltip("Adds this effect to the model and fits again");
@@ -111,7 +114,8 @@ juce::AttributedString CandidateCard::body() const
 {
     juce::AttributedString text;
     text.setLineSpacing(2.0f);
-    text.append(fall_ + "\n", juce::Font(13.0f), look::palette().dim);
+    if (fall_.isNotEmpty())
+        text.append(fall_ + "\n", juce::Font(13.0f), look::palette().dim);
     text.append(reason_, juce::Font(bodyHeight), look::palette().text);
     return text;
 }

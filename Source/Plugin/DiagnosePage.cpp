@@ -143,6 +143,7 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
         for (const auto& channel : ladder.rungs.front().comparison.channels) {
             falls.push_back(fallPlot(ladder, channel.quantity));
             falls.back().y.title = "error";
+            falls.back().key = falls.size() == 1;  // the same for all
         }
     }
     falls_.show(std::move(falls));
