@@ -206,9 +206,24 @@ Answer answerOf(const SweepBlocks& blocks, const Channel& channel, std::size_t l
     return answer;
 }
 
+/// Power of the fundamental that the method finds in the sweep itself, one a line: 1 but near the ends, where the
+/// window of a response smears them.
+std::vector<double> foundInSweep(const SweepBlocks& blocks, const HammersteinSweepOptions& cut)
+{
+    const auto sweep = blocks.plan.sweep(blocks.rate(), 0);
+    auto x = sweep.samples();
+    x.resize(blocks.length, 0.0);
+    const auto found = harmonicResponses(sweep, x, cut);
+    std::vector<double> power;
+    for (Index k = 0; k < found.value.rows(); ++k)
+        power.push_back(std::norm(found.value(k, 0)));
+    return power;
+}
+
 /// @param drive  null for the drive itself
+/// @param own    foundInSweep()
 HarmonicCurves curvesOf(const Answer& answer, const Answer* drive, double level, const SweepBand& band,
-                        const HarmonicOptions& options)
+                        const std::vector<double>& own, const HarmonicOptions& options)
 {
     const auto& H = answer.harmonics;
     const double step = H.frequency[1], nyquist = highestOfRate * H.sampleRate;
@@ -249,7 +264,7 @@ HarmonicCurves curvesOf(const Answer& answer, const Answer* drive, double level,
     curves.floorDb = curves.db;
     for (Index i = 0; i < rows; ++i) {
         const double f = curves.frequency[static_cast<std::size_t>(i)];
-        const double fundamental = at(power[0], f);
+        const double fundamental = at(power[0], f) / at(own, f);
         curves.fundamental.push_back(std::sqrt(fundamental) * level);
         double sum = 0.0, floors = 0.0;
         const bool heard = fundamental > seldom * (noisy ? at(noise[0], f) : 0.0);
@@ -309,6 +324,7 @@ HarmonicDistortion harmonicDistortion(const SweepTake& sweepTake, const Harmonic
     result.bandLow = band.low;
     result.bandHigh = band.high;
 
+    const auto own = foundInSweep(blocks, cut);
     const auto levels = blocks.plan.levels.size();
     std::vector<std::vector<HarmonicCurves>> byChannel(take.channels.size());
     bool noisy = true;
@@ -323,9 +339,9 @@ HarmonicDistortion harmonicDistortion(const SweepTake& sweepTake, const Harmonic
             const bool itself = &channel == &input;
             if (itself && channel.assumed)
                 continue;
-            auto curves = itself ? curvesOf(drive, nullptr, blocks.plan.levels[level], band, options)
+            auto curves = itself ? curvesOf(drive, nullptr, blocks.plan.levels[level], band, own, options)
                                  : curvesOf(answerOf(blocks, channel, level, cut), &drive, blocks.plan.levels[level],
-                                            band, options);
+                                            band, own, options);
             curves.quantity = channel.quantity;
             curves.unit = channel.unit;
             byChannel[c].push_back(std::move(curves));

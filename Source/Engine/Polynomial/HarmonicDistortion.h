@@ -46,7 +46,7 @@ struct HarmonicDistortion {
 ///     H_m(F) - H_1(F) U_m(F)/U_1(F)      at the frequency F = m f of the harmonic, where the sweep plays F,
 /// with U the harmonic responses of the voltage (or force) that was recorded: distortion of the amplifier, and what the
 /// ends of the sweep leave of the method itself. Powers are means over a pointsPerOctave-th of an octave, less the
-/// noise.
+/// noise; that of the fundamental is divided by what is found in the sweep itself, as the window smears its beginning.
 ///
 /// The noise of a line comes from the silence behind the sweeps, once a response has died away: the mean power there
 /// under the window of a response, over |fs X(F)|^2, and for a sweep that is repeated from the scatter of the repeats
