@@ -13,8 +13,8 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 
 /// The same of what `word` makes of each element.
 template <class Range, class Word>
-    requires std::invocable<Word, typename Range::const_reference>
-std::string joined(const Range& range, Word word, std::string_view between = ", ")
+requires std::invocable<Word, typename Range::const_reference> std::string joined(const Range& range, Word word,
+                                                                                  std::string_view between = ", ")
 {
     std::vector<std::string> words;
     for (const auto& element : range)
