@@ -2,8 +2,8 @@
 #include "Audio/ChooseDevice.h"
 
 #include "Engine/Document/Figures.h"
+#include "Engine/Document/Words.h"
 #include "Engine/Error.h"
-#include "Engine/Import/ColumnTitle.h"
 #include "Engine/Import/TextTable.h"
 
 #include <algorithm>

@@ -97,7 +97,7 @@ private:
     std::uint64_t shown_ = 0;           ///< version of the model that the last page shows
     bool focused_ = false;              ///< has asked for the keyboard
     int coloured_ = -1;                 ///< version of the look that the window has
-    std::shared_ptr<const Take> take_;  ///< that the history is of
+    std::shared_ptr<const PreparedTake> take_;  ///< that the history is of
     std::vector<std::string> rungs_;    ///< effects of the ladder, as the history knows it
     bool laddering_ = false;            ///< the history itself moves the ladder
 };

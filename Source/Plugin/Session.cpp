@@ -155,7 +155,7 @@ void Session::begin(PreparedTake take, const std::string& source, const std::str
     fresh->truth = truth;
     fresh->report = take.report();
     fresh->file = makeLadderFile(work.ladder(), take, source);
-    fresh->take = std::move(take);
+    fresh->take = std::make_shared<const PreparedTake>(std::move(take));
     publish(fresh);
     improvement_.emplace(std::move(work));
     if (!improvement_->take().report().fitForUse()) {

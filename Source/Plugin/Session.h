@@ -22,7 +22,7 @@ namespace excursion::plugin {
 struct Findings {
     std::string source;                ///< where the take is from, in words
     std::string truth;                 ///< what the virtual loudspeaker hides; empty for a real one
-    std::optional<PreparedTake> take;  ///< always there
+    std::shared_ptr<const PreparedTake> take;
     CheckReport report;
     LadderFile file;                               ///< without rungs until the first fit is done
     std::vector<std::vector<Waveform>> waveforms;  ///< [level][channel], of the last rung
