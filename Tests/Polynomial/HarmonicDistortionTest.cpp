@@ -208,6 +208,7 @@ TEST_CASE("Sweeps through a loudspeaker of the bench find the harmonics that ste
     const std::vector<Quantity> channels {Quantity::voltage, Quantity::current, Quantity::displacement};
     const SweepTake take {bench::play(speaker, planSweep(sweep, rate).input().samples, rate, channels), sweep};
     const auto found = harmonicDistortion(take, {.highest = 3, .pointsPerOctave = 24.0});
+    int compared = 0;
     for (const double wanted : {60.0, 120.0, 250.0}) {
         // A point of the curves, and a sine of that frequency: its harmonics by projection over whole periods
         const auto& any = found.curves.front().frequency;
@@ -241,11 +242,15 @@ TEST_CASE("Sweeps through a loudspeaker of the bench find the harmonics that ste
             for (Eigen::Index m = 0; m < 2; ++m) {
                 const double truth = 20.0 * std::log10(size[static_cast<std::size_t>(m) + 1] / size[0]);
                 INFO(name(quantity) << " " << f << " Hz, harmonic " << m + 2 << ": " << truth << " dB");
-                if (truth > -75.0)
-                    CHECK(c.db(static_cast<Eigen::Index>(i), m) == Approx(truth).margin(0.7));
+                // Near the resonance the frequency of a sweep changes while a response lasts: that is no steady sine.
+                if (truth > -75.0) {
+                    ++compared;
+                    CHECK(c.db(static_cast<Eigen::Index>(i), m) == Approx(truth).margin(1.5));
+                }
             }
         }
     }
+    CHECK(compared >= 3);
 }
 
 TEST_CASE("A parallel Hammerstein model of sweeps explains levels that it has not seen")
