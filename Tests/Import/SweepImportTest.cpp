@@ -81,7 +81,7 @@ double startError(const ImportedRecording& found, const Recorded& truth)
 }  // namespace
 
 TEST_CASE("A recording of sweeps is laid beside them to a small part of a sample, clocks and rates taken out",
-          "[import]")
+          "[import][slow]")
 {
     const auto& of = twoLevels();
     auto r = sweepRecorder({0, 1, 2});
