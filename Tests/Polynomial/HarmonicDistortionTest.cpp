@@ -19,15 +19,13 @@ using namespace excursion::test;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// y(n) = b x(n) + (1 - b) y(n-1): a low-pass with a known response.
 struct LowPass {
     double b;
 
     std::complex<double> response(double f, double rate) const
     {
-        return b / (1.0 - (1.0 - b) * std::polar(1.0, -2.0 * pi * f / rate));
+        return b / (1.0 - (1.0 - b) * std::polar(1.0, -2.0 * std::numbers::pi * f / rate));
     }
     std::vector<double> operator()(const std::vector<double>& x) const
     {
@@ -220,7 +218,8 @@ TEST_CASE("Sweeps through a loudspeaker of the bench find the harmonics that ste
         std::vector<double> u(static_cast<std::size_t>(0.7 * rate));
         for (std::size_t n = 0; n < u.size(); ++n) {
             const double t = static_cast<double>(n) / rate, fade = std::min(1.0, t / 0.05);
-            u[n] = level * std::numbers::sqrt2 * fade * fade * (3.0 - 2.0 * fade) * std::sin(2.0 * pi * f * t);
+            u[n] = level * std::numbers::sqrt2 * fade * fade * (3.0 - 2.0 * fade)
+                   * std::sin(2.0 * std::numbers::pi * f * t);
         }
         const auto steady = bench::play(speaker, u, rate, channels);
         for (const auto quantity : {Quantity::current, Quantity::displacement}) {
@@ -233,8 +232,8 @@ TEST_CASE("Sweeps through a loudspeaker of the bench find the harmonics that ste
                 for (std::size_t n = 0; n < count; ++n) {
                     const double part = static_cast<double>(n) / static_cast<double>(count);
                     const double t = static_cast<double>(from + n) / rate;
-                    sum += (0.5 - 0.5 * std::cos(2.0 * pi * part)) * y[from + n]
-                           * std::polar(1.0, -2.0 * pi * static_cast<double>(m + 1) * f * t);
+                    sum += (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * part)) * y[from + n]
+                           * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(m + 1) * f * t);
                 }
                 size[m] = std::abs(sum);
             }
