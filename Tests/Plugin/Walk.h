@@ -48,7 +48,9 @@ inline std::shared_ptr<const Findings> syntheticFindings(std::size_t rungs)
             "error falls by 27.0 dB to -55.3 dB, and the noise stands at -74.2 dB.";
     }
     Measurement take;
-    findings->take = std::make_shared<const Take>(take);
+    take.sampleRate = 48000.0;
+    take.channels.emplace_back().samples.assign(64, 0.0);
+    findings->take = std::make_shared<const PreparedTake>(take);
     findings->file.take.sampleRate = 48000.0;
     findings->file.take.seconds = 12.3;
     findings->file.take.realizations = 3;
