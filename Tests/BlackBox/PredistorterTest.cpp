@@ -138,7 +138,7 @@ TEST_CASE("Switched off, the samples come out as they are", "[predistorter]")
 TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[predistorter]")
 {
     const auto& stimulus = oneBox().box.stimulus;
-    const double bound = stimulus.peak + 1.5 * oneBox().rehearsal.correction;
+    const double bound = stimulus.peak + std::max(1.5 * oneBox().rehearsal.correction, 0.5 * stimulus.peak);
     auto u = fourTimes(playedAs(stimulus, modelRate, 16384, 6));
     const auto plain = u;
     u[5000] = std::numeric_limits<double>::quiet_NaN();

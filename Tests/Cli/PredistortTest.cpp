@@ -247,7 +247,7 @@ struct CubicModel {
 TEST_CASE("predistort turns around a model without physics, and says what that gains", "[cli][predistort]")
 {
     const Scratch scratch;
-    const auto model = (scratch / "cubic.json").string(), in = wavOf(scratch, {tone(0.05)}),
+    const auto model = (scratch / "cubic.json").string(), in = wavOf(scratch, {tone(0.1)}),
                out = (scratch / "out.wav").string();
     auto document = CubicModel().document();
     std::ofstream(model) << document.dump();
@@ -260,7 +260,7 @@ TEST_CASE("predistort turns around a model without physics, and says what that g
     const auto said = documentOf(told, "excursion-predistort");
     CHECK(said.at("gainDb").get<double>() > 25.0);
     CHECK(said.at("limited") == false);
-    auto volts = tone(1.0), bent = readWav(out).channels.at(0);
+    auto volts = tone(2.0), bent = readWav(out).channels.at(0);
     REQUIRE(bent.size() == volts.size());
     for (auto& sample : bent)
         sample *= 20.0;

@@ -9,8 +9,15 @@
 namespace excursion {
 namespace {
 
-constexpr double correctionHeadroom = 1.5;  // over the rehearsal's largest, as other phases add up otherwise
-constexpr double amountTime = 0.005;        // s, see Glide
+/// What a correction may be: more than the rehearsal's largest, as other phases add up otherwise, and what a tone of
+/// the input's peak may ask for.
+double largestCorrection(const RehearsedBox& model)
+{
+    constexpr double headroom = 1.5, ofPeak = 0.5;
+    return std::max(headroom * model.rehearsal.correction, ofPeak * model.box.stimulus.peak);
+}
+
+constexpr double amountTime = 0.005;  // s, see Glide
 
 }  // namespace
 
@@ -25,8 +32,8 @@ BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sam
       toModel_(sampleRate, model.box.linear.sampleRate),
       back_(model.box.linear.sampleRate, sampleRate),
       linearizer_(model.box, model.region, model.rest, model.rehearsal.design),
-      bound_(model.box.stimulus.peak + correctionHeadroom * model.rehearsal.correction),
-      largest_(correctionHeadroom * model.rehearsal.correction),
+      bound_(model.box.stimulus.peak + largestCorrection(model)),
+      largest_(largestCorrection(model)),
       // A correction of the time of input n is there when the model has heard its latency more, and both converters
       // what they reach ahead.
       behind_(toModel_.reach()
