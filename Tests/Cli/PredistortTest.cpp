@@ -178,7 +178,8 @@ TEST_CASE("predistort refuses what it cannot play", "[cli][bad-input]")
     auto poisoned = tone(0.4);
     poisoned[7] = std::numeric_limits<double>::infinity();
     wavOf(scratch, {poisoned});
-    refusedWith(3, {"predistort", model, in, out, "--full-scale", "20"}, scratch, "sample 7 is not a finite number");
+    refusedWith(3, {"predistort", model, in, out, "--full-scale", "20"}, scratch,
+                "sample 7 of channel 1 is not a finite number");
     auto dead = nlohmann::json::parse(bytesOf(model));
     dead["base"]["parameters"][2]["value"] = 0.0;
     wavOf(scratch, {tone(0.4)});

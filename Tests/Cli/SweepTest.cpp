@@ -101,7 +101,8 @@ TEST_CASE("A take of sweeps has harmonics, a table, a page and a model that simu
     const auto again = runProgram(scratch.folder(), {"harmonics", played, "--highest", "3", "--json"});
     REQUIRE(again.code == 0);
     // The model has the harmonics of what it was made of
-    const auto& curves = Json::parse(again.out).at("curves");
+    const auto saidAgain = Json::parse(again.out);
+    const auto& curves = saidAgain.at("curves");
     const auto &truth = loud.at("harmonics")[1].at("db"), &modelled = curves.back().at("harmonics")[1].at("db");
     int compared = 0;
     for (std::size_t i = 0; i < truth.size(); ++i)
