@@ -34,6 +34,41 @@ struct PredistortArguments {
     int oversampling = 2;
 };
 
+void publish(const Wav& bent, const std::string& out)
+{
+    DraftFile draft(out);
+    writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
+    draft.publish();
+}
+
+/// What the documents of all classes of models begin with.
+nlohmann::ordered_json documentOf(const PredistortArguments& options, const Wav& wav)
+{
+    return {{"format", "excursion-predistort"},
+            {"version", 1},
+            {"model", options.model},
+            {"input", options.input},
+            {"output", options.out},
+            {"sampleRate", wav.sampleRate},
+            {"samples", wav.channels.front().size()},
+            {"fullScale", options.fullScale},
+            {"amount", options.amount}};
+}
+
+/// @param loudest  peak that came out, in the input's unit
+void sayLoudest(const PredistortArguments& options, double loudest, Terminal& terminal)
+{
+    if (loudest > options.fullScale)
+        terminal.say("Samples go to " + significant(loudest / options.fullScale, 3)
+                     + " times full scale, which only a WAV of floating point, as this one is, can hold.");
+}
+
+void sayWritten(const PredistortArguments& options, const std::string& unit, Terminal& terminal)
+{
+    terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit
+                 + ", as in " + options.input + ".");
+}
+
 /// @param out  where what comes of it goes
 Wav readPlayable(const std::string& file, const std::string& out)
 {
@@ -138,34 +173,22 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
                         significant(meters.correction) + " " + unit, fixed(100.0 * meters.region, 0) + " %",
                         turnedDown(meters.reduction, true)});
     }
-    DraftFile draft(options.out);
-    writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
-    draft.publish();
-    terminal.document({{"format", "excursion-predistort"},
-                       {"version", 1},
-                       {"model", options.model},
-                       {"input", options.input},
-                       {"output", options.out},
-                       {"sampleRate", wav.sampleRate},
-                       {"samples", wav.channels.front().size()},
-                       {"fullScale", options.fullScale},
-                       {"amount", options.amount},
-                       {"voltageLimit", numberOrNull(controls.inputLimit)},
-                       {"modelRate", box.linear.sampleRate},
-                       {"distortionBeforeDb", gain.beforeDb},
-                       {"distortionAfterDb", gain.afterDb},
-                       {"gainDb", gain.gainDb()},
-                       {"channels", channels},
-                       {"limited", limited}});
+    publish(bent, options.out);
+    auto told = documentOf(options, wav);
+    told.update({{"voltageLimit", numberOrNull(controls.inputLimit)},
+                 {"modelRate", box.linear.sampleRate},
+                 {"distortionBeforeDb", gain.beforeDb},
+                 {"distortionAfterDb", gain.afterDb},
+                 {"gainDb", gain.gainDb()},
+                 {"channels", channels},
+                 {"limited", limited}});
+    terminal.document(told);
     terminal.table({"channel", "peak in", "out", "the correction", "of the region", "turned down"}, rows);
     if (limited)
         terminal.say("The signal goes beyond where the model was fitted (" + significant(box.stimulus.peak, 3) + " "
                      + unit + " peak, or what its states reached): there it was turned down.");
-    if (loudest > options.fullScale)
-        terminal.say("Samples go to " + significant(loudest / options.fullScale, 3)
-                     + " times full scale, which only a WAV of floating point, as this one is, can hold.");
-    terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit
-                 + ", as in " + options.input + ".");
+    sayLoudest(options, loudest, terminal);
+    sayWritten(options, unit, terminal);
     if (limited)
         terminal.answer = 1;
 }
@@ -230,26 +253,16 @@ void run(const PredistortArguments& options, Terminal& terminal)
             rows.back().push_back(turnedDown(meters.powerReduction, true));
         }
     }
-    DraftFile draft(options.out);
-    writeWav(draft.path(), bent.sampleRate, bent.channels, SampleFormat::float32);
-    draft.publish();
-
-    terminal.document({{"format", "excursion-predistort"},
-                       {"version", 1},
-                       {"model", options.model},
-                       {"input", options.input},
-                       {"output", options.out},
-                       {"sampleRate", wav.sampleRate},
-                       {"samples", wav.channels.front().size()},
-                       {"fullScale", options.fullScale},
-                       {"amount", options.amount},
-                       {"oversampling", options.oversampling},
-                       {"displacementLimit", numberOrNull(controls.displacementLimit)},
-                       {"voltageLimit", numberOrNull(controls.voltageLimit)},
-                       {"powerLimit", numberOrNull(controls.powerLimit)},
-                       {"margin", controls.margin},
-                       {"channels", channels},
-                       {"limited", limited}});
+    publish(bent, options.out);
+    auto told = documentOf(options, wav);
+    told.update({{"oversampling", options.oversampling},
+                 {"displacementLimit", numberOrNull(controls.displacementLimit)},
+                 {"voltageLimit", numberOrNull(controls.voltageLimit)},
+                 {"powerLimit", numberOrNull(controls.powerLimit)},
+                 {"margin", controls.margin},
+                 {"channels", channels},
+                 {"limited", limited}});
+    terminal.document(told);
     std::vector<std::string> heads {
         "channel", "peak in", "out", "the cone moves", "motion turned down", "voltage turned down"};
     if (options.powerLimit)
@@ -265,14 +278,11 @@ void run(const PredistortArguments& options, Terminal& terminal)
                                                              : "no limit of the voltage")
                      + (options.powerLimit ? ", " + significant(*options.powerLimit, 3) + " W" : "")
                      + "): there the signal was turned down, the lowest notes first.");
-    if (loudest > options.fullScale)
-        terminal.say("Samples go to " + significant(loudest / options.fullScale, 3)
-                     + " times full scale, which only a WAV of floating point, as this one is, can hold.");
+    sayLoudest(options, loudest, terminal);
     if (faults > 0)
         terminal.say("The predistorter had to start anew " + std::to_string(faults) + (faults == 1 ? " time" : " times")
                      + " from silence: the model is driven far beyond what it knows.");
-    terminal.say("Wrote " + options.out + ". A sample of 1.0 stands for " + significant(options.fullScale) + " " + unit
-                 + ", as in " + options.input + ".");
+    sayWritten(options, unit, terminal);
     if (limited || faults > 0)
         terminal.answer = 1;
 }
