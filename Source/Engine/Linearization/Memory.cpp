@@ -46,11 +46,10 @@ void Memory::prepareLinear(const LinearRates& linear, double sampleRate)
         byCurrent_[k] = 0.5 * (drive_[2][k] + drive_[3][k]);  // what Cubic::past makes of its end
 }
 
-/// Whether r = -diag(p) m + N, with an N that memories of their usual size hardly change while one is carried on by a
-/// step.
+/// Whether r = -diag(p) m + N, with an N by which memories of their usual size carry one on little within a step.
 bool Memory::findDriven(double sampleRate)
 {
-    constexpr double hardly = 1e-4;  // so much later the memory acts on itself, of a step
+    constexpr double little = 0.1;  // of the memory: what is foretold badly of it is ten times less wrong then
     const auto n = static_cast<Eigen::Index>(size_);
     Eigen::VectorXd m = Eigen::VectorXd::Zero(n), r(n), atRest(n);
     rates(0.0, 0.0, 0.0, m.data(), atRest.data());
@@ -71,7 +70,7 @@ bool Memory::findDriven(double sampleRate)
         rates(i, x, v, m.data(), forgotten.data());
         m = -forgotten.cwiseQuotient(A.diagonal());  // as large as this motion makes it, in the end
         rates(i, x, v, m.data(), r.data());
-        if (!(((r - A * m - forgotten) / sampleRate).array().abs() <= hardly * m.array().abs()).all())
+        if (!(((r - A * m - forgotten) / sampleRate).array().abs() <= little * m.array().abs()).all())
             return false;
     }
     const auto [decay, phi] = exponential(A, Eigen::VectorXd::Ones(n), 1.0 / sampleRate, 4);
@@ -130,14 +129,20 @@ void Memory::stepLinear(const MotionCubic& motion)
 
 void Memory::stepDriven()
 {
+    const auto& last = N_[newest_];
+    const auto& second = N_[(newest_ + 3) % 4];
+    const auto& third = N_[(newest_ + 2) % 4];
     newest_ = (newest_ + 1) % 4;
     auto& N = N_[newest_];
+    for (std::size_t k = 0; k < size_; ++k) {
+        next_[k] = 3.0 * (last[k] - second[k]) + third[k];
+        value_[k] = decay_[k] * value_[k] + weight_[0][k] * next_[k] + weight_[1][k] * last[k]
+                    + weight_[2][k] * second[k] + weight_[3][k] * third[k];
+    }
     rates(end_[0], end_[1], end_[2], value_.data(), N.data());
     for (std::size_t k = 0; k < size_; ++k) {
         N[k] -= own_[k] * value_[k];
-        value_[k] *= decay_[k];
-        for (std::size_t sample = 0; sample < 4; ++sample)
-            value_[k] += weight_[sample][k] * N_[(newest_ + 4 - sample) % 4][k];
+        value_[k] += weight_[0][k] * (N[k] - next_[k]);
     }
 }
 

@@ -14,8 +14,9 @@ namespace excursion {
 /// Carries the memory m of one effect along a given motion, dm/dt = r(m; i, x, v) with r as the effect states it, where
 /// LinearMemory does not do it. How it is stepped is found out by asking r:
 ///   - dm/dt = A m + b (i, x, v): exact for cubic motions;
-///   - dm/dt = -diag(p) m + N(i, x, v), in which m hardly changes N within a step (what is slow, like heat): exact in
-///     m, with N a cubic through its values at the latest four samples. It is asked once a step;
+///   - dm/dt = -diag(p) m + N(i, x, v, m), in which what a step changes of m changes N little: exact in -diag(p) m, with
+///     N a cubic through its values at the latest four samples. For the newest of them m is foretold with an N that
+///     is the parabola through the three before. So N is asked once a step;
 ///   - anything else: the classical Runge-Kutta method.
 class Memory {
 public:
