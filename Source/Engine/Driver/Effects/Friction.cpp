@@ -12,8 +12,8 @@ namespace {
 ///     F = -(F_c/n) sum_k g_k,   dg_k/dt = (v - |v| g_k) / r_k,   k = 1 .. n,
 /// g the share of its limit that an element carries. After a turn an element follows like a spring of F_c/(n r_k) and
 /// slips when the cone has gone a few r_k. The reaches lie evenly on a logarithmic axis, over `spread` octaves around
-/// `reach`; several elements approach the distributed slip of Iwan's model (1966). |v| is rounded within a hundredth of
-/// the visited velocity,
+/// `reach`; several elements approach the distributed slip of Iwan's model (1966). |v| is rounded within a thousandth
+/// of the visited velocity (a hundredth moves the motion by -78 dB),
 ///     |v| = V s^2 (3 - 3 s + s^2),  s = |v|/V < 1,
 /// where it has two continuous derivatives and vanishes at rest, so that a cone that stands still forgets nothing.
 class Friction final : public EffectOf<Friction> {
@@ -79,7 +79,7 @@ public:
 
 private:
     static constexpr int elements = 4;
-    static constexpr double rounding = 0.01;  // of the visited velocity
+    static constexpr double rounding = 0.001;  // of the visited velocity
 
     template <class T>
     static T size(const T& v, double width)
