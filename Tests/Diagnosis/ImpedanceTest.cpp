@@ -22,7 +22,7 @@ Complex parallel(Complex a, Complex b) { return a * b / (a + b); }
 /// A woofer as its parts are: a coil with a chain of resistors beside inductors, a cone on a suspension, and what its
 /// motion feels besides.
 struct Woofer {
-    bool port = false, part = false;
+    bool port = false, part = false, leak = false;
 
     Complex impedance(double frequency) const
     {
@@ -37,6 +37,10 @@ struct Woofer {
             mechanical += parallel(stiffness / s, parallel(s * mass + 0.04 * std::sqrt(stiffness * mass),
                                                            12.0 * std::sqrt(stiffness * mass)));
         }
+        if (leak) {  // a closed box, whose air gets out below 7 Hz through a narrow tube
+            const double stiffness = 4000.0, mass = stiffness / std::pow(2.0 * std::numbers::pi * 7.0, 2);
+            mechanical += parallel(stiffness / s, s * mass + std::sqrt(stiffness * mass) / 0.8);
+        }
         if (part) {  // a surround of 0.9 g that swings at 640 Hz
             const double mass = 9e-4, w = 2.0 * std::numbers::pi * 640.0;
             mechanical += parallel(s * mass, mass * w * w / s + mass * w / 5.0);
@@ -44,11 +48,11 @@ struct Woofer {
         return coil + Bl * Bl / mechanical;
     }
 
-    Spectra measured() const
+    Spectra measured(double lowest = 10.0) const
     {
         Spectra spectra;
         std::vector<Complex> ohms;
-        for (double f = 10.0; f < 20000.0; f *= std::exp2(1.0 / 24.0)) {
+        for (double f = lowest; f < 20000.0; f *= std::exp2(1.0 / 24.0)) {
             spectra.frequency.push_back(f);
             const auto n = static_cast<double>(ohms.size());
             // as rough as measured curves are
@@ -86,4 +90,18 @@ TEST_CASE("A port and a part that swings are found together, and neither where i
         if (woofer.port)
             CHECK(ladder.model().find("vented-box")->parameters[1].value == Approx(33.0).epsilon(0.01));
     }
+}
+
+TEST_CASE("Air that leaks out of a closed box is told from a suspension that creeps", "[improve][responses]")
+{
+    const auto ladder = improve(Woofer {.leak = true}.measured(3.0));
+    CAPTURE(ladder.model().effectIds());
+    CHECK(errorDb(ladder.rungs.back()) < -46.0);
+    REQUIRE(ladder.model().has("vented-box"));
+    CHECK_FALSE(ladder.model().has("creep"));
+    CHECK_FALSE(ladder.model().has("side-resonance"));
+    // Kb/K and fB: the impedance alone does not tell the mass, nor so the newtons
+    const auto& box = *ladder.model().find("vented-box");
+    CHECK(box.parameters[0].value / ladder.model().baseParameter("K").value == Approx(4000.0 / 1100.0).epsilon(0.1));
+    CHECK(box.parameters[1].value == Approx(7.0).epsilon(0.05));
 }

@@ -72,6 +72,13 @@ public:
         return result;
     }
 
+    /// No suspension relaxes to a third of its stiffness: air that leaks out of a closed box does.
+    bool plausible(const Extent&, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
+    {
+        constexpr double most = 2.0;
+        return own[0].value < most * parameterNamed(base, "K").value;
+    }
+
     /// By how much the stiffness rises over the lowest decade of the band: the rate of creep.
     std::vector<Figure> summary(const Extent& e, const double* parameters) const override
     {

@@ -24,24 +24,26 @@ namespace {
 /// notch is at fB sqrt(r/(1 + r)). The microphone hears the cone, and the port as much as its place lets it: `port` is
 /// 1 far away, less close to the cone. The memory is w, dy/dt and y, and does not depend on Kb, which is a strength.
 /// The radiator's spring yields below a thousandth of the lowest frequency of interest, so that nothing integrates for
-/// ever. A closed box adds to K alone.
+/// ever. A closed box adds to K alone, until its air gets out through a leak, which is a port that does not ring: what
+/// is left below its tuning is the suspension alone.
 class VentedBox final : public EffectOf<VentedBox>, public NetworkParts {
 public:
     std::string id() const override { return "vented-box"; }
-    std::string title() const override { return "Vented box or passive radiator"; }
+    std::string title() const override { return "Box with a port, a passive radiator or a leak"; }
     std::string physics() const override
     {
         return "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a "
-               "second resonance.";
+               "second resonance. Through a leak a closed box loses its spring at the lowest frequencies.";
     }
     std::string symptoms() const override
     {
         return "two humps in the impedance with a dip between them, where the cone stands nearly still and the port "
-               "moves";
+               "moves; of a leak, motion that grows far below the resonance";
     }
     std::string remedy() const override
     {
-        return "It is no fault; box volume and port length set where the dip is, a leak or stuffing lowers the humps.";
+        return "It is no fault; box volume and port length set where the dip is, a leak or stuffing lowers the humps. "
+               "Where the box should be closed, seal it.";
     }
     bool electrical() const override { return false; }
     bool linear() const override { return true; }
@@ -63,29 +65,43 @@ public:
     std::vector<std::vector<double>> starts(const Extent& e) const override
     {
         std::vector<std::vector<double>> starts;
+        for (const double octaves : {0.5, 1.5})  // a leak
+            starts.push_back({0.0, std::exp2(octaves) * e.lowFrequency, 1.0, someLoss, 0.0, 0.0, 0.0});
         for (double f = 1.5 * e.lowFrequency;
-             f < 100.0 * e.lowFrequency && (starts.empty() || f < 0.1 * e.highFrequency); f *= 1.5)
+             f < 100.0 * e.lowFrequency && (starts.size() < 3 || f < 0.1 * e.highFrequency); f *= 1.5)
             starts.push_back({0.0, f, someLoss, someLoss, 0.0, 0.0, 0.0});
         return starts;
     }
-    /// Without a port the cone would resonate at the tuning or above, where a fit of one hump to two does not look.
+    /// Without a port the cone would resonate at the tuning or above, where a fit of one hump to two does not look;
+    /// without the air of a closed box well above its leak.
     std::vector<double> restarts(const Extent&, const std::vector<double>& start) const override
     {
+        if (start[2] > someLoss)
+            return {2.0 * start[1], 6.0 * start[1]};
         return {start[1], 1.5 * start[1]};
     }
     /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air
     /// or the radiator is not much lighter than the cone, and the air in the box not much softer than the suspension:
-    /// what is found in real boxes lies well inside. Something lighter is a part that swings by itself.
+    /// what is found in real boxes lies well inside. Something lighter is a part that swings by itself. A leak does not
+    /// ring, far below the resonance of cone and box, whose air is stiffer than the suspension: a weaker relaxation is
+    /// rather one of the suspension.
     bool plausible(const Extent& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.16, highestTuning = 4.0;
-        const double mass = own[0].value * std::pow((1.0 + own[5].value) / (2.0 * std::numbers::pi * own[1].value), 2);
-        return own[1].value < highestTuning * resonanceOf(base)
-               && own[2].value + own[3].value + own[4].value < 1.0 / leastQuality
-               && own[0].value > leastStiffness * parameterNamed(base, "K").value
-               && mass > leastMass * parameterNamed(base, "m").value && own[1].value > e.lowFrequency
-               && own[1].value < e.highFrequency;
+        constexpr double leastLeakQuality = 0.4, leastLeakStiffness = 2.0, lowestLeak = 0.5, highestLeak = 0.125;
+        const double K = parameterNamed(base, "K").value, m = parameterNamed(base, "m").value, tuning = own[1].value;
+        const double turn = 2.0 * std::numbers::pi,
+                     mass = own[0].value * std::pow((1.0 + own[5].value) / (turn * tuning), 2);
+        const double losses = own[2].value + own[3].value + own[4].value;
+        if (tuning > e.highFrequency || mass < leastMass * m)
+            return false;
+        if (losses < 1.0 / leastQuality)
+            return tuning > e.lowFrequency && tuning < highestTuning * resonanceOf(base)
+                   && own[0].value > leastStiffness * K;
+        return losses < 1.0 / leastLeakQuality && tuning > lowestLeak * e.lowFrequency
+               && tuning < highestLeak * std::sqrt((K + own[0].value) / m) / turn
+               && own[0].value > leastLeakStiffness * K;
     }
 
     int memorySize(const Extent&) const override { return 3; }
