@@ -5,8 +5,11 @@
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Validity.h"
 
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace excursion {
@@ -18,38 +21,62 @@ using Eigen::VectorXd;
 
 constexpr double hopeless = 1e3;  // times the cost: no bend makes up for that
 
-/// The damped least squares of one iteration.
+/// The damped least squares of one iteration, by singular values; where none is cut off, by a factor a damping, which
+/// costs a third.
 class DampedSystem {
 public:
     /// @param R  of [J, error]
     DampedSystem(const MatrixXd& R, const SearchOptions& options)
-        : svd_(R.topLeftCorner(R.cols() - 1, R.cols() - 1)),
-          s_((svd_.s.array() > options.rankTolerance * svd_.s[0]).select(svd_.s, 0.0)),
-          gradient_(s_.cwiseProduct(svd_.U.transpose() * R.col(R.cols() - 1).head(R.cols() - 1))),
-          unit_(options.damping.ofLargest ? s_[0] * s_[0] : 1.0)
+        : J_(R.topLeftCorner(R.cols() - 1, R.cols() - 1)), error_(R.col(R.cols() - 1).head(R.cols() - 1))
     {
+        if (options.rankTolerance == 0.0 && !options.damping.ofLargest) {
+            scale_ = lengthsInverse(J_);
+            return;
+        }
+        svd_.emplace(J_);
+        scale_ = svd_->scale;
+        s_ = (svd_->s.array() > options.rankTolerance * svd_->s[0]).select(svd_->s, 0.0);
+        unit_ = options.damping.ofLargest ? s_[0] : 1.0;
     }
 
-    VectorXd step(double damping) const { return solve(gradient_, damping); }
+    VectorXd step(double damping) const
+    {
+        return svd_ ? truncated(s_.cwiseProduct(svd_->U.transpose() * error_), damping) : stacked(damping);
+    }
 
     VectorXd acceleration(const VectorXd& curvature, double damping) const
     {
-        return solve(svd_.V.transpose() * svd_.scale.cwiseProduct(curvature), damping);
+        const ScaledSvd& svd = *svd_;
+        return truncated(svd.V.transpose() * svd.scale.cwiseProduct(curvature), damping);
     }
 
+    bool bends() const { return svd_.has_value(); }
+
 private:
-    VectorXd solve(const VectorXd& along, double damping) const
+    VectorXd truncated(const VectorXd& along, double damping) const
     {
         VectorXd y = VectorXd::Zero(s_.size());
         for (Index k = 0; k < s_.size(); ++k)
             if (s_[k] > 0.0)
-                y[k] = along[k] / (s_[k] * s_[k] + damping * unit_);
-        return svd_.scale.cwiseProduct(svd_.V * y);
+                y[k] = along[k] / (s_[k] * s_[k] + damping * unit_ * unit_);
+        return scale_.cwiseProduct(svd_->V * y);
     }
 
-    ScaledSvd svd_;
-    VectorXd s_, gradient_;
-    double unit_;
+    /// By the triangular factor of [J S; damping^1/2 I].
+    VectorXd stacked(double damping) const
+    {
+        const auto n = J_.cols();
+        MatrixXd system(2 * n, n);
+        system << J_ * scale_.asDiagonal(), std::sqrt(damping) * MatrixXd::Identity(n, n);
+        VectorXd right = VectorXd::Zero(2 * n);
+        right.head(n) = error_;
+        return scale_.cwiseProduct(Eigen::HouseholderQR<MatrixXd>(system).solve(right));
+    }
+
+    MatrixXd J_;
+    VectorXd error_, scale_, s_;
+    std::optional<ScaledSvd> svd_;
+    double unit_ = 1.0;
 };
 
 struct Trial {
@@ -71,12 +98,12 @@ Trial straightOrBent(SearchProblem& problem, const VectorXd& from, double cost, 
 {
     const VectorXd step = system.step(damping);
     auto straight = tried(problem, from, step);
-    if (!(straight.cost <= hopeless * cost))
+    if (!(straight.cost <= hopeless * cost) || !system.bends())
         return straight;
     const VectorXd curvature = problem.curvature(from, step);
     if (curvature.size() == 0)
         return straight;
-    auto bent = tried(problem, from, step + 0.5 * system.acceleration(curvature, damping));
+    auto bent = tried(problem, straight.values, 0.5 * system.acceleration(curvature, damping));
     return bent.cost < straight.cost ? bent : straight;
 }
 

@@ -19,8 +19,12 @@ ThinSvd leftSvd(const Eigen::MatrixXd& A)
     return {svd.matrixU(), svd.singularValues(), {}};
 }
 
-ScaledSvd::ScaledSvd(const Eigen::MatrixXd& A)
-    : scale(A.colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; }))
+Eigen::VectorXd lengthsInverse(const Eigen::MatrixXd& A)
+{
+    return A.colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+}
+
+ScaledSvd::ScaledSvd(const Eigen::MatrixXd& A) : scale(lengthsInverse(A))
 {
     auto svd = thinSvd(A * scale.asDiagonal());
     U = std::move(svd.U);
