@@ -33,7 +33,7 @@ public:
     /// straight.
     virtual Eigen::VectorXd curvature(const Eigen::VectorXd& /*values*/, const Eigen::VectorXd& /*step*/) { return {}; }
 
-    /// Where a step leads.
+    /// Where a step leads. A bent step is two of them, one after the other.
     virtual Eigen::VectorXd moved(const Eigen::VectorXd& values, const Eigen::VectorXd& step) { return values + step; }
 };
 
@@ -45,7 +45,8 @@ struct Damping {
     double rise = 3.1622776601683795;  ///< by which it rises with one that is refused
     double least = 1e-26, most = 1e6;
     int attempts = 64;  ///< in an iteration
-    /// relative to the square of the largest singular value of the scaled J; else to 1
+    /// relative to the square of the largest singular value of the scaled J; else to 1, and where no singular value is
+    /// cut off either, steps go straight and no singular values are computed
     bool ofLargest = true;
 
     /// Falls a thousandfold: for errors of simulations, see search().
