@@ -2,9 +2,9 @@
 // One Levenberg-Marquardt iteration of a PNLSS model of order 3 and degree 3 (136 parameters, 16384 samples): the
 // Jacobian and the factorization, beside the same recursion in NumPy where python3-numpy is at hand, and beside plain
 // loops, one parameter after the other; and the kernel of the Jacobian beside what the core can do at most.
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Polynomial/Lanes.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Polynomial/Recursion.h"
+#include "Engine/Polynomial/SensitivityKernels.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -163,7 +163,7 @@ double peak()
 /// The kernel alone: three states, one output, eight parameters side by side through a stretch, in GFlop/s.
 double kernel()
 {
-    using namespace lanes;
+    using namespace kernels;
     constexpr int passes = 2000;
     const MatrixXd MG = 0.3 * MatrixXd::Random(pitch, 12), r = MatrixXd::Random(abreast, stretch);
     MatrixXd X = MatrixXd::Zero(abreast, 3), next = X, J(abreast, stretch);

@@ -35,7 +35,7 @@ int main()
     options.order = 3;
     const auto result = identify(frequencyDataOf(admittance), options);
     std::cout << "error " << result.errorDb << " dB, " << (result.stable ? "stable" : "not stable") << "; "
-              << result.reason << "\n";
+              << result.refinement.message << "\n";
 
     // The zeros of the admittance are the poles of the impedance: 0, and the mechanical resonance.
     for (const auto zero : zeros(result.model)) {

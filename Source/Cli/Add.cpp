@@ -48,8 +48,8 @@ Added addTo(const Model& model, const Effect& effect, const Record& record, cons
     result.model = model;
     tryEffect(result.model, record, effect, {}, progress.part(0.05, 0.5));
     result.fit = refine(result.model, record, {}, progress.part(0.5, 0.95));
-    if (!result.fit.usable)
-        throw Error(Error::Kind::numerical, "The fit failed: " + result.fit.reason + ".");
+    if (!result.fit.usable())
+        throw Error(Error::Kind::numerical, "The fit failed: " + result.fit.message + ".");
     result.after = compare(result.model, record, {result.fit.substeps, false}, progress.part(0.95, 1.0));
     return result;
 }

@@ -61,12 +61,12 @@ Json json(const OrderSweepEntry& entry)
     Json object {{"order", entry.order},
                  {"errorDb", entry.found.errorDb},
                  {"weightedErrorDb", decibelsOf(entry.found.cost)},
-                 {"likelihood", numberOrNull(entry.found.likelihood)},
+                 {"likelihood", numberOrNull(entry.found.chiSquared)},
                  {"mdl", entry.mdl},
                  {"validationDb", numberOrNull(entry.validationDb.value_or(std::numeric_limits<double>::quiet_NaN()))},
                  {"stable", entry.found.stable},
                  {"start", entry.found.start},
-                 {"stopped", entry.found.reason}};
+                 {"stopped", entry.found.refinement.message}};
     return object;
 }
 
@@ -108,18 +108,18 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
                         fixed(e.found.sectorMargin, 3), e.found.start});
         Json curve = Json::array();
         for (const auto& point : e.found.curve)
-            curve.push_back(Json::array({point.alpha, point.likelihood}));
+            curve.push_back(Json::array({point.alpha, point.chiSquared}));
         orders.push_back({{"order", e.order},
                           {"alpha", e.found.model.alpha},
                           {"alphaDeviation", numberOrNull(e.found.alphaDeviation)},
                           {"errorDb", e.found.errorDb},
                           {"weightedErrorDb", decibelsOf(e.found.cost)},
-                          {"likelihood", numberOrNull(e.found.likelihood)},
+                          {"likelihood", numberOrNull(e.found.chiSquared)},
                           {"mdl", e.mdl},
                           {"sectorMargin", numberOrNull(e.found.sectorMargin)},
                           {"stable", e.found.stable},
                           {"start", e.found.start},
-                          {"stopped", e.found.reason},
+                          {"stopped", e.found.refinement.message},
                           {"warning", e.found.warning},
                           {"curve", std::move(curve)}});
     }
@@ -175,14 +175,14 @@ void runMixed(const IdentifyArguments& options, const OpenResponse& open, const 
         document[names[k][0]] = {{"value", value}, {"deviation", numberOrNull(deviation)}, {"unit", names[k][2]}};
     }
     document["errorDb"] = fit.errorDb;
-    document["likelihood"] = numberOrNull(fit.likelihood);
-    document["converged"] = fit.converged;
-    document["stopped"] = fit.reason;
+    document["likelihood"] = numberOrNull(fit.chiSquared);
+    document["converged"] = fit.converged();
+    document["stopped"] = fit.message;
     terminal.say("impedance, " + std::to_string(data.lines())
                  + " lines: R + L s^alpha + K s/(s^2 + w0/Q s + w0^2), error " + fixed(fit.errorDb, 1) + " dB");
     terminal.table({"parameter", "value", "standard error", "unit"}, rows);
     terminal.document(document);
-    if (!fit.converged)
+    if (!fit.converged())
         terminal.answer = 1;
 }
 

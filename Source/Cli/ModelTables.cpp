@@ -163,9 +163,9 @@ nlohmann::ordered_json modelJson(const Model& model, const Comparison& compariso
                                            {"value", figure.value},
                                            {"unit", figure.unit},
                                            {"standardError", numberOrNull(figure.standardError)}});
-    document["fit"] = {{"converged", fit.converged},
+    document["fit"] = {{"converged", fit.converged()},
                        {"iterations", fit.iterations},
-                       {"reason", fit.reason},
+                       {"reason", fit.message},
                        {"substeps", fit.substeps}};
     return document;
 }

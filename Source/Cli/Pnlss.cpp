@@ -124,7 +124,7 @@ void run(PnlssArguments options, Terminal& terminal)
 
     if (options.model.empty())
         terminal.say((options.start.empty() ? "linear part alone: " : "start: ") + errorText(outcome.startDb) + " dB; "
-                     + std::to_string(outcome.iterations) + " iterations: " + outcome.reason + ".");
+                     + std::to_string(outcome.search.iterations) + " iterations: " + outcome.search.message + ".");
     if (!outcome.alpha.empty())
         terminal.say("alpha " + outcome.alpha);
     const bool validated = !data.records.validation.empty();
@@ -156,8 +156,8 @@ void run(PnlssArguments options, Terminal& terminal)
     document["noiseFrom"] = arrival.noiseDb ? Json(arrival.noiseFrom) : Json();
     document["arrived"] = arrival.arrived ? Json(*arrival.arrived) : Json();
     document["advice"] = arrival.advice.empty() ? Json() : Json(arrival.advice);
-    document["iterations"] = outcome.iterations;
-    document["stopped"] = outcome.reason;
+    document["iterations"] = outcome.search.iterations;
+    document["stopped"] = options.model.empty() ? outcome.search.message : "a model that was kept";
     document["stable"] = outcome.stable;
     document["history"] = numbersOrNulls(outcome.history);
     document["laws"] = found ? Json {{"effects", found->effects},
@@ -208,7 +208,7 @@ Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const Pn
                            : ".");
     const auto more = options.mask != "full" ? std::string(", --mask full") : std::string();
     told.advice = "Try "
-                  + (options.model.empty() && outcome.reason == "the largest number of iterations was reached"
+                  + (options.model.empty() && outcome.search.termination == Termination::maximumIterations
                          ? "--iterations " + std::to_string(4 * options.iterations) + ", "
                          : std::string())
                   + (outcome.alpha.empty() ? "--start with a model of identify or of another take, " : "")
@@ -253,9 +253,8 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
             relativeErrorDb(starts[0].model, validation.empty() ? estimation : validation, starts[0].initialStates),
             fit.estimationDb,
             fit.validationDb,
-            fit.iterations,
             fit.stable,
-            fit.reason,
+            fit,
             fit.history,
             "",
             {},

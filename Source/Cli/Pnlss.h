@@ -28,9 +28,8 @@ struct PnlssArguments {
 struct PnlssOutcome {
     double startDb = 0.0;  ///< validation error of the linear part alone; not of a model that was kept
     double estimationDb = 0.0, validationDb = 0.0;
-    int iterations = 0;
     bool stable = false;
-    std::string reason = "a model that was kept";
+    SearchSummary search;  ///< not of a model that was kept
     std::vector<double> history;
     std::string alpha;                                                  ///< in words; empty for integer order
     nlohmann::ordered_json model;                                       ///< its document

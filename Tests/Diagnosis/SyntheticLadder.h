@@ -127,9 +127,8 @@ inline LadderFile syntheticLadder()
         Rung rung;
         rung.comparison = syntheticComparison(k);
         rung.model = syntheticModel(k);
-        rung.fit.usable = rung.fit.converged = true;
+        rung.fit.end(Termination::costSettled);
         rung.fit.iterations = 7;
-        rung.fit.reason = "the cost no longer falls";
         rung.diagnosis.error = errorByChannel(rung.comparison);
         rung.diagnosis.remainder = remainderOf(rung.comparison);
         rung.diagnosis.verdict = k < 3 ? Verdict::missingEffect : Verdict::complete;

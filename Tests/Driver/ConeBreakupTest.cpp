@@ -75,8 +75,8 @@ Model found(const std::vector<ResponseTarget>& targets)
 {
     auto model = midbass();
     model.path.parameters[1].value *= 1.01;
-    REQUIRE(fitResponse(model, targets, {60, 1e-8}).usable);
-    REQUIRE(addByResponse(model, effectNamed("cone-breakup"), targets).usable);
+    REQUIRE(fitResponse(model, targets, {60, 1e-8}).usable());
+    REQUIRE(addByResponse(model, effectNamed("cone-breakup"), targets).usable());
     return model;
 }
 

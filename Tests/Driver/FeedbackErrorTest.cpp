@@ -147,7 +147,7 @@ TEST_CASE("Several laws are found at once from nothing", "[fed][slow]")
     options.fed = true;
     const auto linear = sumOfFinite(outputError(model, record, sections, {}, {}));
     const auto summary = fit(model, record, sections, options);
-    INFO(summary.reason << ", " << summary.costPerResidual);
+    INFO(summary.message << ", " << summary.costPerResidual);
     const auto simulated = sumOfFinite(outputError(model, record, sections, {}, {}));
     CHECK(linear.cost > 1e4 * linear.rows);
     CHECK(simulated.cost < 2.0 * simulated.rows);

@@ -57,9 +57,9 @@ TEST_CASE("The driver's parameters come back within their errors from a noisy ta
     auto setup = smallSetup();
     setup.seed = 2;
     const auto [model, summary] = fitLinear(bench::measure(bench::Loudspeaker {}, setup));
-    INFO(summary.reason);
-    CHECK(summary.usable);
-    CHECK(summary.converged);
+    INFO(summary.message);
+    CHECK(summary.usable());
+    CHECK(summary.converged());
     CHECK(summary.costPerResidual == Approx(1.0).margin(0.15));
     for (const auto& [name, value] : truths()) {
         const auto& p = model.baseParameter(name);
@@ -165,7 +165,7 @@ TEST_CASE("A law of the bench comes back as the law of the effect", "[fit][slow]
     fit(model, record, estimationSections(record));
     model = withEffect(model, effectNamed("force-factor"), visitedExtent(model, record));
     const auto summary = fit(model, record, estimationSections(record));
-    INFO(summary.reason);
+    INFO(summary.message);
     CHECK(summary.costPerResidual == Approx(1.0).margin(0.25));
     const auto law = laws(model).front();
     int points = 0, inside = 0;
@@ -193,7 +193,7 @@ TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][s
     model = withEffect(withEffect(model, effectNamed("eddy-currents"), extent, 1), effectNamed("inductance-position"),
                        extent);
     const auto with = fit(model, record, estimationSections(record));
-    INFO(with.reason);
+    INFO(with.message);
     auto fixed = model;
     for (auto& p : fixed.components.back().parameters)
         if (!p.strength) {
@@ -221,15 +221,15 @@ TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own
     const auto sections = estimationSections(record);
     FitOptions fed;
     fed.fed = true;
-    REQUIRE(fit(model, record, sections, fed).usable);
+    REQUIRE(fit(model, record, sections, fed).usable());
 
     auto own = model, borrowed = model;
     FitOptions options;
     const auto exact = fit(own, record, sections, options);
     options.fedGradient = true;
     const auto quick = fit(borrowed, record, sections, options);
-    REQUIRE(exact.usable);
-    REQUIRE(quick.usable);
+    REQUIRE(exact.usable());
+    REQUIRE(quick.usable());
     CHECK(exact.onlyNoise);
     CHECK(quick.costPerResidual == Approx(exact.costPerResidual).epsilon(1e-3));
     for (const char* name : {"Re", "Bl", "m", "K"}) {

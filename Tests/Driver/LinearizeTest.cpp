@@ -247,7 +247,7 @@ TEST_CASE("The eddy currents follow a chain of few resistors and inductors that 
     model.baseParameter("Bl").value = 1e-6;
     for (const char* held : {"Bl", "m", "Rms", "K"})
         model.baseParameter(held).free = false;
-    REQUIRE(addByResponse(model, effectNamed("eddy-currents"), {target}).usable);
+    REQUIRE(addByResponse(model, effectNamed("eddy-currents"), {target}).usable());
     INFO("error " << responseErrorDb(model, target) << " dB");
     CHECK(responseErrorDb(model, target) < -65.0);
     const auto figures = figuresOf(model, 1);

@@ -66,7 +66,7 @@ TEST_CASE("As many parts are found in an impedance as there are", "[effects]")
         INFO(parts.size() << " parts");
         const std::vector targets {impedanceOf(with(parts))};
         auto model = startModel(targets, true, {});
-        REQUIRE(addByResponse(model, effectNamed("side-resonance"), targets).usable);
+        REQUIRE(addByResponse(model, effectNamed("side-resonance"), targets).usable());
         CHECK(isSeen(model, 1));
         CHECK(responseErrorDb(model, targets.front()) < -70.0);
         const auto& p = model.components.back().parameters;

@@ -2,12 +2,12 @@
 // A circuit may stand for a driver, and a file may be in the wrong unit: numbers of any size mean the same.
 #include "Driver/EffectBench.h"
 
-#include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/FitResponse.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/ModelFile.h"
 #include "Engine/Driver/Simulate.h"
-#include "Engine/Driver/StateUnits.h"
+#include "Engine/Numerics/Exponential.h"
+#include "Engine/Numerics/StateUnits.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

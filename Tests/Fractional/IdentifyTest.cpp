@@ -145,7 +145,7 @@ TEST_CASE("The standard errors of a mixed-order impedance are the spread of its 
         auto data = responseOf(lines, [](double f) { return driver.at(f); });
         addNoise(data, 0.01, normal);
         const auto fit = fitMixedImpedance(data);
-        REQUIRE(fit.converged);
+        REQUIRE(fit.converged());
         for (std::size_t j = 0; j < square.size(); ++j)
             square[j] += std::pow((fit.model.values()[j] - driver.values()[j]) / fit.deviation.values()[j], 2) / draws;
     }
@@ -184,9 +184,9 @@ TEST_CASE("The fixed problem: an impedance with R + L s^1/2, at the noise")
     };
 
     const auto mixed = fitMixedImpedance(data);
-    CHECK(mixed.converged);
+    CHECK(mixed.converged());
     CHECK(mixed.errorDb < -39.6);  // the noise floor
-    CHECK(mixed.likelihood == Approx(400.0).margin(60.0));
+    CHECK(mixed.chiSquared == Approx(400.0).margin(60.0));
     CHECK(std::abs(mixed.model.alpha - 0.5) < 2.0 * mixed.deviation.alpha);
     CHECK(mixed.deviation.alpha < 2e-3);
     CHECK(2.0 * distanceToTruth([&](double f) { return mixed.model.at(f); }) < 22.5);  // 99.9 % of chi^2 of 6

@@ -53,9 +53,9 @@ TEST_CASE("The delay of exact data is found to many digits, whichever way it goe
         const double lag = samples / rate;
         DelayedFitOptions options;
         const auto found = fitDelayed(late(lag, 0.0, 1), options);
-        INFO(samples << " samples: " << -found.delay * rate << ", " << found.reason << " after " << found.iterations
+        INFO(samples << " samples: " << -found.delay * rate << ", " << found.message << " after " << found.iterations
                      << ", cost " << found.fit.cost);
-        CHECK(found.converged);
+        CHECK(found.converged());
         CHECK_FALSE(found.atEdge);
         CHECK(std::abs(found.delay + lag) * rate < 1e-6);
         CHECK(isStable(found.fit.sections));
@@ -74,7 +74,7 @@ TEST_CASE("With noise the delay lies where its standard error says", "[slow]")
         options.least = -2.0 / rate;
         options.most = 1.0 / rate;
         const auto found = fitDelayed(late(lag, 0.02, static_cast<std::uint64_t>(seed)), options);
-        REQUIRE(found.converged);
+        REQUIRE(found.converged());
         const double error = (found.delay + lag) / found.deviation;
         CHECK(std::abs(error) < 4.0);
         squares += error * error;

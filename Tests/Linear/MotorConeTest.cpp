@@ -170,12 +170,12 @@ TEST_CASE("With noise the cascade is below the noise of the pressure, and the sp
             const auto acceleratedDb = errorDb(found.motor, 2, 11.0, drowned,
                                                [&](Complex s) { return s * s * l.displacement(s); });
             CAPTURE(drowned, trial, found.errorDb, pressureDb, coneDb, movedDb, fastDb, acceleratedDb,
-                    found.motorLikelihood, found.likelihood);
+                    found.motorChiSquared, found.chiSquared);
             CHECK(found.stable);
             CHECK(found.from == ConeFrom::motor);
             // 800 real values of unit variance less 4, and less 17: one standard deviation is 5 %.
-            CHECK(found.motorLikelihood == Approx(400.0).margin(80.0));
-            CHECK(found.likelihood == Approx(400.0).margin(80.0));
+            CHECK(found.motorChiSquared == Approx(400.0).margin(80.0));
+            CHECK(found.chiSquared == Approx(400.0).margin(80.0));
             CHECK(found.errorDb == Approx(-60.0).margin(1.0));  // the noise
             CHECK(found.refined);
             CHECK(pressureDb < -73.0);
@@ -206,16 +206,16 @@ TEST_CASE(
             return errorDb(found.cone, 0, 30.0, 1000.0, [&](Complex s) { return l.cone(s); });
         };
         const auto high = identifyMotorCone(data.displacement, data.pressure, orders(5, 8));
-        CAPTURE(trial, low.motorLikelihood, low.errorDb, high.motorLikelihood, high.likelihood, coneDb(low),
+        CAPTURE(trial, low.motorChiSquared, low.errorDb, high.motorChiSquared, high.chiSquared, coneDb(low),
                 coneDb(spoiled), coneDb(high));
         CHECK(low.from == ConeFrom::quotient);
-        CHECK(low.motorLikelihood > 2000.0);
+        CHECK(low.motorChiSquared > 2000.0);
         CHECK_FALSE(low.refined);
         CHECK(coneDb(low) < -25.0);
         CHECK(coneDb(low) < coneDb(spoiled) - 6.0);
         CHECK(low.errorDb > -20.0);  // the cascade has the motor's error, and says so
         CHECK(high.from == ConeFrom::motor);
-        CHECK(high.likelihood < 480.0);
+        CHECK(high.chiSquared < 480.0);
         CHECK(coneDb(high) < -70.0);
     }
 }
@@ -355,9 +355,9 @@ TEST_CASE("A cascade is refined to a minimum, from halves that are off, and refu
     const auto found = identifyMotorCone(data.displacement, data.pressure, orders(3, 8));
     const auto motor = start(found.motor, 3, data.displacement), cone = start(found.cone, 0, found.coneResponse);
     const auto refined = refineCascade(motor, cone, data.displacement, data.pressure);
-    CHECK(refined.converged);
-    CHECK(refined.likelihood == Approx(800.0).margin(115.0));  // 1600 real values: 4 standard deviations
-    CHECK(refined.likelihood == Approx(found.motorLikelihood + found.likelihood).epsilon(1e-4));
+    CHECK(refined.converged());
+    CHECK(refined.finalCost == Approx(800.0).margin(115.0));  // 1600 real values: 4 standard deviations
+    CHECK(refined.finalCost == Approx(found.motorChiSquared + found.chiSquared).epsilon(1e-4));
     const auto model = realize(refined.first.sections, refined.first.C, refined.first.D);
     CHECK(std::abs((model.C * model.A * model.B)(0, 0)) < 1e-9 * (model.C.norm() * model.A.norm() * model.B.norm()));
     auto loose = motor;

@@ -118,7 +118,7 @@ TEST_CASE("Order 20 with a chosen list of monomials is fitted down to the noise,
     options.search = PnlssSearch::plain;
     options.maximumIterations = 14;
     const auto fit = fitPnlss(start, {estimation}, {validation}, options);
-    CAPTURE(fit.iterations, fit.reason, fit.history, fit.estimationDb, fit.validationDb);
+    CAPTURE(fit.iterations, fit.message, fit.history, fit.estimationDb, fit.validationDb);
     CHECK(relativeErrorDb(start, {validation}) > -20.0);
     CHECK(fit.estimationDb == Approx(-70.0).margin(0.7));
     CHECK(fit.validationDb < -80.0);
@@ -146,7 +146,7 @@ TEST_CASE("Order 20, degree 3 without cross products runs to its end and fits", 
         options.search = PnlssSearch::plain;
         options.maximumIterations = 12;
         const auto fit = fitPnlss(start, {estimation}, {validation}, options);
-        CAPTURE(everywhere, fit.iterations, fit.reason, fit.history, fit.estimationDb, fit.validationDb);
+        CAPTURE(everywhere, fit.iterations, fit.message, fit.history, fit.estimationDb, fit.validationDb);
         CHECK(relativeErrorDb(start, {validation}) > -20.0);
         CHECK(fit.history.back() < -59.6);  // the noise is at -60 dB
         // 420 coefficients are told by 6144 samples; 882 are fitted to the noise as well, and extrapolate to the peaks

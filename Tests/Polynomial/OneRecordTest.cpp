@@ -168,7 +168,7 @@ TEST_CASE("The seed's loudspeaker arrives from one record of either rate and sig
     for (const double rate : {48000.0, 44100.0})
         for (const double strength : {1e-5, -1e-5}) {
             const auto fit = fitted(drawn(rate, strength, 21), rate, 3, 2, TermMask::statesOnly);
-            CAPTURE(rate, strength, fit.reason, fit.iterations);
+            CAPTURE(rate, strength, fit.message, fit.iterations);
             CHECK(fit.estimationDb < -120.0);
             CHECK(fit.validationDb < -110.0);
             CHECK(fit.stable);

@@ -275,7 +275,7 @@ TEST_CASE("Van der Pol's oscillator is identified, and the model says that its l
     options.maximumIterations = 60;
     for (const int degree : {3, 5}) {
         const auto fit = fitPnlss(startOn(records, T, degree), records, {}, options);
-        CAPTURE(degree, fit.estimationDb, relativeErrorDb(fit.model, validation), fit.reason);
+        CAPTURE(degree, fit.estimationDb, relativeErrorDb(fit.model, validation), fit.message);
         CHECK(fit.estimationDb < (degree == 3 ? -44.0 : -60.0));
         CHECK(relativeErrorDb(fit.model, validation) < (degree == 3 ? -42.0 : -54.0));
         CHECK_FALSE(fit.stable);

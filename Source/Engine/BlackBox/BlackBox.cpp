@@ -2,7 +2,7 @@
 #include "Engine/BlackBox/BlackBox.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/ThinSvd.h"
+#include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/BlackBox/BlackBoxStep.h"
 
-#include "Engine/Dispatch.h"
+#include "Engine/Numerics/Lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,9 @@
 namespace excursion {
 namespace {
 
-constexpr std::size_t group = 4;
 constexpr int implicitPasses = 4;
 
-std::size_t padded(Eigen::Index n) { return (static_cast<std::size_t>(n) + group - 1) / group * group; }
+std::size_t padded(Eigen::Index n) { return roundedUpToLanes(static_cast<std::size_t>(n)); }
 
 std::vector<double> paddedRow(const Eigen::MatrixXd& row, std::size_t length)
 {
@@ -26,7 +25,7 @@ std::vector<double> paddedRow(const Eigen::MatrixXd& row, std::size_t length)
 EXCURSION_DISPATCH
 void addProduct(const double* M, std::size_t rows, std::size_t columns, const double* v, double* out)
 {
-    for (std::size_t r = 0; r < rows; r += group) {
+    for (std::size_t r = 0; r < rows; r += lanes) {
         const double* m = M + r;
         Four a = *reinterpret_cast<const Four*>(out + r), b {}, c {}, d {};
         std::size_t j = 0;

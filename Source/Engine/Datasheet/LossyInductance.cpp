@@ -3,8 +3,8 @@
 
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Datasheet/ResponseCurves.h"
-#include "Engine/Driver/LeastSquares.h"
 #include "Engine/Error.h"
+#include "Engine/Numerics/LeastSquares.h"
 
 #include <algorithm>
 #include <cmath>

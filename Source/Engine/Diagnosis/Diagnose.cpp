@@ -253,7 +253,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
             progress.at(begun, "trying " + entry.effect);
             Model trial;
             const auto summary = tryFit(trial, candidate, record, sections, quick, progress.part(begun, begun + share));
-            if (summary.usable) {
+            if (summary.usable()) {
                 const auto after = compare(trial, record, {quick.substeps, false});
                 entry.model = trial;
                 entry.confirmedChi = after.chi;
@@ -311,7 +311,7 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
             candidates.push_back(effect);
     std::vector<Model> trials(candidates.size(), model);
     inParallel(trials.size(), options.fit.threads, progress, [&](std::size_t n) {
-        if (addByResponse(trials[n], *candidates[n], few).usable)
+        if (addByResponse(trials[n], *candidates[n], few).usable())
             fitResponse(trials[n], targets, {20, 1e-5});
         return true;
     });

@@ -46,8 +46,8 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
     }
     if (!effects.empty())
         last = refine(model, record, options, progress.part(0.8, 1.0));
-    if (!last.usable)
-        throw Error(Error::Kind::numerical, "The fit failed: " + last.reason + ".");
+    if (!last.usable())
+        throw Error(Error::Kind::numerical, "The fit failed: " + last.message + ".");
     if (summary)
         *summary = last;
     return model;
@@ -62,13 +62,13 @@ Model fitEffects(const Spectra& spectra, const std::vector<std::string>& effects
         const auto& effect = effectNamed(id);
         if (const auto why = whyUnseen(effect, seenIn(spectra)); !why.empty())
             throw Error(Error::Kind::usage, why);
-        if (!addByResponse(model, effect, targets).usable)
+        if (!addByResponse(model, effect, targets).usable())
             throw Error(Error::Kind::numerical,
                         "The effect \"" + id + "\" could not be fitted to the frequency response.");
     }
     const auto run = refineByResponse(model, targets);
     if (summary)
-        static_cast<LeastSquaresSummary&>(*summary) = run;
+        static_cast<SearchSummary&>(*summary) = run;
     return model;
 }
 

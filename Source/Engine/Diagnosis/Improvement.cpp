@@ -37,7 +37,7 @@ void tryOne(Model& model, const Record& record, const Effect& effect, const FitO
 
 void tryOne(Model& model, const Spectra& spectra, const Effect& effect, const FitOptions&, const Progress&)
 {
-    if (!addByResponse(model, effect, responsesOf(spectra)).usable)
+    if (!addByResponse(model, effect, responsesOf(spectra)).usable())
         throw Error(Error::Kind::numerical,
                     "The effect \"" + effect.id() + "\" could not be fitted to the frequency response.");
 }
@@ -59,7 +59,7 @@ FitSummary settle(Model& model, const Record& record, const FitOptions& options,
 FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const Progress&)
 {
     FitSummary summary;
-    static_cast<LeastSquaresSummary&>(summary) = refineByResponse(model, responsesOf(spectra));
+    static_cast<SearchSummary&>(summary) = refineByResponse(model, responsesOf(spectra));
     return summary;
 }
 
@@ -190,11 +190,11 @@ Rung Improvement::judged(Rung rung, const Progress& progress) const
     judge(progress.part(0.0, 0.5));
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
     if (const auto* record = std::get_if<Record>(&data_);
-        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable
+        record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable()
         && (rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.costPerResidual < nearNoise))) {
         auto better = rung.model;
         if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, true, progress.part(0.5, 0.7));
-            run.usable) {
+            run.usable()) {
             rung.model = std::move(better);
             rung.fit = run;
             judge(progress.part(0.7, 1.0));

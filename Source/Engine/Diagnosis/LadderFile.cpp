@@ -50,8 +50,8 @@ Json levelsJson(const Comparison& comparison)
 
 Json fitJson(const FitSummary& fit)
 {
-    return {{"usable", fit.usable},         {"converged", fit.converged},
-            {"iterations", fit.iterations}, {"reason", fit.reason},
+    return {{"usable", fit.usable()},       {"converged", fit.converged()},
+            {"iterations", fit.iterations}, {"reason", fit.message},
             {"substeps", fit.substeps},     {"costPerResidual", numberOrNull(fit.costPerResidual)}};
 }
 
@@ -59,10 +59,12 @@ FitSummary fitFrom(const JsonField& field)
 {
     constexpr int most = 1000000;
     FitSummary fit;
-    fit.usable = field.at("usable").flag();
-    fit.converged = field.at("converged").flag();
+    const bool usable = field.at("usable").flag(), converged = field.at("converged").flag();
+    fit.termination = !usable     ? Termination::brokeDown
+                      : converged ? Termination::costSettled
+                                  : Termination::maximumIterations;
     fit.iterations = field.at("iterations").count(0, most);
-    fit.reason = field.at("reason").text();
+    fit.message = field.at("reason").text();
     fit.substeps = field.at("substeps").count(0, most);
     fit.costPerResidual = field.at("costPerResidual").numberOrNaN();
     return fit;

@@ -2,7 +2,7 @@
 #include "Engine/Diagnosis/RaiseDegrees.h"
 
 #include "Engine/Driver/Curve.h"
-#include "Engine/Driver/LeastSquares.h"
+#include "Engine/Numerics/LeastSquares.h"
 
 #include <algorithm>
 

@@ -101,7 +101,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     std::vector<Model> found(searched.size());
     const auto still = searched.empty() ? Record {} : withoutLaws(model, record, options.threads);
     inParallel(searched.size(), options.threads, progress, [&](std::size_t k) {
-        if (auto shaped = searched[k]; fitNewestByResponse(shaped, still).usable)
+        if (auto shaped = searched[k]; fitNewestByResponse(shaped, still).usable())
             found[k] = std::move(shaped);
         return true;
     });

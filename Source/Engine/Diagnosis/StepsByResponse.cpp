@@ -36,11 +36,11 @@ std::set<std::string> setOf(const Model& model)
 Found withOneMore(const Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
 {
     Found found {model};
-    if (!addByResponse(found.model, effect, targets).usable)
+    if (!addByResponse(found.model, effect, targets).usable())
         return found;
     found.errorDb = responseErrorDb(found.model, targets);
     auto refined = found.model;
-    if (refineByResponse(refined, targets).usable)
+    if (refineByResponse(refined, targets).usable())
         if (const double errorDb = responseErrorDb(refined, targets); errorDb < found.errorDb)
             found = {std::move(refined), errorDb};
     return found;
@@ -130,7 +130,7 @@ std::vector<Leaner> withoutEach(const Found& whole, const ResponseSearch& search
     std::vector<Found> fits(starts.size());
     inParallel(starts.size(), search.threads, progress, [&](std::size_t n) {
         auto& model = starts[n].second;
-        if (fitResponse(model, search.targets, thoroughly).usable) {
+        if (fitResponse(model, search.targets, thoroughly).usable()) {
             fits[n].errorDb = responseErrorDb(model, search.targets);
             fits[n].model = std::move(model);
         }

@@ -56,7 +56,7 @@ FitSummary fitFed(Model& model, const Record& record, const std::vector<std::siz
     const auto summary = fit(found, record, sections, options, progress);
     options.fed = false;
     if (hasPeriods(record)
-        && !(summary.usable
+        && !(summary.usable()
              && std::isfinite(costOf(found, outputError(found, record, sections, {}, withoutGradient(options))))))
         return fit(model, record, sections, options, progress);
     model = std::move(found);
@@ -102,7 +102,7 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     if (!proposed.byResponse.components.empty() && left(proposed.byResponse) < near * lowest) {
         model = proposed.byResponse;
         const auto summary = fitFed(model, record, sections, chosen, progress);
-        if (summary.usable && left(model) < worthIt * lowest)
+        if (summary.usable() && left(model) < worthIt * lowest)
             return summary;
     }
     model = std::move(best);
@@ -115,7 +115,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto sections = estimationSections(record);
     constexpr double clean = 1.2;
     const auto near = [&](const FitSummary& s) {
-        return s.usable && !(record.noiseKnown && s.costPerResidual > nearNoise);
+        return s.usable() && !(record.noiseKnown && s.costPerResidual > nearNoise);
     };
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
         auto chosen = options;
@@ -125,7 +125,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         return fit(model, record, sections, chosen, progress.part(from, to));
     };
     auto summary = stage(15, 1e-3, true, 0.0, 0.2);
-    if (summary.usable && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
+    if (summary.usable() && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
@@ -154,7 +154,7 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
         if (!component.effect->linear() || component.effect->parts(component.extent).empty())
             continue;
         auto anew = model;
-        if (fitByResponse(anew, k, still).usable && fit(anew, record, sections, fed).usable
+        if (fitByResponse(anew, k, still).usable() && fit(anew, record, sections, fed).usable()
             && quickCost(anew, record, sections, options) < worthIt * quickCost(model, record, sections, options)) {
             model = std::move(anew);
             found = true;

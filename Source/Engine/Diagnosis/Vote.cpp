@@ -2,7 +2,7 @@
 #include "Engine/Diagnosis/Vote.h"
 
 #include "Engine/Diagnosis/Trial.h"
-#include "Engine/Driver/LeastSquares.h"
+#include "Engine/Numerics/LeastSquares.h"
 
 #include <algorithm>
 #include <cmath>

@@ -91,11 +91,11 @@ public:
             if (vote.standsAlone())
                 continue;
             auto leaner = withoutEffect(model, effect);
-            if (!excursion::fit(leaner, record_, sections_, glance_).usable)
+            if (!excursion::fit(leaner, record_, sections_, glance_).usable())
                 continue;
             auto then = left(leaner);
             if (lost(then, now) < sorelyMissed) {
-                if (!excursion::fit(leaner, record_, sections_, brief_).usable)
+                if (!excursion::fit(leaner, record_, sections_, brief_).usable())
                     continue;
                 then = left(leaner);
             }
@@ -121,7 +121,7 @@ public:
             auto leaner = any || tried.leaner.components.empty() ? withoutEffect(model, effect)
                                                                  : std::move(tried.leaner);
             if (any) {  // another one has gone, whose work it may do now
-                if (!excursion::fit(leaner, record_, sections_, brief_).usable)
+                if (!excursion::fit(leaner, record_, sections_, brief_).usable())
                     continue;
                 const auto then = left(leaner), now = left(model);
                 if (keeps(Tried {{lost(then, now), tried.vote.inconsistency},
@@ -161,7 +161,7 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
             continue;
         auto next = fuller;
         next.components.push_back(s.model.components.back());
-        if (s.effect->linear() && fitNewestByResponse(next, still).usable)
+        if (s.effect->linear() && fitNewestByResponse(next, still).usable())
             if (const double then = search.left(next).chi; then < now) {
                 fuller = std::move(next);
                 now = then;
@@ -177,7 +177,6 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
 Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
 {
     Whole whole {base, {}, {}};
-    whole.fit.usable = false;
     const Search search(base, record, options);
     constexpr int rounds = 4;
     constexpr double worthARound = 1.0;  // dB
@@ -189,7 +188,7 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         if (fuller.components.size() == whole.model.components.size())
             break;
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
-        if (!summary.usable)
+        if (!summary.usable())
             break;
         search.findPartsAnew(fuller);
         search.takeOut(fuller, [](const Tried& tried) { return tried.vote.uniqueDb > hardlyNeeded; });
@@ -200,7 +199,7 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         whole.model = std::move(fuller);
         whole.fit = summary;
     }
-    if (!whole.fit.usable)
+    if (!whole.fit.usable())
         return whole;
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
     const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;

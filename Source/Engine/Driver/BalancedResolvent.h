@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/StateUnits.h"
+#include "Engine/Numerics/StateUnits.h"
 
 #include <Eigen/LU>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Dispatch.h"
 #include "Engine/Driver/Number.h"
 #include "Engine/Measurement/Measurement.h"
+#include "Engine/Numerics/Lanes.h"
 
 #include <limits>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/ExponentialAdams.h"
 
-#include "Engine/Driver/Exponential.h"
+#include "Engine/Numerics/Exponential.h"
 
 #include <algorithm>
 #include <cmath>

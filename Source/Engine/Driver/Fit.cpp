@@ -127,9 +127,9 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         }
         return true;
     };
-    static_cast<LeastSquaresSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
+    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
     place(theta);
-    if (!summary.usable)
+    if (!summary.usable())
         return summary;
     summary.costPerResidual = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
     const auto covariance = covarianceOf(last.N, std::max(1.0, summary.costPerResidual));
@@ -283,10 +283,10 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
             if (n > 0)
                 motions = shownMotions(model, record, sections, motions, options.threads);
             const auto round = search(model, errorOf, record.noiseKnown, options, progress);
-            if (n > 0 && !round.usable)
+            if (n > 0 && !round.usable())
                 break;
             summary = round;
-            if (!(summary.usable && summary.finalCost < settled * before))
+            if (!(summary.usable() && summary.finalCost < settled * before))
                 break;
             before = summary.finalCost;
         }

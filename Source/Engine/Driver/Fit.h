@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/LeastSquares.h"
 #include "Engine/Driver/Model.h"
 #include "Engine/Driver/Record.h"
+#include "Engine/Numerics/LeastSquares.h"
 
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ struct FitOptions {
     bool isValid(std::string* reason) const;
 };
 
-struct FitSummary : LeastSquaresSummary {
+struct FitSummary : SearchSummary {
     int substeps = 0;
     double costPerResidual = 0.0;  ///< 1 when nothing but noise is left
     bool onlyNoise = false;        ///< no channel's error stands above its noise

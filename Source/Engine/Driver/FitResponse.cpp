@@ -145,8 +145,7 @@ double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
     return sum.cost + 2.0 * sum.g.dot(d) + d.dot(sum.N * d);
 }
 
-LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets,
-                                const LeastSquaresOptions& options)
+SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets, const LeastSquaresOptions& options)
 {
     const auto active = movedIn(model);
     const auto all = parametersOf(model);
@@ -203,8 +202,8 @@ LeastSquaresSummary fitResponse(Model& model, const std::vector<ResponseTarget>&
     };
     const Eigen::VectorXd start = y;
     const auto summary = minimize(evaluate, y, lower, upper, options);
-    place(shifted(summary.usable ? y : start));
-    if (summary.usable)
+    place(shifted(summary.usable() ? y : start));
+    if (summary.usable())
         keepErrors(model, targets, active, values);
     return summary;
 }

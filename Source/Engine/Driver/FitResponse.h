@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/LeastSquares.h"
 #include "Engine/Driver/Model.h"
 #include "Engine/Driver/Record.h"
 #include "Engine/Measurement/Measurement.h"
+#include "Engine/Numerics/LeastSquares.h"
 
 #include <complex>
 #include <string>
@@ -53,7 +53,7 @@ double responseErrorDb(const Model&, const std::vector<ResponseTarget>&);
 /// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale. Priors count
 /// against the misfit at the start. Leaves standard errors and the covariance in the model, scaled by the misfit that
 /// is left.
-LeastSquaresSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
+SearchSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
 
 /// What one Gauss-Newton step of the parameters that fitResponse() moves would leave of its cost, predicted. The
 /// strengths of the newest effect make the step, all else stays: from a strength of zero that is a linear least-squares
@@ -62,19 +62,19 @@ double stepOnResponses(Model&, const std::vector<ResponseTarget>&);
 
 /// Adds a linear effect: fitted from each of its starts on a thin grid, the best of them on all points; one with parts
 /// part by part, on all points. The model is left as it was when the fit is not usable.
-LeastSquaresSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTarget>&);
+SearchSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTarget>&);
 
 /// The same for a linear effect that the model has already, as its newest: its present values do not count.
-LeastSquaresSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
+SearchSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
 /// On the responses of a record, as finely as the effect asks for.
-LeastSquaresSummary fitNewestByResponse(Model&, const Record&);
+SearchSummary fitNewestByResponse(Model&, const Record&);
 /// The same for component k.
-LeastSquaresSummary fitByResponse(Model&, std::size_t k, const std::vector<ResponseTarget>&);
-LeastSquaresSummary fitByResponse(Model&, std::size_t k, const Record&);
+SearchSummary fitByResponse(Model&, std::size_t k, const std::vector<ResponseTarget>&);
+SearchSummary fitByResponse(Model&, std::size_t k, const Record&);
 
 /// Fits a model that has got a new effect. Those of the others that have several parts are found anew as well, as the
 /// new one may have uncovered more of them; the parts stay as they were where that brings little.
-LeastSquaresSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
+SearchSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
 
 /// Whether a component is what its name says: no parameter of its shape was driven to a bound, nor all of them to
 /// implausible values, where they would stand for something else.

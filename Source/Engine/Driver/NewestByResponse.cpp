@@ -68,7 +68,7 @@ Way withPart(const Model& model, const Part& part, const std::vector<bool>& free
     constexpr double never = std::numeric_limits<double>::infinity();
     const auto search = [&](Model& trial, const LeastSquaresOptions& options) {
         const auto run = fitResponse(trial, targets, options);
-        return run.usable && std::isfinite(run.finalCost) ? run.finalCost : never;
+        return run.usable() && std::isfinite(run.finalCost) ? run.finalCost : never;
     };
     std::vector<Way> starts;
     for (const auto& start : part.starts) {
@@ -116,7 +116,7 @@ double worthwhile(double left, const std::vector<ResponseTarget>& targets)
 
 /// The newest effect taken up part by part, see Effect::parts(). Those that do not pay are at rest, and not free where
 /// others do.
-LeastSquaresSummary fitParts(Model& model, const std::vector<Part>& parts, const std::vector<ResponseTarget>& targets)
+SearchSummary fitParts(Model& model, const std::vector<Part>& parts, const std::vector<ResponseTarget>& targets)
 {
     constexpr int enoughPoints = 24;  // an octave, to tell where a part may begin
     const auto enough = thinned(targets, enoughPoints);
@@ -137,37 +137,37 @@ LeastSquaresSummary fitParts(Model& model, const std::vector<Part>& parts, const
         if (!std::isfinite(way.cost))
             break;
         const auto run = fitResponse(way.model, targets, {40, 1e-5});
-        if (!run.usable || !(summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets)))
+        if (!run.usable() || !(summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets)))
             break;
         summary = run;
         best = std::move(way.model);
         found = true;
     }
     // More than once: priors and the reach of the search are relative to where a fit starts.
-    if (summary.usable)
+    if (summary.usable())
         summary = fitResponse(best, targets, {80, 1e-8});
     for (std::size_t k = 0; !found && k < free.size(); ++k)
         best.components.back().parameters[k].free = free[k];
-    if (summary.usable)
+    if (summary.usable())
         model = std::move(best);
     return summary;
 }
 
 }  // namespace
 
-LeastSquaresSummary addByResponse(Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
+SearchSummary addByResponse(Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
 {
     Extent extent;
     extent.lowFrequency = targets.front().frequency.front();
     extent.highFrequency = targets.front().frequency.back();
     Model best = withEffect(model, effect, extent);
     const auto summary = fitNewestByResponse(best, targets);
-    if (summary.usable)
+    if (summary.usable())
         model = std::move(best);
     return summary;
 }
 
-LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
+SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
     const auto& newest = model.components.back();
     if (const auto parts = newest.effect->parts(newest.extent); !parts.empty())
@@ -175,7 +175,7 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
     std::vector<Way> ways;
     const auto from = [&](Model trial, const std::vector<ResponseTarget>& at, const LeastSquaresOptions& search) {
         const auto run = fitResponse(trial, at, search);
-        if (run.usable)
+        if (run.usable())
             ways.push_back({std::move(trial), run.finalCost});
     };
     // A few steps on few points tell which starts lead somewhere.
@@ -201,14 +201,14 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const std::vector<Response
     fitResponse(best, targets, {40, 1e-6});
     auto summary = fitResponse(best, targets, {80, 1e-8});
     constexpr int mostRounds = 5;
-    for (int n = 0; n < mostRounds && summary.usable && summary.finalCost < 0.9 * summary.initialCost; ++n)
+    for (int n = 0; n < mostRounds && summary.usable() && summary.finalCost < 0.9 * summary.initialCost; ++n)
         summary = fitResponse(best, targets, {80, 1e-8});
-    if (summary.usable)
+    if (summary.usable())
         model = std::move(best);
     return summary;
 }
 
-LeastSquaresSummary fitNewestByResponse(Model& model, const Record& record)
+SearchSummary fitNewestByResponse(Model& model, const Record& record)
 {
     constexpr int usual = 12, fine = 48;  // points an octave
     const auto& newest = model.components.back();
@@ -219,13 +219,13 @@ LeastSquaresSummary fitNewestByResponse(Model& model, const Record& record)
 namespace {
 
 template <class Targets>
-LeastSquaresSummary fitAsNewest(Model& model, std::size_t k, const Targets& targets)
+SearchSummary fitAsNewest(Model& model, std::size_t k, const Targets& targets)
 {
     auto trial = model;
     const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
     std::rotate(place, place + 1, trial.components.end());
     const auto summary = fitNewestByResponse(trial, targets);
-    if (!summary.usable)
+    if (!summary.usable())
         return summary;
     model = std::move(trial);
     const auto back = model.components.begin() + static_cast<std::ptrdiff_t>(k);
@@ -236,16 +236,13 @@ LeastSquaresSummary fitAsNewest(Model& model, std::size_t k, const Targets& targ
 
 }  // namespace
 
-LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets)
+SearchSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets)
 {
     return fitAsNewest(model, k, targets);
 }
-LeastSquaresSummary fitByResponse(Model& model, std::size_t k, const Record& record)
-{
-    return fitAsNewest(model, k, record);
-}
+SearchSummary fitByResponse(Model& model, std::size_t k, const Record& record) { return fitAsNewest(model, k, record); }
 
-LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
+SearchSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
     const LeastSquaresOptions thoroughly {80, 1e-9};
     auto summary = fitResponse(model, targets, thoroughly);
@@ -254,10 +251,11 @@ LeastSquaresSummary refineByResponse(Model& model, const std::vector<ResponseTar
         if (!older.effect->linear() || older.effect->parts(older.extent).empty())
             continue;
         auto trial = model;
-        if (!fitByResponse(trial, k, targets).usable)
+        if (!fitByResponse(trial, k, targets).usable())
             continue;
         const auto run = fitResponse(trial, targets, thoroughly);
-        if (run.usable && summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets) && isSeen(trial, k)) {
+        if (run.usable() && summary.finalCost - run.finalCost > worthwhile(run.finalCost, targets)
+            && isSeen(trial, k)) {
             model = std::move(trial);
             summary = run;
         }

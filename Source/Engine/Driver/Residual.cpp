@@ -7,31 +7,6 @@
 
 namespace excursion {
 
-NormalEquations::NormalEquations(const Eigen::VectorXd& r) : cost(r.squaredNorm()), rows(static_cast<double>(r.size()))
-{
-}
-
-void NormalEquations::differentiateBy(const Eigen::MatrixXd& J, const Eigen::VectorXd& r)
-{
-    N.setZero(J.cols(), J.cols());
-    N.selfadjointView<Eigen::Upper>().rankUpdate(J.transpose());
-    N.triangularView<Eigen::StrictlyLower>() = N.transpose();
-    g.noalias() = J.transpose() * r;
-}
-
-void NormalEquations::add(const NormalEquations& other)
-{
-    if (N.size() == 0) {
-        N = other.N;
-        g = other.g;
-    } else if (other.N.size() > 0) {
-        N += other.N;
-        g += other.g;
-    }
-    cost += other.cost;
-    rows += other.rows;
-}
-
 void ErrorPower::add(const ErrorPower& other)
 {
     error += other.error;

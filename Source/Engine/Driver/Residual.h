@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Driver/Record.h"
+#include "Engine/Numerics/NormalEquations.h"
 
 #include <Eigen/Core>
 
@@ -26,23 +27,8 @@ struct ErrorPower {
 /// of a take hold nothing but noise, and what a few with much power miss hardly moves a mean over all of them.
 inline constexpr double sureNoise = 0.9;
 
-/// The least-squares problem min |r + J d|^2 of residuals r (one channel, over some sections) in its normal form.
-/// Residuals are (model - measured)/deviation, real and imaginary part, each with unit variance if only noise is left.
-struct NormalEquations {
-    Eigen::MatrixXd N;  ///< J^T J
-    Eigen::VectorXd g;  ///< J^T r
-    double cost = 0.0;  ///< r^T r
-    double rows = 0.0;  ///< number of real residuals
-    /// of the cost, what is noise for sure: a search takes no falls relative to it (sureNoise)
-    double sure = 0.0;
-
-    NormalEquations() = default;
-    explicit NormalEquations(const Eigen::VectorXd& r);
-    void differentiateBy(const Eigen::MatrixXd& J, const Eigen::VectorXd& r);  ///< sets N and g
-    void add(const NormalEquations&);
-};
-
-/// Residuals of a section: all lines of the take's band, their real parts first.
+/// Residuals of a section: all lines of the take's band, their real parts first. They are (model - measured)/deviation,
+/// of unit variance each if only noise is left; NormalEquations gathers those of one channel over some sections.
 class Residual {
 public:
     Residual(const Record&, const Section&);

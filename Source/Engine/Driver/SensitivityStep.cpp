@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/SensitivityStep.h"
 
-#include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/Linearize.h"
 #include "Engine/Driver/TallProduct.h"
+#include "Engine/Numerics/Exponential.h"
 
 #include <algorithm>
 

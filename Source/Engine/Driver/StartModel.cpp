@@ -90,7 +90,7 @@ public:
             if (!(p.value > 0.0))
                 return;
         const auto summary = fitResponse(candidate, targets_, {12, 1e-3});
-        if (summary.usable && summary.finalCost < lowest_) {
+        if (summary.usable() && summary.finalCost < lowest_) {
             lowest_ = summary.finalCost;
             best_ = std::move(candidate);
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Driver/TallProduct.h"
 
-#include "Engine/Dispatch.h"
+#include "Engine/Numerics/Lanes.h"
 
 namespace excursion {
 namespace {

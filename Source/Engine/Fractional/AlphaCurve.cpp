@@ -3,7 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ void AlphaCurve::search(const Progress& progress)
         const auto part = progress.part(k / (steps + 1.0), (k + 1.0) / (steps + 1.0));
         try {
             auto found = identify(data_, linearOptions(options_, alpha), part);
-            AlphaPoint point {alpha, 0.0, fitPartialFractions(*found.sections, data_), found.start, found.reason};
+            AlphaPoint point {alpha, 0.0, fitPartialFractions(*found.sections, data_), found.start, found.refinement};
             point.V = deviance(point.fit, data_);
             points_.push_back(std::move(point));
         } catch (const Error& e) {
@@ -84,13 +84,13 @@ void AlphaCurve::search(const Progress& progress)
 
 AlphaPoint AlphaCurve::at(double alpha, const AlphaPoint& near) const
 {
-    AlphaPoint point {alpha, std::numeric_limits<double>::infinity(), {}, near.start, near.reason};
+    AlphaPoint point {alpha, std::numeric_limits<double>::infinity(), {}, near.start, near.refinement};
     const auto start = carried(near.fit.sections, alpha);
     if (!start.factors.allFinite())
         return point;
     auto refined = refinePoles(start, data_, options_.refinement);
+    point.refinement = refined;
     point.fit = std::move(refined.fit);
-    point.reason = refined.reason;
     point.V = deviance(point.fit, data_);
     return point;
 }

@@ -15,7 +15,8 @@ struct AlphaPoint {
     double alpha = 0.0;
     double V = std::numeric_limits<double>::infinity();  ///< sum |e|^2/sigma^2; without deviations the cost
     PartialFractionFit fit;
-    std::string start, reason;
+    std::string start;
+    SearchSummary refinement;
 };
 
 /// The curve V(alpha), everything but alpha at its best (see FractionalOptions). Refers to data and options, which must

@@ -39,11 +39,11 @@ double freedomOf(const FrequencyData& data, int order)
 
 /// Where the curve, in units of another (`unit`), stays within what two standard errors make above `least`; first above
 /// second: nowhere.
-std::pair<double, double> rangeOf(const std::vector<AlphaLikelihood>& curve, double least, double unit = 1.0)
+std::pair<double, double> rangeOf(const std::vector<AlphaChiSquared>& curve, double least, double unit = 1.0)
 {
     std::pair<double, double> range {2.0, 0.0};
     for (const auto& point : curve)
-        if (point.likelihood * unit <= least + asWell)
+        if (point.chiSquared * unit <= least + asWell)
             range = {std::min(range.first, point.alpha), std::max(range.second, point.alpha)};
     return range;
 }
@@ -56,9 +56,9 @@ FractionalIdentification fixedAlpha(const FrequencyData& data, const FractionalO
     result.model = {*options.alpha, std::move(found.model)};
     result.cost = found.cost;
     result.errorDb = found.errorDb;
-    result.likelihood = found.likelihood;
+    result.chiSquared = found.chiSquared;
     result.start = found.start;
-    result.reason = found.reason;
+    result.refinement = found.refinement;
     return result;
 }
 
@@ -80,9 +80,9 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
     result.model = {best.alpha, std::move(found.model)};
     result.cost = best.fit.cost;
     result.errorDb = found.errorDb;
-    result.likelihood = found.likelihood;
+    result.chiSquared = found.chiSquared;
     result.start = best.start;
-    result.reason = best.reason;
+    result.refinement = best.refinement;
     for (const auto& point : curve.points())
         result.curve.push_back({point.alpha, point.V / unit});
     const auto above = std::find_if(result.curve.begin(), result.curve.end(),
@@ -149,7 +149,7 @@ FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int
         entry.order = orders[k];
         entry.found = identifyFractional(
             data, single, progress.part(static_cast<double>(k) / count, static_cast<double>(k + 1) / count));
-        entry.mdl = (data.deviation.size() != 0 ? 2.0 * entry.found.likelihood
+        entry.mdl = (data.deviation.size() != 0 ? 2.0 * entry.found.chiSquared
                                                 : values * std::log(std::max(entry.found.cost, 1e-26)))
                     + static_cast<double>(parametersOf(data, orders[k], !options.alpha)) * std::log(values);
         sweep.entries.push_back(std::move(entry));
@@ -163,7 +163,7 @@ FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int
         return sweep;
     // V of all entries in the unit of the chosen one
     const bool deviations = data.deviation.size() != 0;
-    const double least = deviations ? chosen.found.likelihood : freedomOf(data, chosen.order);
+    const double least = deviations ? chosen.found.chiSquared : freedomOf(data, chosen.order);
     const double alpha = chosen.found.model.alpha,
                  away = std::isfinite(chosen.found.alphaDeviation) ? 3.0 * chosen.found.alphaDeviation : 0.0;
     for (const auto& entry : sweep.entries) {

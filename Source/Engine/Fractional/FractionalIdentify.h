@@ -31,21 +31,22 @@ struct FractionalOptions {
 };
 
 /// V of the best model at one alpha.
-struct AlphaLikelihood {
-    double alpha = 0.0, likelihood = 0.0;
+struct AlphaChiSquared {
+    double alpha = 0.0, chiSquared = 0.0;
 };
 
 struct FractionalIdentification {
     FractionalStateSpace model;
     /// standard error of alpha; 0 where alpha was given, NaN where it is not determined, as `warning` says
     double alphaDeviation = 0.0;
-    /// as of LinearIdentification; the likelihood NaN without deviations
-    double cost = 0.0, errorDb = 0.0, likelihood = 0.0;
+    /// as of LinearIdentification; chiSquared NaN without deviations
+    double cost = 0.0, errorDb = 0.0, chiSquared = 0.0;
     double sectorMargin = 0.0;  ///< rad
     bool stable = false;
-    std::string start, reason = "nothing was identified";
+    std::string start;
+    SearchSummary refinement;
     /// of the search for alpha, ascending; V relative to what is left where deviations are not known
-    std::vector<AlphaLikelihood> curve;
+    std::vector<AlphaChiSquared> curve;
     /// a sentence where alpha is not determined: another alpha does as well, or the curve is flat; else empty
     std::string warning;
 };

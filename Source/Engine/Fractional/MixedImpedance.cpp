@@ -2,12 +2,12 @@
 #include "Engine/Fractional/MixedImpedance.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/Search.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <ceres/ceres.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -22,14 +22,7 @@ using Eigen::Index;
 using std::numbers::pi;
 
 constexpr int P = MixedImpedance::parameters;
-constexpr int alphaIndex = 2;
-using Parameters = Eigen::Matrix<double, P, 1>;
-
-MixedImpedance modelOf(const double* logarithms)
-{
-    const auto v = [&](int k) { return std::exp(logarithms[k]); };
-    return {v(0), v(1), v(2), v(3), v(4), v(5)};
-}
+constexpr std::size_t alphaIndex = 2;
 
 /// Z and its derivatives by the logarithms of the parameters.
 Complex slopesAt(const MixedImpedance& z, double frequency, std::array<Complex, P>& slope)
@@ -47,44 +40,79 @@ Complex slopesAt(const MixedImpedance& z, double frequency, std::array<Complex, 
     return z.resistance + power + motional;
 }
 
-/// sqrt(2) e/sigma, real and imaginary part: unit variance each.
-class Residual final : public ceres::CostFunction {
+/// The error sqrt(2) (measured - Z)/sigma, real and imaginary part, of unit variance each, as a function of the
+/// logarithms of the parameters that are free.
+class ImpedanceError final : public SearchProblem {
 public:
-    Residual(const FrequencyData& data, const Eigen::VectorXd& weights, bool freeAlpha)
-        : data_(data), weights_(weights), freeAlpha_(freeAlpha)
+    ImpedanceError(const FrequencyData& data, const Eigen::VectorXd& weights, std::optional<double> alpha)
+        : data_(data),
+          weights_(weights),
+          alpha_(alpha),
+          power_(data.value.col(0).cwiseAbs().cwiseProduct(weights).squaredNorm())
     {
-        set_num_residuals(2 * static_cast<int>(data.lines()));
-        mutable_parameter_block_sizes()->push_back(P);
     }
 
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
+    Index free() const { return alpha_ ? P - 1 : P; }
+
+    Eigen::VectorXd valuesOf(const MixedImpedance& model) const
     {
-        const auto model = modelOf(parameters[0]);
-        std::array<Complex, P> slope;
-        for (Index k = 0; k < data_.lines(); ++k) {
-            const Complex e = weights_[k]
-                              * (slopesAt(model, data_.frequency[static_cast<std::size_t>(k)], slope)
-                                 - data_.value(k, 0));
-            residuals[2 * k] = e.real();
-            residuals[2 * k + 1] = e.imag();
-            if (!std::isfinite(e.real()) || !std::isfinite(e.imag()))
-                return false;
-            if (!jacobians || !jacobians[0])
-                continue;
-            for (int j = 0; j < P; ++j) {
-                const bool fixed = j == alphaIndex && !freeAlpha_;
-                jacobians[0][2 * k * P + j] = fixed ? 0.0 : weights_[k] * slope[static_cast<std::size_t>(j)].real();
-                jacobians[0][(2 * k + 1) * P + j] = fixed ? 0.0
-                                                          : weights_[k] * slope[static_cast<std::size_t>(j)].imag();
-            }
-        }
-        return true;
+        Eigen::VectorXd values(free());
+        for (Index k = 0; k < free(); ++k)
+            values[k] = std::log(model.values()[place(k)]);
+        return values;
+    }
+
+    MixedImpedance modelAt(const Eigen::VectorXd& values) const
+    {
+        std::array<double, P> v {};
+        v[alphaIndex] = alpha_.value_or(0.0);
+        for (Index k = 0; k < free(); ++k)
+            v[place(k)] = std::exp(values[k]);
+        return {v[0], v[1], v[2], v[3], v[4], v[5]};
+    }
+
+    /// Relative to what is to be explained.
+    double cost(const Eigen::VectorXd& values) override { return rowsAt(values).rightCols(1).squaredNorm() / power_; }
+
+    Eigen::MatrixXd factor(const Eigen::VectorXd& values) override
+    {
+        auto rows = rowsAt(values);
+        TallQr qr(rows.cols());
+        qr.fold(rows);
+        return qr.R();
+    }
+
+    std::size_t place(Index k) const  ///< of the k-th free parameter among all
+    {
+        return static_cast<std::size_t>(alpha_ && k >= static_cast<Index>(alphaIndex) ? k + 1 : k);
     }
 
 private:
+    /// [J, error]
+    Eigen::MatrixXd rowsAt(const Eigen::VectorXd& values) const
+    {
+        const auto model = modelAt(values);
+        const auto K = data_.lines();
+        Eigen::MatrixXd rows(2 * K, free() + 1);
+        std::array<Complex, P> slope;
+        for (Index k = 0; k < K; ++k) {
+            const Complex e = weights_[k]
+                              * (data_.value(k, 0)
+                                 - slopesAt(model, data_.frequency[static_cast<std::size_t>(k)], slope));
+            for (Index j = 0; j < free(); ++j) {
+                rows(2 * k, j) = weights_[k] * slope[place(j)].real();
+                rows(2 * k + 1, j) = weights_[k] * slope[place(j)].imag();
+            }
+            rows(2 * k, free()) = e.real();
+            rows(2 * k + 1, free()) = e.imag();
+        }
+        return rows;
+    }
+
     const FrequencyData& data_;
     const Eigen::VectorXd& weights_;
-    bool freeAlpha_;
+    std::optional<double> alpha_;
+    double power_;
 };
 
 /// The best of a grid, with R, L and K by least squares; those with a negative one are no driver.
@@ -162,64 +190,32 @@ MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpeda
                                     * (known ? Eigen::VectorXd(data.deviation.col(0).cwiseInverse())
                                              : Eigen::VectorXd(weightsOf(data).col(0)));
     const auto start = startFor(data, weights, options.alpha);
-    Parameters x;
-    for (int k = 0; k < P; ++k)
-        x[k] = std::log(start.values()[static_cast<std::size_t>(k)]);
-
-    const Residual residual(data, weights, !options.alpha);
-    ceres::Problem::Options owning;
-    owning.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(owning);
-    problem.AddResidualBlock(const_cast<Residual*>(&residual), nullptr, x.data());
-    ceres::Solver::Options solving;
-    solving.linear_solver_type = ceres::DENSE_QR;
-    solving.max_num_iterations = options.maximumIterations;
-    solving.function_tolerance = 1e-14;
-    solving.parameter_tolerance = 1e-12;
-    solving.gradient_tolerance = 1e-30;
-    solving.logging_type = ceres::SILENT;
-    solving.num_threads = 1;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solving, &problem, &summary);
+    ImpedanceError error(data, weights, options.alpha);
+    SearchOptions searching;
+    searching.maximumIterations = options.maximumIterations;
+    searching.costTolerance = 1e-14;
+    const auto found = search(error, error.valuesOf(start), searching);
 
     MixedImpedanceFit fit;
-    fit.model = modelOf(x.data());
-    if (options.alpha)
-        fit.model.alpha = *options.alpha;
-    fit.converged = summary.termination_type == ceres::CONVERGENCE;
-    fit.reason = fit.converged                                       ? "the error no longer falls"
-                 : summary.termination_type == ceres::NO_CONVERGENCE ? "the largest number of iterations was reached"
-                                                                     : "the search broke down";
-
-    Eigen::Matrix<double, Eigen::Dynamic, P, Eigen::RowMajor> J(2 * data.lines(), P);
-    Eigen::VectorXd r(2 * data.lines());
-    const double* at[] = {x.data()};
-    double* jacobians[] = {J.data()};
-    residual.Evaluate(at, r.data(), jacobians);
-    const int free = options.alpha ? P - 1 : P;
-    const double freedom = std::max(1.0, static_cast<double>(2 * data.lines() - free));
-    const double spread = known ? std::max(1.0, r.squaredNorm() / freedom) : r.squaredNorm() / freedom;
-    Eigen::MatrixXd columns = J;
-    if (options.alpha) {
-        columns.middleCols(alphaIndex, P - 1 - alphaIndex) = J.rightCols(P - 1 - alphaIndex);
-        columns.conservativeResize(Eigen::NoChange, P - 1);
-    }
-    const Eigen::MatrixXd R =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(columns).matrixQR().topRows(free).triangularView<Eigen::Upper>();
-    const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(free, free));
-    std::array<double, P> error {};
-    for (int k = 0, column = 0; k < P; ++k)
-        if (!(options.alpha && k == alphaIndex)) {
-            const auto j = static_cast<std::size_t>(k);
-            // of the logarithm, to the parameter's own unit
-            error[j] = std::sqrt(spread) * inverse.row(column++).norm() * fit.model.values()[j];
-        }
-    fit.deviation = {error[0], error[1], error[2], error[3], error[4], error[5]};
+    static_cast<SearchSummary&>(fit) = found;
+    fit.model = error.modelAt(found.values);
+    const auto free = error.free();
+    const Eigen::MatrixXd R = error.factor(found.values);
+    const double squares = R.col(free).squaredNorm(),
+                 freedom = std::max(1.0, static_cast<double>(2 * data.lines() - free));
+    const double spread = known ? std::max(1.0, squares / freedom) : squares / freedom;
+    const Eigen::MatrixXd inverse =
+        R.topLeftCorner(free, free).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(free, free));
+    std::array<double, P> standardError {};
+    for (Index k = 0; k < free; ++k)  // of the logarithm, to the parameter's own unit
+        standardError[error.place(k)] = std::sqrt(spread) * inverse.row(k).norm() * fit.model.values()[error.place(k)];
+    const auto& e = standardError;
+    fit.deviation = {e[0], e[1], e[2], e[3], e[4], e[5]};
     double left = 0.0;
     for (Index k = 0; k < data.lines(); ++k)
         left += std::norm(fit.model.at(data.frequency[static_cast<std::size_t>(k)]) - data.value(k, 0));
     fit.errorDb = decibelsOf(left / data.value.squaredNorm());
-    fit.likelihood = known ? 0.5 * r.squaredNorm() : std::numeric_limits<double>::quiet_NaN();
+    fit.chiSquared = known ? 0.5 * squares : std::numeric_limits<double>::quiet_NaN();
     return fit;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Linear/FrequencyData.h"
+#include "Engine/Numerics/SearchSummary.h"
 
 #include <array>
 #include <complex>
@@ -40,18 +41,16 @@ struct MixedImpedanceOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// Maximum likelihood for Gaussian noise: Levenberg-Marquardt (Ceres) on sum |e|^2/sigma^2 over the logarithms of all
+/// Maximum likelihood for Gaussian noise: search() on sum |e|^2/sigma^2 over the logarithms of all
 /// parameters, all of which are above 0, with an analytic Jacobian, from the best of a grid in alpha, w0 and Q with R,
 /// L and K by linear least squares. Standard errors are the square roots of the diagonal of Fisher's inverse; where the
 /// model leaves more than the noise, or no standard deviations are known, the noise is what is left over.
-struct MixedImpedanceFit {
+struct MixedImpedanceFit : SearchSummary {
     MixedImpedance model;
     MixedImpedance deviation;  ///< standard error of each parameter; of a given alpha 0
     double errorDb = 0.0;      ///< unweighted relative rms error [B 4.26]
     /// sum |e|^2/sigma^2, about 1 a line when all but noise is explained; NaN without deviations
-    double likelihood = 0.0;
-    bool converged = false;
-    std::string reason = "the search was not run";
+    double chiSquared = 0.0;
 };
 
 /// Throws Error (usage) for options, (data) for data that is not one output by one input or has fewer than 6 lines

@@ -2,12 +2,11 @@
 #include "Engine/Linear/CascadeRefinement.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/DampedSteps.h"
 #include "Engine/Linear/RealRows.h"
 #include "Engine/Linear/RelativeDegree.h"
 #include "Engine/Linear/Response.h"
-
-#include <Eigen/QR>
+#include "Engine/Numerics/Search.h"
+#include "Engine/Numerics/TallQr.h"
 
 #include <complex>
 
@@ -47,10 +46,34 @@ struct Half {
     VectorXcd response;
 };
 
-class Cascade {
+/// A half after a step of its factors and permitted coefficients.
+PartialFractionFit moved(PartialFractionFit fit, const VectorXd& step)
+{
+    const auto n = fit.sections.order();
+    const MatrixXd permitted = permittedCoefficients(fit.sections);
+    VectorXd coefficients(n + 1);
+    coefficients << fit.C.row(0).transpose(), fit.D;
+    coefficients += coefficientSlopes(fit.sections, fit.C.row(0).transpose()) * step.head(n)
+                    + permitted * step.tail(permitted.cols());
+    fit.sections.factors += step.head(n);
+    const MatrixXd next = permittedCoefficients(fit.sections);  // along a curve, of which the slope is a tangent
+    coefficients = (next * (next.transpose() * coefficients)).eval();
+    fit.C.row(0) = coefficients.head(n).transpose();
+    fit.D[0] = coefficients[n];
+    return fit;
+}
+
+/// Numbers that a step has for a half; one whose displacement has to fall fast enough has fewer than it has values.
+Index freedomOf(const PartialFractionFit& fit) { return 2 * fit.sections.order() + 1 - fit.sections.relativeDegree; }
+
+/// The error as a function of [factors, C, D] of the first half, then of the second.
+class Cascade final : public SearchProblem {
 public:
-    Cascade(const FrequencyData& between, const FrequencyData& after)
-        : between_(between),
+    Cascade(const PartialFractionFit& first, const PartialFractionFit& second, const FrequencyData& between,
+            const FrequencyData& after)
+        : first_(first),
+          second_(second),
+          between_(between),
           after_(after),
           lambda_(evaluationPoints(between.frequency, 0.0)),
           square_(lambda_.cwiseAbs2().cast<std::complex<double>>() * -1.0),
@@ -59,7 +82,55 @@ public:
     {
     }
 
-    double likelihood(const PartialFractionFit& first, const PartialFractionFit& second) const
+    static VectorXd valuesOf(const PartialFractionFit& one, const PartialFractionFit& other)
+    {
+        VectorXd values(2 * (one.sections.order() + other.sections.order()) + 2);
+        values << one.sections.factors, one.C.row(0).transpose(), one.D, other.sections.factors,
+            other.C.row(0).transpose(), other.D;
+        return values;
+    }
+
+    PartialFractionFit first(const VectorXd& values) const
+    {
+        return half(first_, values.head(2 * first_.sections.order() + 1));
+    }
+    PartialFractionFit second(const VectorXd& values) const
+    {
+        return half(second_, values.tail(2 * second_.sections.order() + 1));
+    }
+
+    double cost(const VectorXd& values) override
+    {
+        const auto one = first(values), other = second(values);
+        return isStable(one.sections) && isStable(other.sections) ? chiSquared(one, other) : ranAway;
+    }
+
+    MatrixXd factor(const VectorXd& values) override
+    {
+        auto rows = system(first(values), second(values));
+        TallQr qr(rows.cols());
+        qr.fold(rows);
+        return qr.R();
+    }
+
+    VectorXd moved(const VectorXd& values, const VectorXd& step) override
+    {
+        const auto one = first(values), other = second(values);
+        return valuesOf(excursion::moved(one, step.head(freedomOf(one))),
+                        excursion::moved(other, step.tail(freedomOf(other))));
+    }
+
+private:
+    static PartialFractionFit half(PartialFractionFit fit, const VectorXd& values)
+    {
+        const auto n = fit.sections.order();
+        fit.sections.factors = values.head(n);
+        fit.C.row(0) = values.segment(n, n).transpose();
+        fit.D[0] = values[2 * n];
+        return fit;
+    }
+
+    double chiSquared(const PartialFractionFit& first, const PartialFractionFit& second) const
     {
         const VectorXcd M = Half(first, lambda_).response,
                         P = square_.cwiseProduct(M).cwiseProduct(Half(second, lambda_).response);
@@ -86,30 +157,11 @@ public:
         return rows;
     }
 
-private:
+    const PartialFractionFit &first_, &second_;  // of which factors, C and D are not used
     const FrequencyData &between_, &after_;
     VectorXcd lambda_, square_;
     VectorXd ofBetween_, ofAfter_;
 };
-
-/// A half after a step of its factors and permitted coefficients.
-PartialFractionFit moved(PartialFractionFit fit, const VectorXd& step)
-{
-    const auto n = fit.sections.order();
-    const MatrixXd permitted = permittedCoefficients(fit.sections);
-    VectorXd coefficients(n + 1);
-    coefficients << fit.C.row(0).transpose(), fit.D;
-    coefficients += coefficientSlopes(fit.sections, fit.C.row(0).transpose()) * step.head(n)
-                    + permitted * step.tail(permitted.cols());
-    fit.sections.factors += step.head(n);
-    const MatrixXd next = permittedCoefficients(fit.sections);  // along a curve, of which the slope is a tangent
-    coefficients = (next * (next.transpose() * coefficients)).eval();
-    fit.C.row(0) = coefficients.head(n).transpose();
-    fit.D[0] = coefficients[n];
-    return fit;
-}
-
-Index freedomOf(const PartialFractionFit& fit) { return 2 * fit.sections.order() + 1 - fit.sections.relativeDegree; }
 
 void requireCascade(const PartialFractionFit& first, const PartialFractionFit& second, const FrequencyData& between,
                     const FrequencyData& after, const PoleRefinementOptions& options)
@@ -139,34 +191,15 @@ CascadeRefinement refineCascade(const PartialFractionFit& first, const PartialFr
                                 const PoleRefinementOptions& options)
 {
     requireCascade(first, second, between, after, options);
-    const Cascade cascade(between, after);
-    const Index a = freedomOf(first), b = freedomOf(second), P = a + b;
+    Cascade cascade(first, second, between, after);
+    auto searching = searchFor(options);
+    searching.roundingCost = 0.0;  // this cost is not a relative one
+    const auto found = search(cascade, Cascade::valuesOf(first, second), searching);
     CascadeRefinement result;
-    result.first = first;
-    result.second = second;
-    result.likelihood = cascade.likelihood(first, second);
-    DampedSteps steps(options);
-    for (;;) {
-        ++result.iterations;
-        const MatrixXd rows = cascade.system(result.first, result.second);
-        const MatrixXd R = MatrixXd(
-            Eigen::HouseholderQR<MatrixXd>(rows).matrixQR().topRows(P + 1).triangularView<Eigen::Upper>());
-        steps.take(R.topLeftCorner(P, P), R.col(P).head(P), [&](const VectorXd& step) {
-            const auto one = moved(result.first, step.head(a)), other = moved(result.second, step.tail(b));
-            if (!isStable(one.sections) || !isStable(other.sections))
-                return 0.0;
-            const double trial = cascade.likelihood(one, other);
-            if (!(trial < result.likelihood))
-                return 0.0;
-            const double gain = (result.likelihood - trial) / result.likelihood;
-            result.likelihood = trial;
-            result.first = one;
-            result.second = other;
-            return gain;
-        });
-        if (steps.ended(result))
-            return result;
-    }
+    static_cast<SearchSummary&>(result) = found;
+    result.first = cascade.first(found.values);
+    result.second = cascade.second(found.values);
+    return result;
 }
 
 }  // namespace excursion

@@ -3,21 +3,15 @@
 
 #include "Engine/Linear/PartialFractionFit.h"
 
-#include <string>
-
 namespace excursion {
 
 /// Two models in series, refined together: X = M(s) of the voltage, and P = s^2 K(s) X, both measured, to the maximum
 /// of their likelihood
 ///     minimize  sum |M - X|^2/deviation_x^2 + |s^2 K M - P|^2/deviation_p^2
-/// over the poles and coefficients of M and K, by Levenberg-Marquardt with an analytic Jacobian, columns scaled to unit
-/// length. Refining one after the other would creep: what M has too much K can have too little, and only X tells.
-struct CascadeRefinement {
-    PartialFractionFit first, second;  ///< their costs are not kept up
-    double likelihood = 0.0;           ///< the sum above
-    int iterations = 0;
-    bool converged = false;
-    std::string reason = "the search was not run";
+/// over the poles and coefficients of M and K, by search() with an analytic Jacobian. Refining one after the other
+/// would creep: what M has too much K can have too little, and only X tells.
+struct CascadeRefinement : SearchSummary {
+    PartialFractionFit first, second;  ///< their costs are not kept up; finalCost is the sum above
 };
 
 /// @param first, second  stable, of continuous time, one input and output; the relative degree of the first is kept,

@@ -4,7 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -53,12 +53,12 @@ IdentifyOptions identification(const DelayedFitOptions& options, bool thorough)
 }
 
 /// A fit from scratch; none where no start gives a model.
-std::optional<PartialFractionFit> freshFit(const FrequencyData& data, const IdentifyOptions& options)
+std::optional<PoleRefinement> freshFit(const FrequencyData& data, const IdentifyOptions& options)
 {
     try {
         const auto found = identify(data, options);
         if (found.sections && isStable(*found.sections))
-            return fitPartialFractions(*found.sections, data);
+            return PoleRefinement {found.refinement, fitPartialFractions(*found.sections, data)};
     } catch (const Error& e) {
         if (e.kind() != Error::Kind::numerical)
             throw;
@@ -125,13 +125,12 @@ void descend(DelayedFit& result, const FrequencyData& data, const DelayedFitOpti
         const auto column = delayColumn(result.fit, late);
         result.deviation = deviationOf(column, result.fit, data);
         if (!(std::abs(column.length) > 1e-12 * std::sqrt(static_cast<double>(data.lines())))) {
-            result.reason = "the poles can take the place of any delay here";
+            result.end(Termination::undetermined);
             return;
         }
         double step = -unit * column.along / column.length;
         if (std::abs(step) < std::max(1e-3 * result.deviation, 1e-10 * unit)) {
-            result.converged = true;
-            result.reason = "the delay no longer moves";
+            result.end(Termination::valuesSettled);
             return;
         }
         ++result.iterations;
@@ -148,12 +147,11 @@ void descend(DelayedFit& result, const FrequencyData& data, const DelayedFitOpti
             }
         }
         if (!accepted) {
-            result.converged = true;
-            result.reason = "no step of the delay lowers the error any further";
+            result.end(Termination::noBetterStep);
             return;
         }
     }
-    result.reason = "the largest number of steps was reached";
+    result.end(Termination::maximumIterations);
 }
 
 }  // namespace
@@ -187,10 +185,9 @@ DelayedFit fitAtDelay(const FrequencyData& data, double seconds, const DelayedFi
                     "No stable model of order " + std::to_string(options.order) + " was found with this delay.");
     DelayedFit result;
     result.delay = seconds;
-    result.fit = *fit;
-    result.deviation = deviationOf(delayColumn(*fit, late), *fit, data);
-    result.converged = true;
-    result.reason = "the delay was given";
+    static_cast<SearchSummary&>(result) = *fit;
+    result.fit = fit->fit;
+    result.deviation = deviationOf(delayColumn(result.fit, late), result.fit, data);
     return result;
 }
 
@@ -210,7 +207,10 @@ DelayedFit fitDelayed(const FrequencyData& data, const DelayedFitOptions& option
     for (int k = 0; k < options.scan; ++k) {
         progress.at(0.8 * k / options.scan, "trying delays");
         const auto late = delayed(data, delayAt(k));
-        auto fit = freshFit(late, quick);
+        const auto fresh = freshFit(late, quick);
+        std::optional<PartialFractionFit> fit;
+        if (fresh)
+            fit = fresh->fit;
         if (neighbour)  // its poles may do better than any start from scratch
             if (auto moved = refinePoles(*neighbour, late, refinement).fit; !fit || moved.cost < fit->cost)
                 fit = std::move(moved);
@@ -228,10 +228,12 @@ DelayedFit fitDelayed(const FrequencyData& data, const DelayedFitOptions& option
         throw Error(Error::Kind::numerical,
                     "No stable model of order " + std::to_string(options.order) + " was found at any delay.");
     progress.at(0.8, "fitting the delay");
+    result.initialCost = result.fit.cost;
     descend(result, data, options, least, most);
+    result.finalCost = result.fit.cost;
     result.atEdge = (best == 0 || best + 1 == result.scanned.size()) && (result.delay == least || result.delay == most);
     if (result.atEdge)
-        result.reason = "the lowest error lies at an end of the range of delays";
+        result.end(Termination::atBound);
     return result;
 }
 

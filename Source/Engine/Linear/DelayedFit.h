@@ -35,7 +35,8 @@ struct DelayedFitOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-struct DelayedFit {
+/// Iterations are steps of the delay; costs are PartialFractionFit::cost.
+struct DelayedFit : SearchSummary {
     double delay = 0.0;  ///< s: the model has the response times exp(-j w delay)
     /// s, standard error, poles, C and D being unknown too; infinite when the data does not tell
     double deviation = 0.0;
@@ -43,16 +44,13 @@ struct DelayedFit {
     /// delay and cost of the first look; infinite where no model was found
     std::vector<std::pair<double, double>> scanned;
     bool atEdge = false;  ///< the lowest cost lies at an end of the range, so a wider one may do better
-    int iterations = 0;
-    bool converged = false;
-    std::string reason = "the search was not run";
 };
 
 /// Throws Error (usage) for options that make no sense, (data) for data that cannot be fitted or has several inputs,
 /// (numerical) when no delay gave a model.
 DelayedFit fitDelayed(const FrequencyData&, const DelayedFitOptions&, const Progress& = {});
 
-/// The same with the delay given: only the poles, C and D are fitted.
+/// The same with the delay given: only the poles, C and D are fitted, and the summary is that of the poles.
 DelayedFit fitAtDelay(const FrequencyData&, double seconds, const DelayedFitOptions&, const Progress& = {});
 
 }  // namespace excursion

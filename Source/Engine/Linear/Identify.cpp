@@ -6,7 +6,7 @@
 #include "Engine/Linear/LargeOrderStarts.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 
@@ -210,7 +210,7 @@ LinearIdentification judged(StateSpace model, const FrequencyData& data, double 
     LinearIdentification result;
     const Resolvent resolvent(model);
     const MatrixXd weights = weightsOf(data);
-    double error = 0.0, power = 0.0, weightedError = 0.0, weightedPower = 0.0, likelihood = 0.0;
+    double error = 0.0, power = 0.0, weightedError = 0.0, weightedPower = 0.0, chiSquared = 0.0;
     for (Index k = 0; k < data.lines(); ++k) {
         const Eigen::MatrixXcd response = resolvent.response(
             evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha));
@@ -221,12 +221,12 @@ LinearIdentification judged(StateSpace model, const FrequencyData& data, double 
             weightedError += d * weights(k, e) * weights(k, e);
             weightedPower += std::norm(data.value(k, e)) * weights(k, e) * weights(k, e);
             if (data.deviation.size() != 0)
-                likelihood += d / (data.deviation(k, e) * data.deviation(k, e));
+                chiSquared += d / (data.deviation(k, e) * data.deviation(k, e));
         }
     }
     result.cost = weightedError / weightedPower;
     result.errorDb = decibelsOf(error / power);
-    result.likelihood = data.deviation.size() != 0 ? likelihood : std::numeric_limits<double>::quiet_NaN();
+    result.chiSquared = data.deviation.size() != 0 ? chiSquared : std::numeric_limits<double>::quiet_NaN();
     result.stable = alpha == 1.0 ? isStable(model) : isStable(sectionsOf(poles(model), 0.0, 1.0, alpha));
     result.model = std::move(model);
     return result;
@@ -258,7 +258,7 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
             throw Error(Error::Kind::numerical,
                         "The subspace method found no model of order " + std::to_string(options.order) + ".");
         best.start = "subspace";
-        best.reason = options.refine ? "models with several inputs are not refined" : "no refinement was asked for";
+        best.refinement.end(options.refine ? Termination::severalInputs : Termination::notAsked);
         return best;
     }
 
@@ -288,7 +288,7 @@ LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& 
         if (refined.fit.cost < best.cost) {
             best = fromFit(refined.fit, data);
             best.start = candidates[c].name;
-            best.reason = refined.reason;
+            best.refinement = refined;
         }
     }
     if (!std::isfinite(best.cost))

@@ -38,15 +38,15 @@ struct LinearIdentification {
     double errorDb = 0.0;  ///< unweighted relative rms error of all entries [B 4.26]
     /// sum of |model - measured|^2 / deviation^2; NaN without deviations. About 1 a value when all but noise is
     /// explained
-    double likelihood = 0.0;
+    double chiSquared = 0.0;
     bool stable = false;  ///< by the region that belongs to sampleRate and alpha
     std::string start;    ///< where the model came from: "subspace", "vector fitting", "pruned", ..
-    std::string reason = "nothing was identified";  ///< why the refinement stopped
-    std::optional<Sections> sections;               ///< of models with one input
+    SearchSummary refinement;
+    std::optional<Sections> sections;  ///< of models with one input
 };
 
 /// Throws Error (usage, data) for options or data that make no sense, (numerical) when no start gave a model.
-/// Models with several inputs are those of the subspace method; their refinement is left out, and `reason` says so.
+/// Models with several inputs are those of the subspace method; their refinement is left out, and `refinement` says so.
 LinearIdentification identify(const FrequencyData&, const IdentifyOptions&, const Progress& = {});
 
 /// The fit without the section that matters least: the one whose loss, the others' coefficients refitted, raises the
@@ -54,7 +54,7 @@ LinearIdentification identify(const FrequencyData&, const IdentifyOptions&, cons
 /// @param odd  take out the lone real pole instead of a pair
 Sections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd);
 
-/// Errors, likelihood and stability of any model on data.
+/// Errors, chi-squared and stability of any model on data.
 /// @param alpha  of a model in s^alpha
 LinearIdentification judged(StateSpace, const FrequencyData&, double alpha = 1.0);
 

@@ -77,7 +77,7 @@ private:
         const bool met = explainsAllButNoise(fit, data_, floor_);
         if (met) {
             auto refined = refinePoles(fit.sections, data_, options_.refinement);
-            determined_ = refined.converged && refined.iterations <= determinedSteps;
+            determined_ = refined.converged() && refined.iterations <= determinedSteps;
             fit = std::move(refined.fit);
         }
         starts_.push_back({name, std::move(fit)});

@@ -6,8 +6,8 @@
 namespace excursion {
 
 /// The discrete model that has the states' exact response to an input which is a line between samples (first-order
-/// hold; Franklin, Powell & Workman 1998, 6.3.2). With h = 1/fs, P = exp(A h) and, from one exponential of A bordered
-/// by B and an integrator (Van Loan 1978), G_1 = int_0^h exp(A t) B dt, G_2 = int_0^h exp(A t) B (1 - t/h) dt,
+/// hold; Franklin, Powell & Workman 1998, 6.3.2). With h = 1/fs, P = exp(A h) and G_1 = int_0^h exp(A t) B dt, G_2 =
+/// int_0^h exp(A t) B (1 - t/h) dt, all of one exponential (Engine/Numerics/Exponential.h),
 ///     x(t+1) = P x(t) + G_1 u(t) + G_2 (u(t+1) - u(t)),
 /// in the state xi = x - G_2 u:  A_d = P, B_d = G_1 - G_2 + P G_2, C_d = C, D_d = D + C G_2.
 /// An input that jumps at the first sample starts from xi = -G_2 u(0), as startOf() gives it. Unlike the bilinear

@@ -80,15 +80,15 @@ StateSpace withMotion(const StateSpace& motor, Index relativeDegree)
 /// What is known of both halves between the steps.
 struct Halves {
     PartialFractionFit motor, cone;
-    std::string motorStopped, coneStopped;
+    SearchSummary motorRefinement, coneRefinement;
 };
 
 StateSpace modelOf(const PartialFractionFit& fit) { return realize(fit.sections, fit.C, fit.D); }
 
-bool explained(double likelihood, Index lines)
+bool explained(double chiSquared, Index lines)
 {
     const auto K = static_cast<double>(lines);
-    return likelihood <= K + 5.0 * std::sqrt(K);  // one that is not known explains nothing
+    return chiSquared <= K + 5.0 * std::sqrt(K);  // one that is not known explains nothing
 }
 
 IdentifyOptions identifyOptions(const MotorConeOptions& options, int order)
@@ -109,7 +109,7 @@ void findMotor(const FrequencyData& displacement, const MotorConeOptions& option
     start.relativeDegree = options.relativeDegree;
     const auto refined = refinePoles(start, displacement, identifying.refinement);
     halves.motor = refined.fit;
-    halves.motorStopped = refined.reason;
+    halves.motorRefinement = refined;
 }
 
 /// P/(s^2 X), X the motor's where that is asked for or the displacement is not told.
@@ -168,9 +168,9 @@ void refineTogether(const FrequencyData& displacement, const FrequencyData& pres
     auto refinement = options.refinement;
     refinement.maximumIterations = std::max(refinement.maximumIterations, 100);
     const auto together = refineCascade(halves.motor, halves.cone, displacement, pressure, refinement);
-    if (!explained(judged(modelOf(together.first), displacement).likelihood, displacement.lines()))
+    if (!explained(judged(modelOf(together.first), displacement).chiSquared, displacement.lines()))
         return;
-    halves = {together.first, together.second, together.reason, together.reason};
+    halves = {together.first, together.second, together, together};
     result.refined = true;
     divide(displacement, pressure, modelOf(halves.motor), options.leastSignalDb, result);
 }
@@ -220,7 +220,7 @@ MotorCone identifyMotorCone(const FrequencyData& displacement, const FrequencyDa
     findMotor(displacement, options, halves, progress.part(0.0, 0.3));
     result.from = options.from;
     if (options.from == ConeFrom::automatic)
-        result.from = explained(judged(modelOf(halves.motor), displacement).likelihood, displacement.lines())
+        result.from = explained(judged(modelOf(halves.motor), displacement).chiSquared, displacement.lines())
                           ? ConeFrom::motor
                           : ConeFrom::quotient;
     divide(displacement, prompt, modelOf(halves.motor), options.leastSignalDb, result);
@@ -231,23 +231,23 @@ MotorCone identifyMotorCone(const FrequencyData& displacement, const FrequencyDa
     const auto found = identify(result.coneResponse, identifyOptions(options, options.coneOrder),
                                 progress.part(0.3, 0.9));
     halves.cone = fitPartialFractions(*found.sections, result.coneResponse);
-    halves.coneStopped = found.reason;
+    halves.coneRefinement = found.refinement;
     if (options.from == ConeFrom::automatic && result.from == ConeFrom::motor && prompt.deviation.size() != 0)
         refineTogether(displacement, prompt, options, halves, result);
 
     const auto motor = judged(modelOf(halves.motor), displacement);
     result.motorErrorDb = motor.errorDb;
-    result.motorLikelihood = motor.likelihood;
-    result.motorStopped = halves.motorStopped;
+    result.motorChiSquared = motor.chiSquared;
+    result.motorRefinement = halves.motorRefinement;
     result.motor = withMotion(motor.model, options.relativeDegree);
     const auto cone = judged(modelOf(halves.cone), result.coneResponse);
     result.cone = cone.model;
     result.coneErrorDb = cone.errorDb;
-    result.coneStopped = halves.coneStopped;
+    result.coneRefinement = halves.coneRefinement;
     const auto whole = judged(series(accelerated(result.motor), result.cone), prompt);
     result.cascade = whole.model;
     result.errorDb = whole.errorDb;
-    result.likelihood = whole.likelihood;
+    result.chiSquared = whole.chiSquared;
     result.stable = motor.stable && cone.stable;
     result.sentence = sentenceFor(result, known, options.leastSignalDb);
     return result;

@@ -63,16 +63,16 @@ struct MotorCone {
     double coneErrorDb = 0.0;   ///< of the cone to its response,
     double errorDb = 0.0;       ///< of the cascade to the pressure
     /// as LinearIdentification's, of motor and cascade; NaN without deviations
-    double motorLikelihood = 0.0, likelihood = 0.0;
+    double motorChiSquared = 0.0, chiSquared = 0.0;
 
-    FrequencyData coneResponse;          ///< what the cone was fitted to
-    ConeFrom from = ConeFrom::quotient;  ///< where that came from
-    bool refined = false;                ///< together; false where that was not done, or not kept
-    std::vector<bool> told;              ///< one a line: displacement above its noise
-    double toldUpTo = 0.0;               ///< Hz, the highest line that is told; 0 if none is
-    bool stable = false;                 ///< motor and cone
-    std::string motorStopped = "the motor was not identified", coneStopped = "the cone was not identified";
-    std::string sentence;  ///< how far the split can be told
+    FrequencyData coneResponse;                     ///< what the cone was fitted to
+    ConeFrom from = ConeFrom::quotient;             ///< where that came from
+    bool refined = false;                           ///< together; false where that was not done, or not kept
+    std::vector<bool> told;                         ///< one a line: displacement above its noise
+    double toldUpTo = 0.0;                          ///< Hz, the highest line that is told; 0 if none is
+    bool stable = false;                            ///< motor and cone
+    SearchSummary motorRefinement, coneRefinement;  ///< the same where both were refined together
+    std::string sentence;                           ///< how far the split can be told
 };
 
 /// @param displacement  voltage to displacement, m/V, one input and output

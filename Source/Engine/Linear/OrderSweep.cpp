@@ -16,7 +16,7 @@ double mdlOf(const LinearIdentification& found, const FrequencyData& data)
     const auto n = found.model.order(), m = data.inputs, p = data.outputs;
     const double price = static_cast<double>(n * (m + p) + m * p) * std::log(values);
     if (data.deviation.size() != 0)
-        return 2.0 * found.likelihood + price;
+        return 2.0 * found.chiSquared + price;
     return values * std::log(std::max(found.cost, 1e-26)) + price;  // below that there is rounding only
 }
 
@@ -104,7 +104,7 @@ OrderSweep sweepOrders(const FrequencyData& data, const OrderSweepOptions& optio
                 entry.found.cost = refined.fit.cost;
                 entry.found.sections = refined.fit.sections;
                 entry.found.start = "pruned";
-                entry.found.reason = refined.reason;
+                entry.found.refinement = refined;
             }
         }
         if (entry.found.sections)

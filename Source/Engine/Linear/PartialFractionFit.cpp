@@ -2,18 +2,18 @@
 #include "Engine/Linear/PartialFractionFit.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/DampedSteps.h"
 #include "Engine/Linear/RealRows.h"
 #include "Engine/Linear/RelativeDegree.h"
 #include "Engine/Linear/Response.h"
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Numerics/TallQr.h"
+#include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -109,13 +109,8 @@ PartialFractionFit fitAt(const Sections& sections, const Problem& problem)
     return fit;
 }
 
-/// The projected Jacobian and residual of all outputs, rotated into few rows: min |rest - J d|.
-struct Projected {
-    MatrixXd J;
-    VectorXd rest;
-};
-
-Projected projectedJacobian(const PartialFractionFit& fit, const Problem& problem)
+/// The triangular factor of [J, rest], the projected Jacobian and residual of all outputs: min |rest - J d|.
+MatrixXd projectedFactor(const PartialFractionFit& fit, const Problem& problem)
 {
     const auto& sections = fit.sections;
     const auto n = sections.order(), K = problem.lambda.size();
@@ -138,8 +133,42 @@ Projected projectedJacobian(const PartialFractionFit& fit, const Problem& proble
         MatrixXd corner = qr.R().bottomRightCorner(n + 1, n + 1);
         all.fold(corner);
     }
-    return {all.R().topLeftCorner(n, n), all.R().col(n).head(n)};
+    return all.R();
 }
+
+/// The error as a function of the factors of the poles, C and D at their best for each.
+class PoleError final : public SearchProblem {
+public:
+    PoleError(const Problem& problem, PartialFractionFit start, bool stable)
+        : problem_(problem), last_(std::move(start)), stable_(stable)
+    {
+    }
+
+    double cost(const VectorXd& factors) override
+    {
+        if (factors == last_.sections.factors)  // the start need not be stable
+            return last_.cost;
+        auto moved = last_.sections;
+        moved.factors = factors;
+        if (stable_ && !isStable(moved))
+            return ranAway;
+        last_ = fitAt(moved, problem_);
+        return last_.cost;
+    }
+
+    MatrixXd factor(const VectorXd& factors) override
+    {
+        cost(factors);
+        return projectedFactor(last_, problem_);
+    }
+
+    const PartialFractionFit& last() const { return last_; }  ///< the fit that was asked for last
+
+private:
+    const Problem& problem_;
+    PartialFractionFit last_;
+    bool stable_;
+};
 
 }  // namespace
 
@@ -214,6 +243,18 @@ bool PoleRefinementOptions::isValid(std::string* reason) const
     return valid || refuse(reason, "a refinement needs at least one iteration and a tolerance between 0 and 1");
 }
 
+SearchOptions searchFor(const PoleRefinementOptions& options)
+{
+    SearchOptions searching;
+    searching.maximumIterations = options.maximumIterations;
+    searching.costTolerance = options.costTolerance;
+    searching.settledSteps = 2;
+    searching.roundingCost = 1e-28;
+    searching.rankTolerance = 0.0;
+    searching.damping = Damping::steady();
+    return searching;
+}
+
 PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, const PoleRefinementOptions& options,
                            const Progress& progress)
 {
@@ -221,39 +262,21 @@ PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, con
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The poles cannot be refined: " + reason + ".");
     const auto problem = problemOf(data, start);
-    const auto n = start.order();
     PoleRefinement result;
     result.fit = fitAt(start, problem);
-    if (n == 0) {
-        result.converged = true;
-        result.reason = "there is no pole to move";
+    result.initialCost = result.finalCost = result.fit.cost;
+    if (start.order() == 0) {
+        result.end(Termination::solvedAtOnce);
         return result;
     }
-    DampedSteps steps(options);
-    for (;;) {
-        progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "refining the poles");
-        if (result.fit.cost < 1e-28) {
-            result.converged = true;
-            result.reason = "the error is no more than rounding";
-            return result;
-        }
-        ++result.iterations;
-        const auto projected = projectedJacobian(result.fit, problem);
-        steps.take(projected.J, projected.rest, [&](const VectorXd& step) {
-            Sections moved = result.fit.sections;
-            moved.factors += step;
-            if (options.stable && !isStable(moved))
-                return 0.0;
-            const auto trial = fitAt(moved, problem);
-            if (!(trial.cost < result.fit.cost))
-                return 0.0;
-            const double gain = (result.fit.cost - trial.cost) / result.fit.cost;
-            result.fit = trial;
-            return gain;
-        });
-        if (steps.ended(result))
-            return result;
-    }
+    PoleError error(problem, result.fit, options.stable);
+    auto searching = searchFor(options);
+    searching.begun = [&, done = 0]() mutable {
+        progress.at(static_cast<double>(done++) / options.maximumIterations, "refining the poles");
+    };
+    searching.accepted = [&](const VectorXd&, double) { result.fit = error.last(); };
+    static_cast<SearchSummary&>(result) = search(error, start.factors, searching);
+    return result;
 }
 
 }  // namespace excursion

@@ -3,6 +3,7 @@
 
 #include "Engine/Linear/FrequencyData.h"
 #include "Engine/Linear/Sections.h"
+#include "Engine/Numerics/Search.h"
 #include "Engine/Progress.h"
 
 #include <string>
@@ -40,15 +41,15 @@ struct PoleRefinementOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// Why a refinement stopped; the default is failure.
-struct PoleRefinement {
+/// The search that these options ask for, over factors of poles.
+SearchOptions searchFor(const PoleRefinementOptions&);
+
+/// What a refinement found, and how it ended; costs are PartialFractionFit::cost.
+struct PoleRefinement : SearchSummary {
     PartialFractionFit fit;
-    int iterations = 0;
-    bool converged = false;
-    std::string reason = "the search was not run";
 };
 
-/// Maximum likelihood for Gaussian noise: Levenberg-Marquardt on the weighted error over the factors of the poles, C
+/// Maximum likelihood for Gaussian noise: search() on the weighted error over the factors of the poles, C
 /// and D eliminated by variable projection (Golub & Pereyra 1973, in Kaufman's approximation 1975). Jacobians are
 /// analytic; every least-squares problem is solved by orthogonal transformations.
 /// @param start  stable, when that is asked for

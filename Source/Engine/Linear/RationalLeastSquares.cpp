@@ -5,8 +5,8 @@
 #include "Engine/Linear/OrthogonalPowers.h"
 #include "Engine/Linear/RealRows.h"
 #include "Engine/Linear/Response.h"
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Numerics/TallQr.h"
+#include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
@@ -94,12 +94,22 @@ RationalFit fitRational(const FrequencyData& data, const RationalOptions& option
     const auto denominator = [&P, n](const VectorXd& d) -> VectorXcd {
         return P.leftCols(n) * d.cast<std::complex<double>>() + P.col(n);
     };
-    result.converged = options.iterations == 0;
-    while (result.iterations < options.iterations && !result.converged) {
+    auto quotient = data;
+    const auto costOf = [&](const Coefficients& c) {  // leaves N/D in `quotient`
+        const VectorXcd D = denominator(c.D);
+        for (Index o = 0; o < data.outputs; ++o)
+            quotient.value.col(o) = (P * c.N.col(o).cast<std::complex<double>>()).cwiseQuotient(D);
+        return (quotient.value - data.value).cwiseProduct(weights).squaredNorm()
+               / data.value.cwiseProduct(weights).squaredNorm();
+    };
+    result.initialCost = costOf(found);
+    result.end(options.iterations == 0 ? Termination::solvedAtOnce : Termination::maximumIterations);
+    while (result.iterations < options.iterations && !result.converged()) {
         ++result.iterations;
         const VectorXd before = found.D;
         found = solve(P, data, weights, denominator(before).cwiseAbs().cwiseMax(1e-12));
-        result.converged = (found.D - before).norm() <= options.tolerance * (1.0 + before.norm());
+        if ((found.D - before).norm() <= options.tolerance * (1.0 + before.norm()))
+            result.end(Termination::valuesSettled);
     }
 
     // mu [p_0 .. p_{n-1}] = [p_0 .. p_n] H, and p_n = -sum d_i p_i at a root of D.
@@ -114,13 +124,9 @@ RationalFit fitRational(const FrequencyData& data, const RationalOptions& option
         roots.push_back(options.sampleRate > 0.0 ? 1.0 + root : scale * root);
 
     // The quotient as partial fractions: the poles are its own, so the fit is exact.
-    auto quotient = data;
-    const VectorXcd D = denominator(found.D);
-    for (Index o = 0; o < data.outputs; ++o)
-        quotient.value.col(o) = (P * found.N.col(o).cast<std::complex<double>>()).cwiseQuotient(D);
+    result.finalCost = costOf(found);
     result.fit = fitPartialFractions(sectionsOf(roots, options.sampleRate, scale), quotient);
-    result.fit.cost = (quotient.value - data.value).cwiseProduct(weights).squaredNorm()
-                      / data.value.cwiseProduct(weights).squaredNorm();
+    result.fit.cost = result.finalCost;
     return result;
 }
 

@@ -24,10 +24,9 @@ struct RationalOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-struct RationalFit {
-    PartialFractionFit fit;  ///< N/D itself; its cost is that of N/D - G
-    int iterations = 0;
-    bool converged = false;  ///< D stayed; Levy's always is
+/// Levy's is solved at once, Sanathanan and Koerner's settles where D stays; costs are those of N/D - G.
+struct RationalFit : SearchSummary {
+    PartialFractionFit fit;  ///< N/D itself
 };
 
 /// Throws Error (usage) for options that make no sense, (data) for data that cannot be fitted, has several inputs or

@@ -4,7 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Identify.h"
-#include "Engine/Linear/ThinSvd.h"
+#include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 

@@ -141,7 +141,7 @@ std::string refit(StateSpace& model, const FrequencyData& data, const StabilizeO
         sectionsOf(poles(model), model.sampleRate, scaleFor(model, data, options.alpha), options.alpha));
     const auto refined = refinePoles(start, data, refinement, progress);
     model = realize(refined.fit.sections, refined.fit.C, refined.fit.D);
-    return refined.reason;
+    return refined.message;
 }
 
 void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeOptions& options,
@@ -157,7 +157,7 @@ void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeO
     result.delay = found.delay;
     if (!options.seconds)
         result.delayDeviation = found.deviation;
-    result.reason = found.reason;
+    result.reason = found.message;
     result.steps.push_back(stepOf("delayed", result.model, delayed(data, found.delay), 1.0));
 }
 

@@ -4,9 +4,9 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/OrthogonalPowers.h"
 #include "Engine/Linear/Response.h"
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/ThinSvd.h"
-#include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Numerics/TallQr.h"
+#include "Engine/Numerics/ThinSvd.h"
+#include "Engine/Numerics/TruncatedSolve.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

@@ -3,7 +3,7 @@
 #include "Engine/Linear/Subspace.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/ThinSvd.h"
+#include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Signal/Fft.h"
 
 #include <cmath>

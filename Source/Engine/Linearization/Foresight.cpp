@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Foresight.h"
 
-#include "Engine/Driver/Exponential.h"
 #include "Engine/Driver/Linearize.h"
+#include "Engine/Numerics/Exponential.h"
 
 #include <algorithm>
 #include <cmath>

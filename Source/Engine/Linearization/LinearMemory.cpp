@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/LinearMemory.h"
 
-#include "Engine/Dispatch.h"
-#include "Engine/Driver/Exponential.h"
 #include "Engine/Linearization/CubicDrive.h"
-#include "Engine/Linearization/Lanes.h"
 #include "Engine/Linearization/Modes.h"
+#include "Engine/Numerics/Exponential.h"
+#include "Engine/Numerics/Lanes.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Memory.h"
 
-#include "Engine/Driver/Exponential.h"
 #include "Engine/Linearization/CubicDrive.h"
+#include "Engine/Numerics/Exponential.h"
 
 #include <algorithm>
 #include <cmath>

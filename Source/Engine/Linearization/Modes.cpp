@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linearization/Modes.h"
 
-#include "Engine/Driver/StateUnits.h"
+#include "Engine/Numerics/StateUnits.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

@@ -2,7 +2,7 @@
 #include "Engine/Polynomial/BlockError.h"
 
 #include "Engine/Linear/Simulation.h"
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Polynomial/Powers.h"
 
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/Search.h"
 #include "Engine/Polynomial/BlockModel.h"
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Polynomial/Recursion.h"
-#include "Engine/Polynomial/Search.h"
 
 #include <vector>
 

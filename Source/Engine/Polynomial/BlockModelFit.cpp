@@ -3,8 +3,8 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Simulation.h"
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Numerics/TallQr.h"
+#include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Polynomial/BlockError.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Polynomial/Powers.h"
@@ -194,10 +194,9 @@ BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRec
     fraction = 0.8;
     best = refined(best.model, estimation, judging, options.maximumIterations, tell);
     result.model = best.model;
-    result.iterations = best.summary.iterations;
-    result.converged = best.summary.converged;
-    result.reason = options.maximumIterations > 0 ? best.summary.reason
-                                                  : "the branches that are worthwhile, not refined";
+    static_cast<SearchSummary&>(result) = best.summary;
+    if (options.maximumIterations == 0)
+        result.end(Termination::notAsked);
     result.powerDb = powersDb(result.model, judging);
     result.estimationDb = simulationErrorDb(result.model, estimation);
     result.validationDb = simulationErrorDb(result.model, validation);

@@ -29,18 +29,15 @@ struct BlockStep {
     std::map<BlockBranch, double> errorDbOf;  ///< that of each branch that competed for this step
 };
 
-/// What became of a fit; the default is failure.
-struct BlockModelFit {
+/// What became of a fit, and how its last refinement ended; costs are relative squared errors.
+struct BlockModelFit : SearchSummary {
     BlockModel model;
     std::vector<BlockStep> steps;  ///< in the order in which branches were chosen
     /// of each branch in the model: its output's power over that of the judging records
     std::map<BlockBranch, double> powerDb;
     /// relative rms error [B 4.26]; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
-    int iterations = 0;
-    bool converged = false;  ///< the refinement
-    bool stable = false;     ///< G is
-    std::string reason = "the fit was not run";
+    bool stable = false;  ///< G is
 };
 
 /// The procedure of [B 4.1.1]: G is the best linear approximation (a model of it, as identify() gives), branches are

@@ -2,10 +2,10 @@
 #include "Engine/Polynomial/FractionalPnlssFit.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/ThinSvd.h"
+#include "Engine/Numerics/Search.h"
+#include "Engine/Numerics/TallQr.h"
+#include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Polynomial/FractionalRecursion.h"
-#include "Engine/Polynomial/Search.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 
@@ -94,9 +94,7 @@ private:
 double lastDeviation(const MatrixXd& R, Index samples, double tolerance)
 {
     const auto P = R.cols() - 1;
-    const VectorXd scale = R.leftCols(P).colwise().norm().transpose().unaryExpr(
-        [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
-    const auto svd = thinSvd(R.topLeftCorner(P, P) * scale.asDiagonal());
+    const ScaledSvd svd(R.topLeftCorner(P, P));
     double sum = 0.0, rank = 0.0;
     for (Index k = 0; k < P; ++k)
         if (svd.s[k] > tolerance * svd.s[0]) {
@@ -104,7 +102,7 @@ double lastDeviation(const MatrixXd& R, Index samples, double tolerance)
             rank += 1.0;
         }
     const double variance = R.col(P).squaredNorm() / std::max(static_cast<double>(samples) - rank, 1.0);
-    return scale[P - 1] * std::sqrt(variance * sum);
+    return svd.scale[P - 1] * std::sqrt(variance * sum);
 }
 
 }  // namespace
@@ -170,8 +168,7 @@ FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const Fracti
         }
     };
     const auto summary = search(problem, best, searching);
-    result.reason = summary.reason;
-    result.converged = summary.converged;
+    static_cast<SearchSummary&>(result) = summary;
     if (!std::isfinite(result.estimationDb))
         return result;
     if (options.alphaFree && start.fractional.any()) {

@@ -16,17 +16,14 @@ struct FractionalPnlssOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// What became of a fit; the default is failure.
-struct FractionalPnlssFit {
+/// What became of a fit, and how it ended; costs are relative squared errors.
+struct FractionalPnlssFit : SearchSummary {
     FractionalPnlss model;
     /// standard error of alpha, what is left taken for white noise; 0 where alpha was given
     double alphaDeviation = 0.0;
     /// relative rms error [B 4.26] of the model that is returned; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
-    int iterations = 0;
-    bool converged = false;
-    bool stable = false;  ///< the linear part on the grid is stable, and no record made the model run away
-    std::string reason = "the fit was not run";
+    bool stable = false;          ///< the linear part on the grid is stable, and no record made the model run away
     std::vector<double> history;  ///< relative rms error in dB on the estimation records after each accepted step
 };
 

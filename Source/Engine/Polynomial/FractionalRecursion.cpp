@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/FractionalRecursion.h"
 
-#include "Engine/Polynomial/Lanes.h"
+#include "Engine/Polynomial/SensitivityKernels.h"
 #include "Engine/Signal/Resample.h"
 
 #include <Eigen/LU>
@@ -221,7 +221,7 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
     std::vector<MatrixXd> block(static_cast<std::size_t>(p_));
     Index filled = 0, first = 0;
     for (auto& target : block)
-        target.resize(lanes::stretch, P);
+        target.resize(kernels::stretch, P);
     for (Index t = 0; t < N; ++t) {
         const bool sampled = t % grid_.substeps == 0;
         const VectorXd zeta = run.states.col(t);
@@ -259,14 +259,14 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
                     output(columns[c].row - n_, static_cast<Index>(c)) += regressor(columns[c].regressor);
             for (Index o = 0; o < p_; ++o)
                 block[static_cast<std::size_t>(o)].row(filled) = output.row(o);
-            if (++filled == lanes::stretch || t + grid_.substeps >= N) {
+            if (++filled == kernels::stretch || t + grid_.substeps >= N) {
                 for (auto& target : block)
                     target.conservativeResize(filled, P);
                 take(first, block);
                 first += filled;
                 filled = 0;
                 for (auto& target : block)
-                    target.resize(lanes::stretch, P);
+                    target.resize(kernels::stretch, P);
             }
         }
         std::rotate(history.begin(), history.end() - 1, history.end());
@@ -274,10 +274,10 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
         for (Index i = 0; i < n_; ++i) {
             const auto& f = cut[static_cast<std::size_t>(i)];
             auto& z = cells[static_cast<std::size_t>(i)];
-            lanes::advance(z.data(), f.cells(), P, f.decay.data(), f.weight.data(),
-                           {history[0].row(i).data(), history[1].row(i).data(), history[2].row(i).data(),
-                            history[3].row(i).data()},
-                           f.readout.data(), f.direct.data(), held.row(i).data());
+            kernels::advance(z.data(), f.cells(), P, f.decay.data(), f.weight.data(),
+                             {history[0].row(i).data(), history[1].row(i).data(), history[2].row(i).data(),
+                              history[3].row(i).data()},
+                             f.readout.data(), f.direct.data(), held.row(i).data());
             if (alphaFree_ && fractional_[i]) {  // z and v of the step that ends here
                 Eigen::RowVector4d v;
                 v << run.derivatives(i, t), past.history().row(i).head<3>();

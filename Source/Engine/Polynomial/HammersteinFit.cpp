@@ -2,7 +2,7 @@
 #include "Engine/Polynomial/HammersteinFit.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Polynomial/LongHammerstein.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Polynomial/Powers.h"
@@ -46,12 +46,12 @@ MatrixXd orthonormalPolynomials(const std::vector<PnlssRecord>& records, int deg
 }
 
 /// The normal equations of [1, P_1(u(t)) .. P_N(u(t)), P_1(u(t-1)) ..]: tap by tap, the branches of a tap together.
-struct NormalEquations {
+struct BranchEquations {
     MatrixXd gram;
     VectorXd right;
     double samples = 0.0;
 
-    NormalEquations(Index N, Index K) : gram(MatrixXd::Zero(1 + N * K, 1 + N * K)), right(VectorXd::Zero(1 + N * K)) {}
+    BranchEquations(Index N, Index K) : gram(MatrixXd::Zero(1 + N * K, 1 + N * K)), right(VectorXd::Zero(1 + N * K)) {}
 
     /// The lower triangle. @param P  of one record, from its first sample on
     void add(const MatrixXd& P, const VectorXd& y, Index skip, Index K)
@@ -113,7 +113,7 @@ HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecor
             sampleRate, Eigen::Map<const MatrixXd>(unknowns.data() + 1, K, T.cols()) * T.transpose(), unknowns[0]};
     };
     const LongHammerstein problem(estimation, T, K);
-    const auto last = problem.solve(best.regularization, most, every, [&](const VectorXd& unknowns, int k) {
+    auto last = problem.solve(best.regularization, most, every, [&](const VectorXd& unknowns, int k) {
         progress.at(static_cast<double>(k) / most, "iterating for the branch filters");
         if (validation.empty())
             return true;
@@ -126,12 +126,11 @@ HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecor
         }
         return waited < patience;
     });
+    static_cast<SearchSummary&>(best) = last;
     if (best.model.filters.size() == 0)
-        best.model = modelOf(last);
+        best.model = modelOf(last.unknowns);
     best.estimationDb = simulationErrorDb(best.model, estimation);
     best.validationDb = simulationErrorDb(best.model, validation);
-    best.reason = validation.empty() ? "as many iterations as are worthwhile"
-                                     : "the iteration with the least validation error";
     return best;
 }
 
@@ -162,7 +161,7 @@ HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>&
     const MatrixXd T = orthonormalPolynomials(estimation, options.degree);
     if (N * K > mostDense)
         return fittedByIteration(sampleRate, estimation, validation, T, K, options, progress);
-    NormalEquations equations(N, K);
+    BranchEquations equations(N, K);
     for (std::size_t r = 0; r < estimation.size(); ++r) {
         progress.at(0.3 * static_cast<double>(r) / static_cast<double>(estimation.size()),
                     "correlating powers of the input");
@@ -207,8 +206,7 @@ HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>&
         throw Error(Error::Kind::numerical,
                     "The branch filters cannot be solved for; a larger regularization or fewer taps may help.");
     best.estimationDb = simulationErrorDb(best.model, estimation);
-    best.reason = choose ? "the length and the regularization with the least validation error"
-                         : "as long and as regularized as asked for";
+    best.end(Termination::solvedAtOnce);
     return best;
 }
 

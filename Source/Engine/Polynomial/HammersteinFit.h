@@ -17,13 +17,13 @@ struct HammersteinFitOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// What became of a fit; the default is failure.
-struct HammersteinFit {
+/// What became of a fit: solved at once, or how the iteration ended, whose cost is the sum that fitHammerstein()
+/// lowers.
+struct HammersteinFit : SearchSummary {
     ParallelHammerstein model;
     double regularization = 0.0;  ///< r that was taken
     /// relative rms error [B 4.26]; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
-    std::string reason = "the fit was not run";
 };
 
 /// A parallel Hammerstein model of any record, a multisine or music: all that is unknown is linear in the output, so

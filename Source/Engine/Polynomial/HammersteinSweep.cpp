@@ -229,7 +229,6 @@ HammersteinSweepFit identifyHammerstein(const ExponentialSweep& sweep, std::span
     record.output = centred(Eigen::Map<const Eigen::VectorXd>(output.data(), samples));
     result.estimationDb = outputErrorDb(
         {centred(simulate(result.model, Eigen::Map<const Eigen::VectorXd>(x.data(), samples)))}, {record});
-    result.reason = "all branches were solved for";
     return result;
 }
 

@@ -61,7 +61,6 @@ struct HammersteinSweepFit {
     ParallelHammerstein model;
     /// relative rms error [B 4.26] while the sweep runs where all branches are known; means removed
     double estimationDb = 0.0;
-    std::string reason = "the model was not identified";
 };
 
 /// The whole of it: harmonic responses, branch responses, and filters that fit branch n by least squares on the lines

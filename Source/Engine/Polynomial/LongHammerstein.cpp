@@ -64,10 +64,13 @@ void LongHammerstein::addBackward(const Stretch& stretch, const VectorXd& rest, 
     }
 }
 
-VectorXd LongHammerstein::solve(double regularization, int iterations, int every, const Judge& judge) const
+LongHammerstein::Solution LongHammerstein::solve(double regularization, int iterations, int every,
+                                                 const Judge& judge) const
 {
     const double ridge = regularization * samples_;
-    VectorXd x = VectorXd::Zero(1 + branches_ * taps_);
+    Solution solution;
+    auto& x = solution.unknowns;
+    x = VectorXd::Zero(1 + branches_ * taps_);
     std::vector<VectorXd> rest;
     for (const auto& stretch : stretches_)
         rest.push_back(stretch.output);
@@ -78,10 +81,19 @@ VectorXd LongHammerstein::solve(double regularization, int iterations, int every
             addBackward(stretches_[r], rest[r], s);
         return s;
     };
+    const auto cost = [&] {
+        double sum = ridge * x.tail(x.size() - 1).squaredNorm();
+        for (const auto& part : rest)
+            sum += part.squaredNorm();
+        return sum;
+    };
+    solution.initialCost = cost();
+    solution.end(Termination::maximumIterations);
     VectorXd s = gradient(), p = s;
     double size = s.squaredNorm();
     const double enough = 1e-20 * size;
     for (int k = 1; k <= iterations && size > enough; ++k) {
+        solution.iterations = k;
         std::vector<VectorXd> q;
         double curvature = ridge * p.tail(p.size() - 1).squaredNorm();
         for (const auto& stretch : stretches_) {
@@ -96,10 +108,15 @@ VectorXd LongHammerstein::solve(double regularization, int iterations, int every
         const double next = s.squaredNorm();
         p = s + next / size * p;
         size = next;
-        if ((k % every == 0 || k == iterations || size <= enough) && !judge(x, k))
+        if ((k % every == 0 || k == iterations || size <= enough) && !judge(x, k)) {
+            solution.end(Termination::validationSettled);
             break;
+        }
+        if (size <= enough)
+            solution.end(Termination::noBetterStep);
     }
-    return x;
+    solution.finalCost = cost();
+    return solution;
 }
 
 }  // namespace excursion

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/SearchSummary.h"
 #include "Engine/Polynomial/PnlssFit.h"
 
 #include <complex>
@@ -20,10 +21,14 @@ public:
     /// What is told every few iterations; false ends the search.
     using Judge = std::function<bool(const Eigen::VectorXd& unknowns, int iterations)>;
 
+    /// How it ended; costs are the sum below.
+    struct Solution : SearchSummary {
+        Eigen::VectorXd unknowns;
+    };
+
     /// Lowers |y - A x|^2 + r samples |x without offset|^2 from x = 0. Ends also where its gradient has fallen to 1e-10
     /// of what it was.
-    /// @return the last x
-    Eigen::VectorXd solve(double regularization, int iterations, int every, const Judge&) const;
+    Solution solve(double regularization, int iterations, int every, const Judge&) const;
 
 private:
     struct Stretch {

@@ -2,11 +2,11 @@
 #include "Engine/Polynomial/NarxFit.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Numerics/Search.h"
+#include "Engine/Numerics/TallQr.h"
+#include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Polynomial/NarxRecursion.h"
 #include "Engine/Polynomial/PnlssRecord.h"
-#include "Engine/Polynomial/Search.h"
 #include "Engine/Validity.h"
 
 #include <cmath>
@@ -172,11 +172,8 @@ void refine(const Narx& start, const std::vector<PnlssRecord>& estimation, const
         }
     };
     const auto summary = search(problem, start.coefficients, searching);
-    if (!better)
-        return;
-    result.iterations = summary.iterations;
-    result.converged = summary.converged;
-    result.reason = summary.reason;
+    if (better)
+        static_cast<SearchSummary&>(result) = summary;
 }
 
 }  // namespace
@@ -230,7 +227,7 @@ NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation,
                     "The model cannot be fitted: with any number of terms its simulation runs away; other lags or "
                     "a lower sample rate may help.");
     result.model = path[best];
-    result.reason = "the number of terms with the least simulation error, not refined";
+    result.end(Termination::notAsked);
     if (options.maximumIterations > 0) {
         const auto sizes = sizesToRefine(path.size(), best + 1, !validation.empty());
         double judged = nowhere;

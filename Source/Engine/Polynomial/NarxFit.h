@@ -30,17 +30,14 @@ struct NarxStep {
     double simulationDb = 0.0;
 };
 
-/// What became of a fit; the default is failure.
-struct NarxFit {
+/// What became of a fit, and how the refinement that gave the model ended; costs are relative squared errors.
+struct NarxFit : SearchSummary {
     Narx model;
     /// in the order in which terms were chosen; the model has the first of them
     std::vector<NarxStep> steps;
     /// relative rms error of a simulation [B 4.26]; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
-    int iterations = 0;      ///< of the refinement that gave the model
-    bool converged = false;  ///< the same
-    bool stable = false;     ///< around rest, and no record made it run away
-    std::string reason = "the fit was not run";
+    bool stable = false;  ///< around rest, and no record made it run away
 };
 
 /// Orthogonal least squares with forward selection (Chen, Billings & Luo 1989): among all monomials the one that lowers

@@ -64,7 +64,7 @@ public:
         Way way;
         way.values = problem_.valuesOf(start.model, start.initialStates);
         way.fit.model = start.model;
-        way.fit.reason = "the model runs away at its start";
+        way.fit.end(Termination::startUndefined);
         way.fit.estimationDb = way.fit.validationDb = infinity;
         searching_.accepted = {};
         if (search == PnlssSearch::guided)
@@ -103,9 +103,10 @@ public:
                 way.fit.history.pop_back();  // the search tells of its start
             searching_.accepted = [&](const VectorXd& values, double cost) { judge(way, values, cost); };
             const auto summary = go(problem_, way, iterations - way.iterations);
+            const double first = way.iterations > 0 ? way.fit.initialCost : summary.initialCost;
+            static_cast<SearchSummary&>(way.fit) = summary;
+            way.fit.initialCost = first;
             way.iterations += summary.iterations;
-            way.fit.reason = summary.reason;
-            way.fit.converged = summary.converged;
             way.fit.stable = isStable(way.fit.model.linear) && std::isfinite(way.fit.estimationDb);
         }
         way.fit.iterations = iterations_;
@@ -148,9 +149,9 @@ private:
             go(part, way, iterations);
     }
 
-    SearchSummary go(SimulationError& problem, Way& way, int iterations)
+    SearchResult go(SimulationError& problem, Way& way, int iterations)
     {
-        searching_.damping = way.damping;
+        searching_.damping.last = way.damping;
         searching_.maximumIterations = iterations;
         auto summary = search(problem, way.values, searching_);
         way.values = summary.values;
@@ -297,7 +298,7 @@ PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<Pnlss
         for (const auto& start : starts)
             if (!enough)
                 go(start, PnlssSearch::grown);
-    if (any && !best.fit.converged && best.iterations < all)
+    if (any && !best.fit.converged() && best.iterations < all)
         best = fitting.simulated(std::move(best), all);
     fitting.isEnough(best);  // tells what is left of the one that is returned
     return best.fit;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/SearchSummary.h"
 #include "Engine/Polynomial/Pnlss.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Progress.h"
@@ -52,18 +53,16 @@ struct PnlssStart {
     std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they are estimated; empty: zero
 };
 
-/// What became of a fit; the default is failure.
-struct PnlssFit {
+/// What became of a fit: iterations are those of all ways, the rest of the summary is that of the way that was kept.
+/// Costs are relative squared errors, weighted where lines are.
+struct PnlssFit : SearchSummary {
     Pnlss model;
     std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they were estimated
     /// relative rms error [B 4.26], of the model that is returned; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
     /// dB of the output: what is left that the input does not tell, where the residual was judged
     std::optional<double> untoldDb;
-    int iterations = 0;  ///< of all ways
-    bool converged = false;
     bool stable = false;  ///< its linear part is stable and no record made it run away
-    std::string reason = "the fit was not run";
     /// relative rms error in dB on the estimation records after each accepted step of the way that was kept
     std::vector<double> history;
 };
@@ -74,7 +73,7 @@ double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
                        const std::vector<Eigen::VectorXd>& initialStates = {});
 
 /// Levenberg-Marquardt on the simulation error [B 4.3.1, appendix C], columns scaled to unit length, singular
-/// values truncated, steps bent along the error's valleys (see Search.h).
+/// values truncated, steps bent along the error's valleys (see Engine/Numerics/Search.h).
 ///
 /// Only the triangular factor of [J, r] is kept, gathered block by block by orthogonal transformations, so memory stays
 /// bounded and no condition number is squared: what [B] loses to its normal equations. A step that lets a

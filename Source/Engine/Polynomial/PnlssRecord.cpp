@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/PnlssRecord.h"
 
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/Recursion.h"
 
-#include "Engine/Polynomial/Lanes.h"
+#include "Engine/Polynomial/SensitivityKernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-using lanes::abreast, lanes::pitch, lanes::stretch;
+using kernels::abreast, kernels::pitch, kernels::stretch;
 
 Index padded(Index count, Index unit) { return (count + unit - 1) / unit * unit; }
 
@@ -93,7 +93,7 @@ bool Recursion::run(const Pnlss& model, const MatrixXd& input, const VectorXd& i
         for (Index i = 0; i < m_; ++i)
             values[1 + n_ + i] = input(t, i);
         monomials_.evaluate(values.data());
-        lanes::combine(next.data(), W.data(), values.data(), rows, nodes);
+        kernels::combine(next.data(), W.data(), values.data(), rows, nodes);
         for (Index o = 0; o < p_; ++o)
             outputs(t, o) = next[n_ + o];
         for (Index i = 0; i < n_; ++i) {
@@ -130,8 +130,8 @@ void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd
         along.values.col(1 + n_ + i).head(T) = input.col(i).segment(first, T);
     Index node = 1 + n_ + m_;
     for (const auto& product : monomials_.products())
-        lanes::multiply(along.values.col(node++).data(), along.values.col(product.left).data(),
-                        along.values.col(product.right).data(), T);
+        kernels::multiply(along.values.col(node++).data(), along.values.col(product.left).data(),
+                          along.values.col(product.right).data(), T);
     for (Index i = 0; i < n_ + p_; ++i)
         for (Index j = 0; j < n_; ++j)
             along.MG.col(i * n_ + j).setConstant(i < n_ ? model.linear.A(i, j) : model.linear.C(i - n_, j));
@@ -139,15 +139,15 @@ void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd
         for (Index i = 0; i < n_ + p_; ++i) {
             const double c = i < n_ ? model.E(i, slope.term) : model.F(i - n_, slope.term);
             if (c != 0.0)
-                lanes::addScaled(along.MG.col(i * n_ + slope.state).data(), c * slope.factor,
-                                 along.values.col(slope.node).data(), T);
+                kernels::addScaled(along.MG.col(i * n_ + slope.state).data(), c * slope.factor,
+                                   along.values.col(slope.node).data(), T);
         }
     if (guide)  // M - L G
         for (Index i = 0; i < n_; ++i)
             for (Index o = 0; o < p_; ++o)
                 for (Index j = 0; j < n_; ++j)
-                    lanes::addScaled(along.MG.col(i * n_ + j).data(), -guide->gain(i, o),
-                                     along.MG.col((n_ + o) * n_ + j).data(), T);
+                    kernels::addScaled(along.MG.col(i * n_ + j).data(), -guide->gain(i, o),
+                                       along.MG.col((n_ + o) * n_ + j).data(), T);
 }
 
 void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Taker& take,
@@ -198,7 +198,7 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                                 .regressor;
                         from[l] = along.values.col(nodeOf(regressor)).data();
                     }
-                    lanes::toRows(r, from, T);
+                    kernels::toRows(r, from, T);
                 }
                 // What the initial state moves dies away, and numbers below the normal ones are slow.
                 const bool gone = initial && X.col(lane).cwiseAbs().maxCoeff() < 1e-150;
@@ -206,9 +206,9 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                     for (Index o = 0; o < p_; ++o)
                         J.col(o * lanesInAll + lane).setZero();
                 else
-                    lanes::columnsThroughBlock(n_, M, G, p_, r, gains.col(static_cast<Index>(g)).data(),
-                                               initial || ofOutput ? -1 : group.row, X.col(lane).data(), scratch.data(),
-                                               J.col(lane).data(), J.rows() * lanesInAll, T);
+                    kernels::columnsThroughBlock(n_, M, G, p_, r, gains.col(static_cast<Index>(g)).data(),
+                                                 initial || ofOutput ? -1 : group.row, X.col(lane).data(),
+                                                 scratch.data(), J.col(lane).data(), J.rows() * lanesInAll, T);
                 if (ofOutput)
                     J.col((group.row - n_) * lanesInAll + lane) += regressors.col(source[g] + c / abreast);
             }
@@ -218,9 +218,9 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
             target.resize(T, P + n_);
             for (std::size_t g = 0; g < groups.size(); ++g)
                 for (Index c = 0; c < groups[g].count; c += abreast)
-                    lanes::toColumns(target.data() + (groups[g].first + c) * T, T,
-                                     J.col(o * lanesInAll + place[g] + c / abreast).data(),
-                                     std::min(abreast, groups[g].count - c), T);
+                    kernels::toColumns(target.data() + (groups[g].first + c) * T, T,
+                                       J.col(o * lanesInAll + place[g] + c / abreast).data(),
+                                       std::min(abreast, groups[g].count - c), T);
         }
         take(first, derivatives);
     }

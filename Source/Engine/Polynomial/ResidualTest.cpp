@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/ResidualTest.h"
 
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 #include "Engine/Polynomial/Monomials.h"
 #include "Engine/Polynomial/Recursion.h"
 #include "Engine/Signal/Level.h"

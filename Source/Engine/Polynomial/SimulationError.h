@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/Search.h"
 #include "Engine/Polynomial/PnlssFit.h"
 #include "Engine/Polynomial/Recursion.h"
-#include "Engine/Polynomial/Search.h"
 
 #include <limits>
 #include <optional>

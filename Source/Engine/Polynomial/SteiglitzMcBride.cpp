@@ -3,8 +3,8 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Reduction.h"
-#include "Engine/Linear/TallQr.h"
-#include "Engine/Linear/TruncatedSolve.h"
+#include "Engine/Numerics/TallQr.h"
+#include "Engine/Numerics/TruncatedSolve.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "Engine/Ranking/TaylorExpansion.h"
 
 #include "Engine/Driver/Dynamics.h"
-#include "Engine/Driver/Exponential.h"
 #include "Engine/Error.h"
+#include "Engine/Numerics/Exponential.h"
 #include "Engine/Validity.h"
 
 #include <Eigen/QR>

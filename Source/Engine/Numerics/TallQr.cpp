@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Linear/TallQr.h"
+#include "Engine/Numerics/TallQr.h"
 
-#include "Engine/Dispatch.h"
+#include "Engine/Numerics/Lanes.h"
 
 #include <algorithm>
 #include <cmath>

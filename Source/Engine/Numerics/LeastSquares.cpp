@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Driver/LeastSquares.h"
+#include "Engine/Numerics/LeastSquares.h"
 
+#include "Engine/Error.h"
 #include "Engine/Validity.h"
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Eigenvalues>
-
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <utility>
@@ -16,24 +16,6 @@ namespace {
 
 // relative eigenvalue of the scaled normal matrix below which a direction is void
 constexpr double voidDirection = 1e-13;
-
-/// Eigenvectors and eigenvalues of N scaled to a unit diagonal.
-struct ScaledSpectrum {
-    Eigen::VectorXd scale;  ///< N_jj^-1/2, 0 for a column of zeros
-    Eigen::VectorXd values;
-    Eigen::MatrixXd vectors;
-};
-
-ScaledSpectrum scaledSpectrum(const Eigen::MatrixXd& N)
-{
-    ScaledSpectrum result;
-    result.scale = N.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(result.scale.asDiagonal() * N
-                                                                * result.scale.asDiagonal());
-    result.values = solver.eigenvalues();
-    result.vectors = solver.eigenvectors();
-    return result;
-}
 
 class CompressedResidual final : public ceres::CostFunction {
 public:
@@ -72,10 +54,10 @@ public:
             return false;
         const Eigen::MatrixXd N = scale_.asDiagonal() * normal.N * scale_.asDiagonal();
         const Eigen::VectorXd g = scale_.cwiseProduct(normal.g);
-        const auto spectrum = scaledSpectrum(N);
+        const ScaledSpectrum spectrum(N);
         Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobians[0], P + 1, P);
         J.setZero();
-        const double largest = std::max(spectrum.values.maxCoeff(), 1e-300);
+        const double largest = spectrum.largest();
         for (Eigen::Index k = 0; k < P; ++k) {
             if (spectrum.values[k] <= voidDirection * largest)
                 continue;
@@ -147,21 +129,21 @@ bool LeastSquaresOptions::isValid(std::string* reason) const
     return true;
 }
 
-LeastSquaresSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
-                             const Eigen::VectorXd& upper, const LeastSquaresOptions& options, const Progress& progress)
+SearchSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
+                       const Eigen::VectorXd& upper, const LeastSquaresOptions& options, const Progress& progress)
 {
     std::string invalid;
     if (!options.isValid(&invalid))
         throw Error(Error::Kind::usage, "The fit cannot run: " + invalid + ".");
-    LeastSquaresSummary result;
+    SearchSummary result;
     if (theta.size() == 0) {
-        result.reason = "no parameter is free";
+        result.end(Termination::nothingFree);
         return result;
     }
     // The solver's own tests compare with 1; strengths start at zero and take their size from the sensitivity.
     NormalEquations atStart;
     if (!evaluate(theta, true, atStart)) {
-        result.reason = "the model cannot be simulated at its start values";
+        result.end(Termination::startUndefined);
         return result;
     }
     result.initialCost = result.finalCost = atStart.cost;
@@ -203,61 +185,17 @@ LeastSquaresSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& 
         progress.at(0.0, "");
 
     result.iterations = static_cast<int>(summary.iterations.size());
-    result.finalCost = 2.0 * summary.final_cost + atStart.sure;
-    result.usable = summary.IsSolutionUsable();
-    result.converged = summary.termination_type == ceres::CONVERGENCE;
-    result.reason = result.converged ? "the cost no longer falls"
-                    : result.usable  ? "the largest number of iterations was reached"
-                                     : "the search failed: " + summary.message;
-    if (result.usable)
+    if (summary.termination_type == ceres::CONVERGENCE)
+        result.end(Termination::costSettled);
+    else if (summary.IsSolutionUsable())
+        result.end(Termination::maximumIterations);
+    else
+        result.end(Termination::brokeDown, summary.message);
+    if (result.usable()) {
+        result.finalCost = 2.0 * summary.final_cost + atStart.sure;
         theta = x.cwiseProduct(scale);
-    return result;
-}
-
-Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance)
-{
-    const auto spectrum = scaledSpectrum(N);
-    const auto P = N.rows();
-    const double largest = std::max(spectrum.values.maxCoeff(), 1e-300);
-    Eigen::VectorXd inverse = Eigen::VectorXd::Zero(P);
-    Eigen::VectorXd blind = Eigen::VectorXd::Zero(P);
-    for (Eigen::Index k = 0; k < P; ++k)
-        if (spectrum.values[k] > 1e-11 * largest)
-            inverse[k] = 1.0 / spectrum.values[k];
-        else
-            blind += spectrum.vectors.col(k).cwiseAbs2();
-    const Eigen::MatrixXd scaled = spectrum.vectors * inverse.asDiagonal() * spectrum.vectors.transpose();
-    Eigen::MatrixXd covariance = variance * (spectrum.scale.asDiagonal() * scaled * spectrum.scale.asDiagonal());
-    for (Eigen::Index j = 0; j < P; ++j)
-        if (blind[j] > 0.1 || spectrum.scale[j] == 0.0)
-            covariance(j, j) = std::numeric_limits<double>::quiet_NaN();
-    return covariance;
-}
-
-Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector<Eigen::Index>& use)
-{
-    const auto P = static_cast<Eigen::Index>(use.size());
-    Eigen::VectorXd full = Eigen::VectorXd::Zero(normal.g.size());
-    if (P == 0)
-        return full;
-    Eigen::MatrixXd N(P, P);
-    Eigen::VectorXd g(P);
-    for (Eigen::Index r = 0; r < P; ++r) {
-        g[r] = normal.g[use[static_cast<std::size_t>(r)]];
-        for (Eigen::Index c = 0; c < P; ++c)
-            N(r, c) = normal.N(use[static_cast<std::size_t>(r)], use[static_cast<std::size_t>(c)]);
     }
-    const auto spectrum = scaledSpectrum(N);
-    const double largest = std::max(spectrum.values.maxCoeff(), 1e-300);
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(P);
-    const Eigen::VectorXd scaled = spectrum.scale.cwiseProduct(g);
-    for (Eigen::Index k = 0; k < P; ++k)
-        if (spectrum.values[k] > 1e-11 * largest)
-            step -= spectrum.vectors.col(k) * (spectrum.vectors.col(k).dot(scaled) / spectrum.values[k]);
-    step = spectrum.scale.cwiseProduct(step);
-    for (Eigen::Index k = 0; k < P; ++k)
-        full[use[static_cast<std::size_t>(k)]] = step[k];
-    return full;
+    return result;
 }
 
 }  // namespace excursion

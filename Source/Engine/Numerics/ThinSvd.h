@@ -18,4 +18,17 @@ ThinSvd thinSvd(const Eigen::MatrixXd& A);
 /// The same without V, which is left empty.
 ThinSvd leftSvd(const Eigen::MatrixXd& A);
 
+/// One over the length of each column, 0 for a column of zeros.
+Eigen::VectorXd lengthsInverse(const Eigen::MatrixXd& A);
+
+/// That of A diag(scale), columns scaled to unit length, so that units do not enter.
+struct ScaledSvd {
+    explicit ScaledSvd(const Eigen::MatrixXd& A);
+
+    Eigen::VectorXd scale;
+    Eigen::MatrixXd U;
+    Eigen::VectorXd s;
+    Eigen::MatrixXd V;
+};
+
 }  // namespace excursion

@@ -7,7 +7,7 @@
 
 /// The arithmetic of a PNLSS model's Jacobian: plain loops over a block of time steps, or over eight parameters side by
 /// side, compiled for any processor and for those with AVX2.
-namespace excursion::lanes {
+namespace excursion::kernels {
 
 /// time steps of a block: M, G and the regressors stay in the nearest caches
 inline constexpr Eigen::Index stretch = 256;
@@ -41,4 +41,4 @@ void toColumns(double* columns, Eigen::Index columnStride, const double* rows, E
 void advance(double* z, Eigen::Index cells, Eigen::Index P, const double* decay, const double* weight,
              const std::array<const double*, 4>& v, const double* readout, const double* direct, double* held);
 
-}  // namespace excursion::lanes
+}  // namespace excursion::kernels

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Driver/StateUnits.h"
+#include "Engine/Numerics/StateUnits.h"
 
 #include <algorithm>
 #include <cmath>

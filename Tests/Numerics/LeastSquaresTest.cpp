@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Driver/LeastSquares.h"
+#include "Engine/Numerics/LeastSquares.h"
 
 #include <catch2/catch.hpp>
 
@@ -59,8 +59,8 @@ TEST_CASE("The search finds NIST's certified values from both of their starts", 
     for (const auto& start : {two(500.0, 1e-4), two(250.0, 5e-4)}) {
         auto b = start;
         const auto summary = minimize(misra::evaluate, b, two(-infinite, -infinite), two(infinite, infinite), exact());
-        INFO(summary.reason);
-        CHECK(summary.usable);
+        INFO(summary.message);
+        CHECK(summary.usable());
         CHECK(b[0] == Approx(misra::b1).epsilon(1e-7));
         CHECK(b[1] == Approx(misra::b2).epsilon(1e-7));
         CHECK(summary.finalCost == Approx(misra::sumOfSquares).epsilon(1e-8));
@@ -90,8 +90,8 @@ TEST_CASE("The search stays within bounds and does its best beside the one that 
     };
     auto at = two(0.5, 0.7);
     const auto summary = minimize(evaluate, at, two(0.0, 0.0), two(2.0, 5.0), exact());
-    INFO(summary.reason);
-    CHECK(summary.usable);
+    INFO(summary.message);
+    CHECK(summary.usable());
     CHECK(at[0] == Approx(2.0).epsilon(1e-9));
     CHECK(at[1] == Approx(2.0).epsilon(1e-3));
     CHECK(summary.finalCost == Approx(1.0).epsilon(1e-3));
@@ -114,13 +114,13 @@ TEST_CASE("Where the model cannot be evaluated the search shortens its step", "[
     };
     const auto summary = minimize(evaluate, b, two(-infinite, -infinite), two(infinite, infinite), exact());
     INFO("refused " << refused << " times");
-    CHECK(summary.usable);
+    CHECK(summary.usable());
     CHECK(summary.finalCost <= summary.initialCost);
     const auto nowhere = [](const Eigen::VectorXd&, bool, NormalEquations&) { return false; };
     auto start = two(1.0, 1.0);
     const auto failed = minimize(nowhere, start, two(0.0, 0.0), two(2.0, 2.0), exact());
-    CHECK(!failed.usable);
-    CHECK(!failed.reason.empty());
+    CHECK(!failed.usable());
+    CHECK(!failed.message.empty());
     CHECK(start == two(1.0, 1.0));
 }
 
@@ -196,5 +196,5 @@ TEST_CASE("What is noise for sure neither stops a search early nor changes what 
     CHECK(early.finalCost - noise > 10.0 * misra::sumOfSquares);
     CHECK(late.finalCost - noise == Approx(misra::sumOfSquares).epsilon(1e-3));
     CHECK(found[0] == Approx(misra::b1).epsilon(1e-3));
-    CHECK(late.converged);
+    CHECK(late.converged());
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Polynomial/Lanes.h"
+#include "Engine/Polynomial/SensitivityKernels.h"
 
-#include "Engine/Dispatch.h"
+#include "Engine/Numerics/Lanes.h"
 
 #include <algorithm>
 
-namespace excursion::lanes {
+namespace excursion::kernels {
 
 using Eigen::Index;
 
@@ -199,4 +199,4 @@ void advance(double* z, Index cells, Index P, const double* decay, const double*
     }
 }
 
-}  // namespace excursion::lanes
+}  // namespace excursion::kernels

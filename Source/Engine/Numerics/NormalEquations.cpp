@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Numerics/NormalEquations.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace excursion {
+namespace {
+
+constexpr double unseen = 1e-11;  // relative eigenvalue of the scaled matrix, below which data does not see a direction
+
+}  // namespace
+
+NormalEquations::NormalEquations(const Eigen::VectorXd& r) : cost(r.squaredNorm()), rows(static_cast<double>(r.size()))
+{
+}
+
+void NormalEquations::differentiateBy(const Eigen::MatrixXd& J, const Eigen::VectorXd& r)
+{
+    N.setZero(J.cols(), J.cols());
+    N.selfadjointView<Eigen::Upper>().rankUpdate(J.transpose());
+    N.triangularView<Eigen::StrictlyLower>() = N.transpose();
+    g.noalias() = J.transpose() * r;
+}
+
+void NormalEquations::add(const NormalEquations& other)
+{
+    if (N.size() == 0) {
+        N = other.N;
+        g = other.g;
+    } else if (other.N.size() > 0) {
+        N += other.N;
+        g += other.g;
+    }
+    cost += other.cost;
+    rows += other.rows;
+}
+
+ScaledSpectrum::ScaledSpectrum(const Eigen::MatrixXd& N)
+    : scale(N.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; }))
+{
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * N * scale.asDiagonal());
+    values = solver.eigenvalues();
+    vectors = solver.eigenvectors();
+}
+
+double ScaledSpectrum::largest() const { return std::max(values.maxCoeff(), 1e-300); }
+
+Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance)
+{
+    const ScaledSpectrum spectrum(N);
+    const auto P = N.rows();
+    const double largest = spectrum.largest();
+    Eigen::VectorXd inverse = Eigen::VectorXd::Zero(P);
+    Eigen::VectorXd blind = Eigen::VectorXd::Zero(P);
+    for (Eigen::Index k = 0; k < P; ++k)
+        if (spectrum.values[k] > unseen * largest)
+            inverse[k] = 1.0 / spectrum.values[k];
+        else
+            blind += spectrum.vectors.col(k).cwiseAbs2();
+    const Eigen::MatrixXd scaled = spectrum.vectors * inverse.asDiagonal() * spectrum.vectors.transpose();
+    Eigen::MatrixXd covariance = variance * (spectrum.scale.asDiagonal() * scaled * spectrum.scale.asDiagonal());
+    for (Eigen::Index j = 0; j < P; ++j)
+        if (blind[j] > 0.1 || spectrum.scale[j] == 0.0)
+            covariance(j, j) = std::numeric_limits<double>::quiet_NaN();
+    return covariance;
+}
+
+Eigen::VectorXd gaussNewtonStep(const NormalEquations& normal, const std::vector<Eigen::Index>& use)
+{
+    const auto P = static_cast<Eigen::Index>(use.size());
+    Eigen::VectorXd full = Eigen::VectorXd::Zero(normal.g.size());
+    if (P == 0)
+        return full;
+    Eigen::MatrixXd N(P, P);
+    Eigen::VectorXd g(P);
+    for (Eigen::Index r = 0; r < P; ++r) {
+        g[r] = normal.g[use[static_cast<std::size_t>(r)]];
+        for (Eigen::Index c = 0; c < P; ++c)
+            N(r, c) = normal.N(use[static_cast<std::size_t>(r)], use[static_cast<std::size_t>(c)]);
+    }
+    const ScaledSpectrum spectrum(N);
+    const double largest = spectrum.largest();
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(P);
+    const Eigen::VectorXd scaled = spectrum.scale.cwiseProduct(g);
+    for (Eigen::Index k = 0; k < P; ++k)
+        if (spectrum.values[k] > unseen * largest)
+            step -= spectrum.vectors.col(k) * (spectrum.vectors.col(k).dot(scaled) / spectrum.values[k]);
+    step = spectrum.scale.cwiseProduct(step);
+    for (Eigen::Index k = 0; k < P; ++k)
+        full[use[static_cast<std::size_t>(k)]] = step[k];
+    return full;
+}
+
+}  // namespace excursion

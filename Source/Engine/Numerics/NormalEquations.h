@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace excursion {
+
+/// The least-squares problem min |r + J d|^2 in its normal form: small however long r is, and added up part by part.
+/// Its condition is that of J squared; where that matters, TallQr is the other way.
+struct NormalEquations {
+    Eigen::MatrixXd N;  ///< J^T J
+    Eigen::VectorXd g;  ///< J^T r
+    double cost = 0.0;  ///< r^T r
+    double rows = 0.0;  ///< number of real residuals
+    /// of the cost, what is noise for sure: a search takes no falls relative to it
+    double sure = 0.0;
+
+    NormalEquations() = default;
+    explicit NormalEquations(const Eigen::VectorXd& r);
+    void differentiateBy(const Eigen::MatrixXd& J, const Eigen::VectorXd& r);  ///< sets N and g
+    void add(const NormalEquations&);
+};
+
+/// Eigenvectors and eigenvalues of N scaled to a unit diagonal, ascending.
+struct ScaledSpectrum {
+    explicit ScaledSpectrum(const Eigen::MatrixXd& N);
+
+    double largest() const;  ///< never 0
+
+    Eigen::VectorXd scale;  ///< N_jj^-1/2, 0 for a column of zeros
+    Eigen::VectorXd values;
+    Eigen::MatrixXd vectors;
+};
+
+/// Covariance of the estimate from N = J^T J, scaled by `variance` of the residuals. Directions that the data does not
+/// see are left out, and their parameters' entries on the diagonal are NaN.
+Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& N, double variance);
+
+/// min |r + J d| over the columns `use` only: the step, with columns scaled and unseen directions left out.
+Eigen::VectorXd gaussNewtonStep(const NormalEquations&, const std::vector<Eigen::Index>& use);
+
+}  // namespace excursion
