@@ -52,7 +52,7 @@ class Picture {
         const high = Math.max(3, Math.floor((height - 60) / 26));
         const lines = labelsOf(new Scale(...this.view.y, y.log, height, 0), y.names, high);
         this.left = 26 + Math.max(18, ...lines.map(label => label.text.length * letterWidth));
-        this.box = {left: this.left, right: width - 8, top: 8, bottom: height - 3.1 * textHeight};
+        this.box = {left: this.left, right: width - 16, top: 8, bottom: height - 3.1 * textHeight};
         this.x = new Scale(...this.view.x, x.log, this.box.left, this.box.right);
         this.y = new Scale(...this.view.y, y.log, this.box.bottom, this.box.top);
         const {left, right, top, bottom} = this.box;

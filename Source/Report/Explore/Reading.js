@@ -27,6 +27,7 @@ function sampleAt(picture, series, px, py) {
 function entriesOf(plot) {
     const entries = [];
     for (const series of plot.series) {
+        if (series.y.every(value => value === null)) continue;
         const before = entries.findLast(entry => entry.members[0].colour === series.colour);
         if (!series.title && before) before.members.push(series);
         else entries.push({title: series.title || series.told || plot.y.title, members: [series]});
