@@ -8,16 +8,16 @@ function ascending(values) { return values.every((value, k) => value !== null &&
 /** The sample of a series under the pointer: of a function of x the one beside, of scattered points the nearest. -1: none. */
 function sampleAt(picture, series, px, py) {
     let best = -1, least = Infinity;
-    const function_ = series.ascending ??= ascending(series.x);
+    const rising = series.ascending ??= ascending(series.x);
     for (let k = 0; k < series.x.length; ++k) {
         if (!picture.x.holds(series.x[k])) continue;
         const across = Math.abs(picture.x.at(series.x[k]) - px);
         const place = picture.place(series, k);
-        const far = function_ ? across : place ? Math.hypot(across, place[1] - py) : Infinity;
+        const far = rising ? across : place ? Math.hypot(across, place[1] - py) : Infinity;
         if (far < least) [best, least] = [k, far];
     }
     if (best < 0 || !picture.place(series, best)) return -1;
-    if (!function_) return least <= farReach ? best : -1;
+    if (!rising) return least <= farReach ? best : -1;
     const gap = Math.max(...[best - 1, best + 1].map(k => series.x[k] === undefined
         ? 0 : Math.abs(picture.x.at(series.x[k]) - picture.x.at(series.x[best]))));
     return least <= Math.max(reach, gap / 2 + 1) ? best : -1;
@@ -54,7 +54,7 @@ class Key {
             const line = svg("svg", {class: "swatch", viewBox: "0 0 20 8"});
             if (ascending(first.x)) line.append(svg("path", {...strokeOf(first), d: "M0 4H20", "stroke-width": Math.max(first.width, 1.6)}));
             if (first.points) line.append(svg("circle", {cx: 10, cy: 4, r: 3, fill: `var(${first.colour})`}));
-            entry.button = element("button", {type: "button", "aria-pressed": "true", title: "switch on or off"},
+            entry.button = element("button", {type: "button", "aria-pressed": "true", title: `${entry.title}: on or off`},
                                    line, element("span", {class: "name"}, entry.title), entry.value);
             entry.button.addEventListener("click", () => {
                 for (const series of entry.members) series.off = !series.off;
