@@ -44,6 +44,7 @@ Plot quantityPlot(const Collection& all, const Quantities& q)
         const double x = first + static_cast<double>(k),
                      error = std::isfinite(q.standardError[k]) ? 1.96 * q.standardError[k] : 0.0;
         values.x.push_back(x);
+        values.names.push_back(all.units[k].name);
         values.y.push_back(q.value[k]);
         if (banded) {
             values.lower.push_back(q.value[k] - error);
@@ -52,6 +53,7 @@ Plot quantityPlot(const Collection& all, const Quantities& q)
         const auto& outlying = all.units[k].outlying;
         const bool isOff = std::find(outlying.begin(), outlying.end(), q.name) != outlying.end();
         if (isOff) {
+            off.names.insert(off.names.end(), {all.units[k].name, ""});
             off.x.insert(off.x.end(), {x, std::numeric_limits<double>::quiet_NaN()});
             off.y.insert(off.y.end(), {q.value[k], std::numeric_limits<double>::quiet_NaN()});
         }
@@ -75,7 +77,7 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
                  + (laws.ofUnit.size() == 1 ? " unit" : " units");
     plot.x = {laws.argument, argument.unit, false, 0.0, 0.0, {}};
     plot.y = {laws.name, value.unit, false, 0.0, 0.0, {}};
-    const auto draw = [&](const LawTable& law, Role role, const std::string& title) {
+    const auto draw = [&](const LawTable& law, Role role, const std::string& title, const std::string& unit) {
         plot.series.push_back({title,
                                role,
                                scaled(law.at, argument.factor),
@@ -83,21 +85,22 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
                                {},
                                {},
                                Series::Shape::line,
-                               0});
+                               0,
+                               unit});
     };
     bool first = true;
     for (const auto& [unit, law] : laws.ofUnit)
         if (!all.units[unit].outlier() && unit != all.golden) {
-            draw(law, Role::noise, first ? "units" : "");
+            draw(law, Role::noise, first ? "units" : "", all.units[unit].name);
             first = false;
         }
     std::size_t outliers = 0;
     for (const auto& [unit, law] : laws.ofUnit)
         if (all.units[unit].outlier())
-            draw(law, Role::error, outliers++ < mostInKey ? all.units[unit].name : "");
+            draw(law, Role::error, outliers++ < mostInKey ? all.units[unit].name : "", all.units[unit].name);
     for (const auto& [unit, law] : laws.ofUnit)
         if (unit == all.golden)
-            draw(law, Role::model, all.units[unit].name + " (golden)");
+            draw(law, Role::model, all.units[unit].name + " (golden)", all.units[unit].name);
     return plot;
 }
 

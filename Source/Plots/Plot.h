@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 namespace excursion {
+
+/// What of a take or a ladder something shows, by kind: {"level", "1.7 V"}. A page can switch off all that has it.
+using Facets = std::map<std::string, std::string>;
 
 /// What a line stands for; one colour a role, the same on every picture (Okabe & Ito's set, which colour-blind people
 /// tell apart; the roles differ in their dashes as well).
@@ -19,6 +23,10 @@ struct Series {
     Shape shape = Shape::line;
     /// 0: the role's own; otherwise a pattern of gnuplot's, to tell apart lines of one role
     int dash = 0;
+    std::string told {};                ///< its name under the pointer, where lines share one title
+    std::vector<std::string> names {};  ///< of its points, told under the pointer; empty: none
+    Facets facets {};
+    bool hidden = false;  ///< not drawn until a reader asks for it
 };
 
 struct Axis {
@@ -35,6 +43,7 @@ struct Plot {
     Axis x, y;
     std::vector<Series> series;
     bool key = true;
+    Facets facets {};
     int width = 460, height = 300;
 };
 

@@ -59,8 +59,10 @@ juce::String textOf(const Findings& findings)
             line += ", delay " + words(engineering(channel.delay->seconds, "s", 2));
         lines.add(line);
     }
-    if (!findings.report.problems.empty())
+    if (!findings.report.problems.empty() || !findings.remarks.empty())
         lines.add("");
+    for (const auto& remark : findings.remarks)
+        lines.add("Remark: " + words(remark));
     for (const auto& problem : findings.report.problems)
         lines.add((problem.fatal ? "Fault: " : "Remark: ") + words(problem.sentence));
     return lines.joinIntoString("\n");

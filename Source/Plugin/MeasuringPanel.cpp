@@ -238,14 +238,9 @@ void MeasuringPanel::tick()
     } else if (recorder_->finished()) {
         end();
         const auto done = std::exchange(recorder_, nullptr);
-        try {
-            window_.processor().session().open(
-                done->take(),
-                "Measured with "
-                    + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")));
-        } catch (const Error& error) {
-            window_.tell(words(error.what()), true);
-        }
+        window_.processor().session().open(
+            done->recording(),
+            "Measured with " + (device != nullptr ? device->getName().toStdString() : std::string("an audio device")));
     } else {
         look::setTone(preview_, look::Tone::text);
         preview_.setText("Measuring, " + whole(100.0 * recorder_->fraction()) + " %", juce::dontSendNotification);

@@ -2,6 +2,7 @@
 #include "Plugin/Recorder.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace excursion::plugin {
 
@@ -49,12 +50,21 @@ void Recorder::audioDeviceIOCallbackWithContext(const float* const* in, int inpu
     position_.store(from + count, std::memory_order_release);
 }
 
-Measurement Recorder::take() const
+RecordingOptions Recorder::recording() const
 {
-    std::vector<RecordedChannel> channels;
-    for (std::size_t k = 0; k < roles_.size(); ++k)
-        channels.push_back({roles_[k].quantity, roles_[k].fullScale, {recorded_[k].begin(), recorded_[k].end()}});
-    return takeFrom(plan_, channels);
+    RecordingOptions options;
+    options.plan = plan_;
+    Wav sound {static_cast<int>(std::lround(plan_.sampleRate)), {}};
+    for (std::size_t k = 0; k < roles_.size(); ++k) {
+        sound.channels.emplace_back(recorded_[k].begin(), recorded_[k].end());
+        ChannelMapping mapping;
+        mapping.channel = static_cast<int>(k) + 1;
+        mapping.quantity = roles_[k].quantity;
+        mapping.fullScale = roles_[k].fullScale;
+        options.map.push_back(std::move(mapping));
+    }
+    options.sounds.push_back({"the recording", std::move(sound)});
+    return options;
 }
 
 }  // namespace excursion::plugin

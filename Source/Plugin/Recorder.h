@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Recording.h"
+#include "Engine/Import/RecordingOptions.h"
 #include "Plugin/Juce.h"
 
 #include <atomic>
@@ -18,7 +18,7 @@ struct InputRole {
 
 /// Plays a plan to one output of an audio device and records its inputs, from the first block until a second after the
 /// end. Constructed on the message thread, added to a juce::AudioDeviceManager, removed from it, then asked for its
-/// take.
+/// recording.
 class Recorder : public juce::AudioIODeviceCallback {
 public:
     /// @param plan       as of planExcitation(), V
@@ -28,7 +28,7 @@ public:
     double fraction() const;  ///< how much has been played and recorded; any thread
     bool finished() const { return fraction() >= 1.0; }
     bool broken() const { return broken_; }  ///< the device stopped or changed its rate meanwhile
-    Measurement take() const;                ///< see takeFrom(); once it is finished
+    RecordingOptions recording() const;      ///< to be laid beside the plan; once it is finished
 
     void audioDeviceAboutToStart(juce::AudioIODevice*) override;
     void audioDeviceStopped() override;

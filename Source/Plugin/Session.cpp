@@ -4,6 +4,7 @@
 #include "Bench/Draw.h"
 #include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
+#include "Engine/Import/ImportRecording.h"
 #include "Engine/Measurement/TakeFile.h"
 #include "Report/Report.h"
 
@@ -22,6 +23,13 @@ std::string titlesOf(const std::vector<bench::HiddenEffect>& hidden)
                 text += known->title();
     }
     return text.empty() ? "nothing" : text;
+}
+
+Findings from(const std::string& source)
+{
+    Findings told;
+    told.source = source;
+    return told;
 }
 
 }  // namespace
@@ -147,14 +155,12 @@ void Session::publishLadder()
     say(improvement_->ladder().sentence);
 }
 
-void Session::begin(PreparedTake take, const std::string& source, const std::string& truth, const Progress& progress)
+void Session::begin(PreparedTake take, const Findings& told, const Progress& progress)
 {
     Improvement work(take, {}, progress.part(0.0, 0.05));
-    auto fresh = std::make_shared<Findings>();
-    fresh->source = source;
-    fresh->truth = truth;
+    auto fresh = std::make_shared<Findings>(told);
     fresh->report = take.report();
-    fresh->file = makeLadderFile(work.ladder(), take, source);
+    fresh->file = makeLadderFile(work.ladder(), take, told.source);
     fresh->take = std::make_shared<const PreparedTake>(std::move(take));
     publish(fresh);
     improvement_.emplace(std::move(work));
@@ -171,7 +177,7 @@ void Session::open(const std::string& path)
     cancel();
     order([this, path](const Progress& progress) {
         progress.at(0.0, "reading the take");
-        begin(readTake(path), std::filesystem::path(path).filename().string(), "", progress);
+        begin(readTake(path), from(std::filesystem::path(path).filename().string()), progress);
     });
 }
 
@@ -187,15 +193,21 @@ void Session::open(const VirtualOrder& wanted)
         options.seconds = 4.0;
         const auto drawn = bench::draw(wanted.seed, options);
         auto take = bench::measure(drawn.speaker, drawn.setup, progress.part(0.0, 0.2));
-        begin(std::move(take), "Virtual " + drawn.driver + ", seed " + std::to_string(wanted.seed),
-              titlesOf(drawn.hidden), progress.part(0.2, 1.0));
+        auto told = from("Virtual " + drawn.driver + ", seed " + std::to_string(wanted.seed));
+        told.truth = titlesOf(drawn.hidden);
+        begin(std::move(take), told, progress.part(0.2, 1.0));
     });
 }
 
-void Session::open(Measurement take, const std::string& source)
+void Session::open(RecordingOptions recording, const std::string& source)
 {
     cancel();
-    order([this, take = std::move(take), source](const Progress& progress) { begin(take, source, "", progress); });
+    order([this, recording = std::move(recording), source](const Progress& progress) {
+        auto imported = importRecording(recording, progress.part(0.0, 0.1));
+        auto told = from(source);
+        told.remarks = std::move(imported.remarks);
+        begin(std::move(imported.take), told, progress.part(0.1, 1.0));
+    });
 }
 
 void Session::add(const std::string& effect)

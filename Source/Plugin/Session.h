@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/Improvement.h"
 #include "Engine/Diagnosis/LadderFile.h"
+#include "Engine/Import/RecordingOptions.h"
 #include "Engine/Measurement/Measurement.h"
 #include "Engine/Measurement/PreparedTake.h"
 
@@ -21,6 +22,7 @@ namespace excursion::plugin {
 /// What the pages show of a take and its ladder. It does not change once it is handed out.
 struct Findings {
     std::string source;                ///< where the take is from, in words
+    std::vector<std::string> remarks;  ///< on the recording: what is odd in it, in sentences
     std::string truth;                 ///< what the virtual loudspeaker hides; empty for a real one
     std::shared_ptr<const PreparedTake> take;
     CheckReport report;
@@ -44,7 +46,8 @@ public:
 
     void open(const std::string& path);  ///< as readTake()
     void open(const VirtualOrder&);
-    void open(Measurement, const std::string& source);  ///< one that was just made
+    void open(RecordingOptions,
+              const std::string& source);  ///< of a recording that was just made, as importRecording()
     void add(const std::string& effect);
     void undo();
     void saveReport(const std::string& path);
@@ -68,7 +71,8 @@ private:
     using Work = std::function<void(const Progress&)>;
     void order(Work);
     void run(const std::stop_token&);
-    void begin(PreparedTake, const std::string& source, const std::string& truth, const Progress&);
+    /// @param told  Findings without a take
+    void begin(PreparedTake, const Findings& told, const Progress&);
     void publish(std::shared_ptr<Findings>);
     void publishLadder();
     void say(const std::string&);

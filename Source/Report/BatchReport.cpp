@@ -27,7 +27,9 @@ std::string numberOf(const Quantities& q, double value)
 {
     if (!std::isfinite(value))
         return dash;
-    const double size = std::max({q.spread, 1e-4 * std::abs(q.median), 1e-12});
+    const double size = std::max(q.spread, 1e-4 * std::abs(q.median));
+    if (!(size > 0.0))  // all are zero
+        return fixedText(value, value == 0.0 ? 0 : 8);
     return fixedText(value, std::clamp(static_cast<int>(std::ceil(1.0 - std::log10(size))), 0, 8));
 }
 

@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Report/Gnuplot.h"
 #include "Report/InlineSvg.h"
+#include "Report/RoleStyle.h"
 
 #include <algorithm>
 #include <array>
@@ -12,24 +13,6 @@
 
 namespace excursion {
 namespace {
-
-struct RoleStyle {
-    StandIn colour;
-    int dash;  // of gnuplot
-    double width;
-};
-
-const RoleStyle& styleOf(Role role)
-{
-    static const std::array<RoleStyle, 7> styles {{{{1, 2, 10, "--measured"}, 1, 2.4},
-                                                   {{1, 2, 11, "--model"}, 1, 1.2},
-                                                   {{1, 2, 12, "--error"}, 1, 1.3},
-                                                   {{1, 2, 13, "--noise"}, 3, 1.2},
-                                                   {{1, 2, 14, "--before"}, 1, 1.6},
-                                                   {{1, 2, 15, "--after"}, 1, 1.8},
-                                                   {{1, 2, 16, "--reference"}, 2, 1.2}}};
-    return styles[static_cast<std::size_t>(role)];
-}
 
 constexpr StandIn ink {1, 2, 3, "--ink"};
 constexpr StandIn grid {1, 2, 4, "--grid"};
@@ -142,7 +125,7 @@ void writePlot(std::string& script, const Plot& plot)
     for (std::size_t k = 0; k < plot.series.size(); ++k) {
         const auto& s = plot.series[k];
         const auto name = "$d" + std::to_string(k);
-        if (!writeData(script, plot, s, name))
+        if (s.hidden || !writeData(script, plot, s, name))
             continue;
         const auto& style = styleOf(s.role);
         if (!s.lower.empty())

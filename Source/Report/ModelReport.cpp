@@ -146,8 +146,9 @@ void addMotorCone(Page& page, const JsonField& document)
 void addPnlssFit(Page& page, const JsonField& document)
 {
     const bool stable = document.at("stable").flag();
-    page.headline("Polynomial state space: " + decibelsIn(document, "estimationDb") + " dB on what it was fitted to, "
-                      + decibelsIn(document, "validationDb") + " dB on what it had not seen"
+    const bool validated = document.has("validationDb") && std::isfinite(document.at("validationDb").numberOrNaN());
+    page.headline("Polynomial state space: " + decibelsIn(document, "estimationDb") + " dB on what it was fitted to"
+                      + (validated ? ", " + decibelsIn(document, "validationDb") + " dB on what it had not seen" : "")
                       + (stable ? "" : "; its linear part is not stable"),
                   stable ? "good" : "bad");
     if (document.has("laws"))
@@ -195,6 +196,7 @@ void addRankingOfClasses(Page& page, const JsonField& document)
         const double parameters = model.at("parameters").number();
         classes.x.insert(classes.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
         classes.y.insert(classes.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
+        classes.names.insert(classes.names.end(), {name, ""});
         fewest = std::min(fewest, parameters);
         most = std::max(most, parameters);
         rows.push_back({name, Page::figure(fixedText(parameters, 0)), Page::figure(decibelsIn(model, "estimationDb")),
@@ -243,7 +245,9 @@ void addHarmonicCurves(Page& page, const JsonField& document)
             }
         if (channels.empty() || channels.back().first != channel)
             channels.push_back({channel, {}});
-        auto plot = harmonicPlot(nominal(curve.at("level").number(), "V") + " rms", frequency, harmonics, thd, floor);
+        const auto level = nominal(curve.at("level").number(), "V") + " rms";
+        auto plot = harmonicPlot(level, frequency, harmonics, thd, floor);
+        plot.facets = {{"level", level}};
         if (!plot.series.empty())
             channels.back().second.push_back(std::move(plot));
     }

@@ -2,7 +2,9 @@
 #include "Report/Page.h"
 
 #include "Plots/Engineering.h"
+#include "Report/CurveData.h"
 #include "Report/Draw.h"
+#include "Report/Explore.h"
 #include "Report/Style.h"
 
 #include <algorithm>
@@ -77,7 +79,9 @@ void Page::note(const std::string& text) { body_ += "<p class=\"note\">" + escap
 
 void Page::table(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows)
 {
-    body_ += "<div class=\"wide\"><table><thead><tr>";
+    constexpr std::size_t most = 12;  // columns that fit across a sheet of paper
+    body_ += header.size() > most ? "<div class=\"wide many\"><table><thead><tr>"
+                                  : "<div class=\"wide\"><table><thead><tr>";
     for (std::size_t c = 0; c < header.size(); ++c) {
         const bool numeric = !rows.empty() && std::all_of(rows.begin(), rows.end(), [c](const auto& row) {
             return c >= row.size() || row[c].numeric;
@@ -111,7 +115,7 @@ void Page::figures(std::vector<Plot> plots, int columns, const std::string& howT
         // about as wide as it will be shown, or its text shrinks
         plot.width = columns == 1 ? 640 : columns == 2 ? 460 : 330;
         plot.height = columns == 1 ? 340 : columns == 2 ? 270 : 240;
-        body_ += "<div><h4>" + escapeHtml(plot.title) + "</h4>";
+        body_ += "<div class=\"picture\"><h4><span>" + escapeHtml(plot.title) + "</span></h4>";
         places_.push_back(body_.size());
         body_ += "</div>\n";
         plots_.push_back(std::move(plot));
@@ -130,9 +134,15 @@ std::string Page::html() const
         done = places_[k];
     }
     body.append(body_, done);
+    if (!plots_.empty())
+        body += "<script type=\"application/json\" id=\"curves\">" + curveData(plots_)
+                + "</script>\n<script type=\"module\">\n" + std::string(exploreScript()) + "</script>\n";
     return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<meta name=\"color-scheme\" content=\"light dark\">\n"
+           // What the page holds is all that it may use: nothing can be loaded, and nothing sent.
+           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+           "script-src 'unsafe-inline'\">\n"
            "<title>"
            + escapeHtml(title_) + "</title>\n<style>\n" + std::string(pageStyle())
            + "</style></head>\n<body><main>\n<h1>" + escapeHtml(title_) + "</h1>\n<nav>" + contents_ + "</nav>\n" + body

@@ -13,7 +13,9 @@ namespace excursion {
 /// The text with &, <, > and quotes made harmless, for text and attributes alike.
 std::string escapeHtml(std::string_view text);
 
-/// One self-contained HTML page, filled from top to bottom. Every text is escaped here; nobody hands markup in.
+/// One self-contained HTML page, filled from top to bottom. Every text is escaped here; nobody hands markup in. Its
+/// pictures are there without a script, for paper and for readers that run none; with one they can be read, zoomed and
+/// switched off.
 class Page {
 public:
     struct Cell {

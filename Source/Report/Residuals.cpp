@@ -22,7 +22,10 @@ void addResiduals(Page& page, const LadderFile& file)
         page.figures(residualPlots(rungs.front().comparison, nullptr), 3, how);
     for (std::size_t k = 1; k < rungs.size(); ++k) {
         page.subsection("Rung " + rungTitle(file.ladder, k));
-        page.figures(residualPlots(rungs[k - 1].comparison, &rungs[k].comparison), 3, how);
+        auto plots = residualPlots(rungs[k - 1].comparison, &rungs[k].comparison);
+        for (auto& plot : plots)
+            plot.facets = {{"rung", rungTitle(file.ladder, k)}};
+        page.figures(std::move(plots), 3, how);
     }
 }
 

@@ -30,6 +30,24 @@ const ChannelComparison* channelOf(const Comparison& comparison, Quantity quanti
     return nullptr;
 }
 
+/// The errors of the other rungs, for a reader who asks for them.
+void addOtherErrors(Plot& plot, const Ladder& ladder, std::size_t rung, Quantity quantity, std::size_t level)
+{
+    const auto own = plot.series.size();
+    const auto& channels = ladder.rungs[rung].comparison.channels;
+    const auto channel = std::find_if(channels.begin(), channels.end(),
+                                      [quantity](const auto& c) { return c.quantity == quantity; });
+    const auto titles = plot.series;
+    overlayErrors(plot, ladder, rung, static_cast<std::size_t>(channel - channels.begin()), level);
+    for (std::size_t k = 0; k < own; ++k)
+        plot.series[k].title = titles[k].title;
+    for (auto k = own; k < plot.series.size(); ++k) {
+        plot.series[k].hidden = true;
+        plot.series[k].facets = {{"overlay the error of", plot.series[k].title}};
+        plot.series[k].title = "error, " + plot.series[k].title;
+    }
+}
+
 }  // namespace
 
 void addSpectra(Page& page, const LadderFile& file)
@@ -57,6 +75,10 @@ void addSpectra(Page& page, const LadderFile& file)
                                                              : "");
                 for (const auto& series : plot.series)
                     range.include(series.y);
+                plot.facets = {{"rung", rungTitle(ladder, rung)}};
+                if (rms > 0.0)
+                    plot.facets["level"] = nominal(rms, "V");
+                addOtherErrors(plot, ladder, rung, channel.quantity, level);
                 plots.push_back(std::move(plot));
             }
         if (plots.empty())

@@ -197,6 +197,25 @@ TEST_CASE("Without voltage and loopback the current tells the time as far as phy
     CHECK_THAT(imported.remarks[0], Catch::Contains("loudspeaker lies between"));
 }
 
+TEST_CASE("Exchanged voltage and current are laid beside the plan by the true voltage, and the check names both",
+          "[import]")
+{
+    const auto& played = smallPlay();
+    const Scratch scratch;
+    const auto recorded = record(played, recorder({1, 0, 2}));
+    const auto imported = importRecording(optionsFor(played, {save(scratch, "rec.wav", recorded)},
+                                                     {"1=voltage:4", "2=current:16", "3=displacement:8mm"}));
+    CHECK(clockError(imported.files[0].alignment, recorded, imported.take) < 0.005);
+    REQUIRE_FALSE(imported.remarks.empty());
+    CHECK_THAT(imported.remarks.front(), Catch::Contains("they may be exchanged"));
+    for (const auto quantity : {Quantity::voltage, Quantity::current}) {
+        const auto problems = check(imported.take).problems;
+        CHECK(std::any_of(problems.begin(), problems.end(), [quantity](const Problem& p) {
+            return p.kind == "mislabelled" && p.channel == quantity && p.fatal;
+        }));
+    }
+}
+
 TEST_CASE("The response of an interface is taken off by its loopback", "[import]")
 {
     const auto& played = smallPlay();

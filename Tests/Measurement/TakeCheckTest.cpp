@@ -192,7 +192,8 @@ TEST_CASE("channels that are exchanged, or called something else, are told apart
     };
     const std::pair<Quantity, Quantity> pairs[] {{Quantity::current, Quantity::displacement},
                                                  {Quantity::current, Quantity::pressure},
-                                                 {Quantity::displacement, Quantity::pressure}};
+                                                 {Quantity::displacement, Quantity::pressure},
+                                                 {Quantity::voltage, Quantity::current}};
     for (const auto& [a, b] : pairs) {
         const auto report = exchanged(a, b);
         INFO(name(a) << " and " << name(b) << ": " << fatalSentences(report));

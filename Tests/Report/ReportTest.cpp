@@ -5,12 +5,14 @@
 #include "Engine/Error.h"
 #include "Plots/Engineering.h"
 #include "Plots/Words.h"
+#include "Report/CurveData.h"
 #include "Report/Draw.h"
 #include "Report/Gnuplot.h"
 #include "Report/Report.h"
 #include "Report/Sections.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <regex>
@@ -49,9 +51,11 @@ TEST_CASE("The report is one page that needs nothing else", "[report]")
     CHECK(html == reportHtml(file));
     CHECK(count(html, "<svg") > 20);
     CHECK(count(html, "<svg") == count(html, "</svg>"));
-    for (const auto* outside : {"<script", "<link", "src=", "url(", "href=\"http", "@import"})
+    for (const auto* outside : {"<link", "src=", "url(", "href=\"http", "@import"})
         CHECK(html.find(outside) == std::string::npos);
     CHECK(html.find("&lt;script&gt;alert(1)") != std::string::npos);
+    CHECK(count(html, "<script") == 2);  // the curves and what shows them, within the page
+    CHECK(count(html, "</script") == 2);
     CHECK(html.find("rgb(") == std::string::npos);                  // every colour is the page's
     CHECK_FALSE(std::regex_search(html, std::regex("\\bnan\\b")));  // a word: resonances are no numbers
     for (const auto& rung : file.ladder.rungs)
@@ -89,6 +93,32 @@ TEST_CASE("Empty and unusual data is drawn without complaint", "[report]")
     const auto pictures = draw({empty, odd});
     REQUIRE(pictures.size() == 2);
     CHECK(pictures[1].find("`date`") != std::string::npos);
+}
+
+TEST_CASE("The script is given every curve once, with gaps, and nothing that ends it", "[report]")
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Plot plot;
+    plot.title = "</script><b>";
+    plot.x = {"f", "Hz", true, 0.0, 0.0, {}};
+    plot.y = {"y", "", false, -1.0, 1.0, {}};
+    plot.series = {{"a", Role::measured, {10.0, 20.0, 30.0}, {0.123456789, nan, 2.0}, {}, {}, Series::Shape::line, 0},
+                   {"b", Role::noise, {10.0, 20.0, 30.0}, {1.0}, {0.5}, {1.5}, Series::Shape::pointsAndLine, 4}};
+    const auto text = curveData({plot, plot});
+    CHECK(text.find('<') == std::string::npos);
+    const auto document = nlohmann::json::parse(text);
+    REQUIRE(document.at("plots").size() == 2);
+    const auto& drawn = document.at("plots")[1];
+    CHECK(drawn.at("title") == "</script><b>");
+    CHECK(drawn.at("y").at("most") == 1.0);
+    const auto& arrays = document.at("arrays");
+    const auto& [a, b] = std::pair(drawn.at("series")[0], drawn.at("series")[1]);
+    CHECK(arrays[a.at("x").get<std::size_t>()] == nlohmann::json {10, 20, 30});
+    CHECK(arrays[a.at("y").get<std::size_t>()] == nlohmann::json {0.123457, nullptr, 2});
+    CHECK(arrays[b.at("upper").get<std::size_t>()] == nlohmann::json {1.5});
+    CHECK(b.at("colour") == "--noise");
+    CHECK(b.at("points") == true);
+    CHECK(arrays.size() == 6);  // of both pictures together
 }
 
 TEST_CASE("Numbers are written as an engineer does", "[report]")

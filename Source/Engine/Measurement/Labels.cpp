@@ -85,10 +85,13 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
     }
     if (coil[0].size() < fewest)
         return bad;
-    Eigen::VectorXd c;
+    Eigen::VectorXd c, without;
     double sum = misfitOf(coil, c);
     if (!(c[0] * c[3] != 0.0) || c[0] < 0.0)
         return bad;
+    const double counterVoltage = c[3];
+    constexpr double told = 2.0;  // times worse without the voltage of the moving coil: its sign is known
+    const bool signKnown = misfitOf({coil[0], coil[1], coil[2]}, without) > told * sum;
 
     constexpr double around = 6.0;
     std::vector<std::vector<Complex>> cone(3);
@@ -110,6 +113,10 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
     sum += misfitOf(cone, c);
     if (!(c[0] * c[2] > 0.0))  // no resonance
         return bad;
+    // The force factor that drives the cone is the one that brakes the coil: with voltage and current exchanged all
+    // else fits, but its sign.
+    if (signKnown && counterVoltage * c[0] < 0.0)
+        return bad;
     if (ratio.size() >= fewest) {
         double mean = 0.0, square = 0.0;
         for (const double r : ratio)
@@ -119,6 +126,30 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
         sum += 0.3 * std::sqrt(square);  // a room bends it by a few dB
     }
     return std::min(bad, sum);
+}
+
+/// What the answers would be were voltage and current exchanged: per that current.
+std::vector<Answer> perCurrent(const std::vector<Answer>& answers, std::size_t current)
+{
+    auto result = answers;
+    for (std::size_t j = 0; j < answers.size(); ++j)
+        for (std::size_t k = 0; k < answers[j].value.size(); ++k) {
+            const auto i = answers[current].value[k];
+            result[j].seen[k] = answers[j].seen[k] && answers[current].seen[k];
+            result[j].value[k] = i == 0.0 ? 0.0 : (j == current ? 1.0 : answers[j].value[k]) / i;
+        }
+    return result;
+}
+
+Problem mislabelled(Quantity label, Quantity truth, double misfit)
+{
+    return {"mislabelled",
+            label,
+            100.0 * misfit,
+            "%",
+            true,
+            "The " + std::string(name(label)) + " channel behaves like the " + std::string(name(truth))
+                + " of a loudspeaker: cables or columns are mixed up; map it as " + std::string(name(truth)) + "."};
 }
 
 }  // namespace
@@ -144,7 +175,7 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
     for (const auto label : labels)
         answers.push_back(answerOf(take, label));
 
-    const auto misfit = [&](const std::vector<Quantity>& named) {
+    const auto misfit = [&](const std::vector<Answer>& answers, const std::vector<Quantity>& named) {
         const Answer *current = nullptr, *motion = nullptr, *pressure = nullptr;
         Quantity kind = Quantity::displacement;
         for (std::size_t k = 0; k < named.size(); ++k) {
@@ -157,7 +188,7 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
         return misfitOf(*current, *motion, kind, pressure);
     };
     constexpr double implausible = 0.3, plausible = 0.15, farBetter = 3.0;
-    const double asTold = misfit(labels);
+    const double asTold = misfit(answers, labels);
     if (!(asTold > implausible))
         return true;
     std::vector<std::size_t> order(labels.size());
@@ -178,21 +209,25 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
             const bool sameKind = std::find(labels.begin(), labels.end(), kind) != labels.end();
             if (!sameKind && named != labels)
                 continue;
-            if (const double left = misfit(other); left < least) {
+            if (const double left = misfit(answers, other); left < least) {
                 least = left;
                 best = other;
             }
         }
     } while (std::next_permutation(order.begin(), order.end()));
+    const auto current = static_cast<std::size_t>(std::find(labels.begin(), labels.end(), Quantity::current)
+                                                  - labels.begin());
+    if (const double left = misfit(perCurrent(answers, current), labels);
+        left < least && left < plausible && farBetter * left < asTold) {
+        problems.push_back(mislabelled(Quantity::voltage, Quantity::current, asTold));
+        problems.push_back(mislabelled(Quantity::current, Quantity::voltage, asTold));
+        return false;
+    }
     if (best == labels || !(least < plausible && farBetter * least < asTold))
         return true;
     for (std::size_t k = 0; k < labels.size(); ++k)
         if (best[k] != labels[k])
-            problems.push_back({"mislabelled", labels[k], 100.0 * asTold, "%", true,
-                                "The " + std::string(name(labels[k])) + " channel behaves like the "
-                                    + std::string(name(best[k]))
-                                    + " of a loudspeaker: cables or columns are mixed up; map it as "
-                                    + std::string(name(best[k])) + "."});
+            problems.push_back(mislabelled(labels[k], best[k], asTold));
     return false;
 }
 
