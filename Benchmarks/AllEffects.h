@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Linearization/Drivers.h"
+#include "Predistortion/Drivers.h"
 
 namespace excursion {
 

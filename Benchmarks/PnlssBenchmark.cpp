@@ -3,7 +3,7 @@
 // Jacobian and the factorization, beside the same recursion in NumPy where python3-numpy is at hand, and beside plain
 // loops, one parameter after the other; and the kernel of the Jacobian beside what the core can do at most.
 #include "Engine/Numerics/TallQr.h"
-#include "Engine/Polynomial/Recursion.h"
+#include "Engine/Polynomial/Pnlss/Recursion.h"
 #include "Engine/Polynomial/SensitivityKernels.h"
 
 #include <algorithm>

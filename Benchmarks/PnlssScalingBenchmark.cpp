@@ -4,7 +4,7 @@
 // is told as a ratio to the first run of its row, with a line fitted through it. A file name as argument receives the
 // table as CSV:
 //     gnuplot -e "set datafile separator ','; plot 'scaling.csv' using 2:5 every ::1"
-#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFit.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -4,8 +4,8 @@
 // speaker, which plays all.
 #include "AllEffects.h"
 
-#include "Engine/Linearization/Predistorter.h"
-#include "Engine/Linearization/Speaker.h"
+#include "Engine/Predistortion/Predistorter.h"
+#include "Engine/Predistortion/Speaker.h"
 #include "Engine/Signal/Multisine.h"
 
 #include <algorithm>

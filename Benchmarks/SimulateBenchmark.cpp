@@ -2,7 +2,7 @@
 // How many seconds of loudspeaker a second of one core simulates, with every effect of the catalogue. Target: 15.
 #include "AllEffects.h"
 
-#include "Engine/Driver/Simulate.h"
+#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Signal/Multisine.h"
 
 #include <chrono>

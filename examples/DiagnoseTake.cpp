@@ -2,11 +2,11 @@
 // A loudspeaker is measured, a linear model is fitted, and what it lacks is named. The loudspeaker is a virtual one, in
 // which a force factor that falls with excursion is hidden; a take of a real one comes from readMeasurement(folder).
 #include "Bench/Draw.h"
+#include "Engine/Check/TakeCheck.h"
 #include "Engine/Diagnosis/Diagnose.h"
 #include "Engine/Diagnosis/FitEffects.h"
-#include "Engine/Driver/Fit.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Loudspeaker/Fit.h"
 
 #include <iostream>
 

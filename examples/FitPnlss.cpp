@@ -2,7 +2,7 @@
 // A polynomial state-space model, which knows no physics, learns an oscillator with a hardening spring from two
 // records, and predicts a third.
 #include "Engine/Linear/Identify.h"
-#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Multisine.h"
 

@@ -2,10 +2,10 @@
 // Two tones are bent so that a loudspeaker plays them as if it were linear, block by block as an audio thread does it,
 // and a simulation of that loudspeaker tells what is gained.
 //     example_predistortbuffer MODEL.json
-#include "Engine/Driver/ModelFile.h"
-#include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
-#include "Engine/Linearization/Predistorter.h"
+#include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Signal/Fft.h"
 
 #include <cmath>
@@ -40,7 +40,7 @@ int main(int argc, char** argv)
                        + 2.0 * std::sin(2.0 * std::numbers::pi * 300.0 * t);
         }
 
-        LinearizationControls controls;
+        PredistortionControls controls;
         controls.displacementLimit = measuredDisplacement(model);
         controls.voltageLimit = 30.0;
         // allocates; what follows does not

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A woofer whose suspension hardens plays a tone of 20 Hz. How far does its cone go, and what harmonics does the motion
 // get?
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Simulate.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Signal/Fft.h"
 
 #include <cmath>

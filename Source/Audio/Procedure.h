@@ -3,7 +3,7 @@
 
 #include "Audio/Ring.h"
 #include "Audio/Stream.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Take/Measurement.h"
 
 #include <atomic>
 #include <optional>

@@ -3,8 +3,8 @@
 
 #include "Bench/Loudspeaker.h"
 #include "Bench/Sensor.h"
-#include "Engine/Measurement/Measurement.h"
 #include "Engine/Progress.h"
+#include "Engine/Take/Measurement.h"
 
 #include <cstdint>
 #include <map>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Bench/Loudspeaker.h"
-#include "Engine/Measurement/Measurement.h"
 #include "Engine/Progress.h"
+#include "Engine/Take/Measurement.h"
 
 #include <map>
 #include <span>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Bench/Random.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Take/Measurement.h"
 
 #include <optional>
 #include <string_view>

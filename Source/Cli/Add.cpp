@@ -8,9 +8,9 @@
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Trial.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <nlohmann/json.hpp>
 

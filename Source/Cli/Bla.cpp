@@ -3,16 +3,16 @@
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/Bla.h"
-#include "Engine/Measurement/Distortion.h"
-#include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/PreparedTake.h"
-#include "Engine/Measurement/TakeFile.h"
-#include "Engine/Measurement/Welch.h"
+#include "Engine/Estimate/Bla.h"
+#include "Engine/Estimate/Distortion.h"
+#include "Engine/Estimate/Welch.h"
+#include "Engine/Import/Export.h"
 
 #include <nlohmann/json.hpp>
 

@@ -8,8 +8,8 @@
 #include "Engine/Import/Calibration.h"
 #include "Engine/Import/ResponseCurve.h"
 #include "Engine/Import/Tone.h"
-#include "Engine/Measurement/Air.h"
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Take/Air.h"
+#include "Engine/Take/WavFile.h"
 
 #include <cmath>
 #include <filesystem>

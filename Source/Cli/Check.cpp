@@ -2,10 +2,10 @@
 #include "Cli/CheckTables.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
-#include "Engine/Measurement/PreparedTake.h"
-#include "Engine/Measurement/TakeCheck.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Check/PreparedTake.h"
+#include "Engine/Check/TakeCheck.h"
 
 #include <nlohmann/json.hpp>
 

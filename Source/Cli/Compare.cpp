@@ -7,8 +7,8 @@
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
-#include "Engine/Driver/ModelFile.h"
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <nlohmann/json.hpp>
 

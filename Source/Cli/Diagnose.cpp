@@ -6,7 +6,7 @@
 
 #include "Engine/Diagnosis/Diagnose.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
-#include "Engine/Driver/ModelFile.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <nlohmann/json.hpp>
 

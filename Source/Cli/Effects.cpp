@@ -3,7 +3,7 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Document/Words.h"
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,10 +3,10 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Error.h"
-#include "Engine/Measurement/ExcitationPlan.h"
-#include "Engine/Measurement/SweepTake.h"
-#include "Engine/Measurement/TakeFile.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/ExcitationPlan.h"
+#include "Engine/Take/SweepTake.h"
+#include "Engine/Take/TakeFile.h"
 
 #include <nlohmann/json.hpp>
 

@@ -6,9 +6,9 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Diagnosis/FitEffects.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/ModelFile.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,13 +2,15 @@
 #include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
+#include "Engine/Take/SweepTake.h"
 
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Engine/Polynomial/HarmonicDistortionFile.h"
-#include "Engine/Polynomial/ParallelHammersteinFile.h"
+#include "Engine/Polynomial/Hammerstein/HarmonicDistortionFile.h"
+#include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 
 #include <nlohmann/json.hpp>
 

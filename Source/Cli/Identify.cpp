@@ -9,7 +9,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Fractional/FractionalIdentify.h"
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
-#include "Engine/Fractional/MixedImpedance.h"
+#include "Engine/GreyBox/MixedImpedance.h"
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Signal/Level.h"

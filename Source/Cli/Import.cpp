@@ -2,13 +2,14 @@
 #include "Cli/ImportRecording.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
+#include "Engine/Import/Export.h"
+#include "Engine/Import/ImportMat.h"
 #include "Engine/Import/ImportText.h"
-#include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/ImportMat.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Take/TakeFile.h"
 
 #include <nlohmann/json.hpp>
 

@@ -6,10 +6,11 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
+#include "Engine/Import/Export.h"
 #include "Engine/Import/ImportRecording.h"
-#include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/SweepTake.h"
+#include "Engine/Import/ReadTake.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/SweepTake.h"
 
 #include <algorithm>
 #include <array>

@@ -4,13 +4,13 @@
 #include "Cli/OpenTake.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Diagnosis/LadderFile.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 #include "Report/Report.h"
 
 #include <nlohmann/json.hpp>

@@ -5,7 +5,7 @@
 #include "Cli/OpenTake.h"
 #include "Cli/Terminal.h"
 #include "Engine/Document/Words.h"
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>
 

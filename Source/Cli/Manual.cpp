@@ -4,7 +4,7 @@
 #include "Cli/Help.h"
 
 #include "Engine/Document/Words.h"
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>
 #include <string_view>

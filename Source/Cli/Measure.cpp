@@ -7,15 +7,15 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
+#include "Engine/Check/TakeCheck.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Import/AssignChannels.h"
 #include "Engine/Import/PlanPeriods.h"
-#include "Engine/Measurement/TakeCheck.h"
-#include "Engine/Measurement/TakeFile.h"
-#include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/TakeFile.h"
+#include "Engine/Take/WavFile.h"
 
 #include <nlohmann/json.hpp>
 

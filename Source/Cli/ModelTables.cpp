@@ -3,10 +3,10 @@
 
 #include "Cli/Terminal.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
-#include "Engine/Driver/Summary.h"
-#include "Plots/Engineering.h"
+#include "Engine/Loudspeaker/Summary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include "Engine/Datasheet/LawTable.h"
 #include "Engine/Design/StrokeLimits.h"
 #include "Engine/Diagnosis/Compare.h"
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/Model.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Model.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -4,10 +4,10 @@
 #include "Cli/Terminal.h"
 
 #include "Engine/Document/JsonText.h"
-#include "Engine/Linear/MotorCone.h"
+#include "Engine/Estimate/PhysicalDelay.h"
+#include "Engine/GreyBox/MotorCone.h"
 #include "Engine/Linear/StateSpaceFile.h"
-#include "Engine/Measurement/Air.h"
-#include "Engine/Measurement/PhysicalDelay.h"
+#include "Engine/Take/Air.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,8 +2,8 @@
 #include "Cli/OpenDriver.h"
 
 #include "Engine/Diagnosis/LadderFile.h"
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <filesystem>
 

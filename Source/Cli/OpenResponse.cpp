@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/OpenResponse.h"
 
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Document/JsonField.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/Bla.h"
-#include "Engine/Measurement/PreparedTake.h"
-#include "Engine/Measurement/TakeFile.h"
-#include "Engine/Measurement/Welch.h"
+#include "Engine/Estimate/Bla.h"
+#include "Engine/Estimate/Welch.h"
+#include "Engine/Import/ReadTake.h"
 
 #include <filesystem>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Frf.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Estimate/Frf.h"
+#include "Engine/Take/Measurement.h"
 
 #include <optional>
 #include <string>

@@ -3,11 +3,11 @@
 
 #include "Cli/Terminal.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Import/ReadTake.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Seen.h"
 
 namespace excursion::cli {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/Model.h"
-#include "Engine/Driver/Record.h"
-#include "Engine/Measurement/PreparedTake.h"
+#include "Engine/Check/PreparedTake.h"
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/Record.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -4,19 +4,19 @@
 #include "Cli/OpenDriver.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Datasheet/DatasheetFile.h"
 #include "Engine/Datasheet/ResponseCurves.h"
 #include "Engine/Datasheet/SpiceNetlist.h"
 #include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/Export.h"
-#include "Engine/Measurement/PreparedTake.h"
-#include "Engine/Measurement/TakeFile.h"
-#include "Plots/Engineering.h"
+#include "Engine/Import/Export.h"
 
 #include <nlohmann/json.hpp>
 

@@ -4,10 +4,10 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Simulation.h"
 #include "Engine/Linear/StateSpaceFile.h"
-#include "Engine/Polynomial/BlockModelFile.h"
-#include "Engine/Polynomial/NarxFile.h"
-#include "Engine/Polynomial/ParallelHammersteinFile.h"
-#include "Engine/Polynomial/PnlssFile.h"
+#include "Engine/Polynomial/Block/BlockModelFile.h"
+#include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
+#include "Engine/Polynomial/Narx/NarxFile.h"
+#include "Engine/Polynomial/Pnlss/PnlssFile.h"
 
 #include <nlohmann/json.hpp>
 

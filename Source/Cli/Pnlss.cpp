@@ -3,16 +3,17 @@
 
 #include "Cli/Destination.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
 #include "Engine/BlackBox/Stimulus.h"
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/PreparedTake.h"
-#include "Engine/Measurement/TakeFile.h"
-#include "Engine/Polynomial/LinearStarts.h"
-#include "Engine/Polynomial/PnlssFile.h"
-#include "Engine/Polynomial/ResidualTest.h"
+#include "Engine/Polynomial/Pnlss/LinearStarts.h"
+#include "Engine/Polynomial/Pnlss/PnlssFile.h"
+#include "Engine/Polynomial/Pnlss/ResidualTest.h"
 #include "Engine/Ranking/Agreement.h"
+#include "Engine/Take/TakeFile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 
-#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Engine/Polynomial/TakeRecords.h"
 
 #include <nlohmann/json.hpp>

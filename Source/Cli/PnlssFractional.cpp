@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Alpha.h"
 #include "Cli/Pnlss.h"
+#include "Engine/GreyBox/MixedImpedance.h"
+#include "Engine/GreyBox/MixedOrderPnlss.h"
 
 #include "Engine/Error.h"
 #include "Engine/Fractional/FractionalIdentify.h"
-#include "Engine/Polynomial/FractionalPnlssFile.h"
-#include "Engine/Polynomial/FractionalPnlssFit.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFit.h"
 
 #include <cmath>
 #include <filesystem>

@@ -6,8 +6,8 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Identify.h"
-#include "Engine/Polynomial/LinearStarts.h"
-#include "Engine/Polynomial/PnlssFile.h"
+#include "Engine/Polynomial/Pnlss/LinearStarts.h"
+#include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Ranking/TaylorExpansion.h"
 
 #include <filesystem>

@@ -6,13 +6,13 @@
 #include "Engine/BlackBox/BlackBoxFile.h"
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
 #include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
-#include "Engine/Linearization/Predistorter.h"
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Signal/Level.h"
-#include "Plots/Engineering.h"
+#include "Engine/Take/WavFile.h"
 
 #include <nlohmann/json.hpp>
 
@@ -82,9 +82,9 @@ Wav readPlayable(const std::string& file, const std::string& out)
     return wav;
 }
 
-LinearizationControls controlsFrom(const PredistortArguments& options, const Model& model)
+PredistortionControls controlsFrom(const PredistortArguments& options, const Model& model)
 {
-    LinearizationControls controls;
+    PredistortionControls controls;
     controls.amount = options.amount;
     controls.displacementLimit = options.displacementLimit.value_or(measuredDisplacement(model));
     controls.voltageLimit = options.voltageLimit.value_or(std::numeric_limits<double>::infinity());

@@ -2,11 +2,11 @@
 #include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TakeFile.h"
 #include "Engine/Ranking/Rank.h"
 
 #include <nlohmann/json.hpp>

@@ -3,15 +3,16 @@
 #include "Cli/PlayDocument.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/TextFile.h"
-#include "Engine/Driver/ModelFile.h"
-#include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/SweepTake.h"
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Signal/Level.h"
-#include "Plots/Engineering.h"
+#include "Engine/Take/SweepTake.h"
+#include "Engine/Take/WavFile.h"
 
 #include <nlohmann/json.hpp>
 

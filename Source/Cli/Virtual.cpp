@@ -2,6 +2,7 @@
 #include "Cli/Destination.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Import/ReadTake.h"
 
 #include "Bench/Bench.h"
 #include "Bench/Draw.h"
@@ -9,8 +10,8 @@
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/SweepTake.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/SweepTake.h"
 
 #include <nlohmann/json.hpp>
 

@@ -5,10 +5,10 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Design/WhatIfFile.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/ModelFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
-#include "Plots/Engineering.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <nlohmann/json.hpp>
 

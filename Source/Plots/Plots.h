@@ -3,7 +3,7 @@
 
 #include "Engine/Design/WhatIf.h"
 #include "Engine/Diagnosis/Ladder.h"
-#include "Engine/Driver/FitResponse.h"
+#include "Engine/Loudspeaker/FitResponse.h"
 #include "Plots/Plot.h"
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
 #include "Plots/Plots.h"
 #include "Plots/Words.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/CandidateCard.h"
 
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
 #include "Plots/Words.h"
 #include "Plugin/Look.h"
 #include "Plugin/Text.h"

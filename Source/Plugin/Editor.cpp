@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Editor.h"
 
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 #include "Plugin/Look.h"
 
 #include <nlohmann/json.hpp>

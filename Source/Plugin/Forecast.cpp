@@ -15,7 +15,7 @@ Forecast::~Forecast()
     changed_.notify_all();
 }
 
-void Forecast::ask(const Model& model, const LinearizationControls& controls, double volts)
+void Forecast::ask(const Model& model, const PredistortionControls& controls, double volts)
 {
     const std::lock_guard lock(mutex_);
     open_ = Question {model, controls, volts};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Linearization/PredictedDistortion.h"
+#include "Engine/Predistortion/PredictedDistortion.h"
 
 #include <condition_variable>
 #include <memory>
@@ -18,7 +18,7 @@ public:
     Forecast();
     ~Forecast();
 
-    void ask(const Model&, const LinearizationControls&, double volts);
+    void ask(const Model&, const PredistortionControls&, double volts);
 
     /// The answer, once.
     std::optional<PredictedDistortion> take();
@@ -26,7 +26,7 @@ public:
 private:
     struct Question {
         Model model;
-        LinearizationControls controls;
+        PredistortionControls controls;
         double volts = 0.0;
     };
     void run(const std::stop_token&);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/LinearizePage.h"
 
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/ModelFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
-#include "Plots/Engineering.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 #include "Plots/Plots.h"
 
 #include <nlohmann/json.hpp>

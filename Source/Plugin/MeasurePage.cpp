@@ -2,7 +2,7 @@
 #include "Plugin/MeasurePage.h"
 
 #include "Bench/Draw.h"
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
 #include "Plots/Words.h"
 #include "Plugin/Look.h"
 

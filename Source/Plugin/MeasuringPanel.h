@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/ExcitationPlan.h"
+#include "Engine/Take/ExcitationPlan.h"
 #include "Plugin/Page.h"
 #include "Plugin/Recorder.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Linearization/Recipe.h"
+#include "Engine/Predistortion/Recipe.h"
 #include "Plugin/Stepped.h"
 
 #include <atomic>

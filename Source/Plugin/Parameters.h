@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Linearization/Chain.h"
+#include "Engine/Predistortion/Chain.h"
 #include "Plugin/Number.h"
 #include "Plugin/State.h"
 

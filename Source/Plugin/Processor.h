@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Linearization/Crossfade.h"
-#include "Engine/Linearization/Peak.h"
+#include "Engine/Predistortion/Crossfade.h"
+#include "Engine/Predistortion/Peak.h"
 #include "Plugin/Delay.h"
 #include "Plugin/Juce.h"
 #include "Plugin/Parameters.h"

@@ -2,10 +2,11 @@
 #include "Plugin/Session.h"
 
 #include "Bench/Draw.h"
-#include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ImportRecording.h"
-#include "Engine/Measurement/TakeFile.h"
+#include "Engine/Import/ReadTake.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Take/TakeFile.h"
 #include "Report/Report.h"
 
 #include <filesystem>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Diagnosis/Improvement.h"
 #include "Engine/Diagnosis/LadderFile.h"
 #include "Engine/Import/RecordingOptions.h"
-#include "Engine/Measurement/Measurement.h"
-#include "Engine/Measurement/PreparedTake.h"
+#include "Engine/Take/Measurement.h"
 
 #include <condition_variable>
 #include <cstdint>

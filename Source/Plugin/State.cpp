@@ -2,8 +2,8 @@
 #include "Plugin/State.h"
 
 #include "Engine/Document/JsonText.h"
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <FactoryDrivers.h>
 #include <FactoryRecipes.h>

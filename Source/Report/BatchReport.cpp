@@ -2,9 +2,9 @@
 #include "Report/BatchReport.h"
 
 #include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/Words.h"
 #include "Plots/BatchPlots.h"
-#include "Plots/Engineering.h"
 #include "Plots/Words.h"
 #include "Report/Page.h"
 #include "Report/Sections.h"

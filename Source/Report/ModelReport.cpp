@@ -2,8 +2,8 @@
 #include "Report/ModelReport.h"
 
 #include "Engine/Document/DraftFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
-#include "Plots/Engineering.h"
 #include "Plots/HarmonicPlots.h"
 #include "Plots/ModelPlots.h"
 #include "Report/Page.h"

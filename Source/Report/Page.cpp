@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Report/Page.h"
 
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
 #include "Report/CurveData.h"
 #include "Report/Draw.h"
 #include "Report/Explore.h"

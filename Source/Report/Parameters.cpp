@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Driver/Summary.h"
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
+#include "Engine/Loudspeaker/Summary.h"
 #include "Plots/Words.h"
 #include "Report/Sections.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
+#include "Engine/Document/Words.h"
 #include "Plots/Words.h"
 #include "Report/Sections.h"
-#include "Engine/Document/Words.h"
 
 #include <algorithm>
 

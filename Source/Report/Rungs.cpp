@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/ComparisonFile.h"
-#include "Plots/Engineering.h"
+#include "Engine/Document/Engineering.h"
 #include "Plots/Plots.h"
 #include "Plots/Words.h"
 #include "Report/Sections.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/ComparisonFile.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/Words.h"
-#include "Plots/Engineering.h"
 #include "Plots/Words.h"
 #include "Report/Sections.h"
 

@@ -3,10 +3,10 @@
 #include "Audio/ChooseDevice.h"
 #include "Audio/Measure.h"
 #include "Audio/SimulatedDevice.h"
+#include "Engine/Check/TakeCheck.h"
 #include "Engine/Import/ImportRecording.h"
-#include "Engine/Measurement/ExcitationPlan.h"
-#include "Engine/Measurement/TakeCheck.h"
-#include "Measurement/Scratch.h"
+#include "Engine/Take/ExcitationPlan.h"
+#include "Scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sound of a measurement, block by block, without a device: what is played and kept, and what ends it.
-#include "Audio/Procedure.h"
 #include "Audio/Measure.h"
-#include "Measurement/Scratch.h"
+#include "Audio/Procedure.h"
+#include "Scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -39,7 +39,7 @@ TEST_CASE("Frames come out of a ring as they went in, from one thread to another
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-#include "Linearization/Detectors.h"
+#include "Predistortion/Detectors.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Engine/Batch/Units.h"
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <cmath>
 #include <string>

@@ -3,8 +3,8 @@
 #include "Engine/Batch/CollectionFile.h"
 #include "Engine/Batch/Statistics.h"
 #include "Engine/Error.h"
-#include "Engine/Signal/Median.h"
-#include "Measurement/Scratch.h"
+#include "Engine/Numerics/Median.h"
+#include "Scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,8 +3,8 @@
 #include "Bench/Fixture.h"
 #include "Bench/Stimulus.h"
 #include "Bench/Truth.h"
+#include "Engine/Check/TakeCheck.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/TakeCheck.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

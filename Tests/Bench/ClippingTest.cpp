@@ -3,9 +3,9 @@
 // bench knows no such clipping: its noise-free channels are clipped here, then given white noise.
 #include "Bench/Draw.h"
 #include "Bench/Random.h"
-#include "Engine/Measurement/Periods.h"
-#include "Engine/Measurement/PileUp.h"
-#include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Check/PileUp.h"
+#include "Engine/Check/TakeCheck.h"
+#include "Engine/Estimate/Periods.h"
 #include "Engine/Signal/Level.h"
 
 #include <catch2/catch.hpp>

@@ -4,9 +4,9 @@
 #include "BlackBox/RandomModels.h"
 
 #include "Bench/Draw.h"
+#include "Engine/Estimate/Bla.h"
 #include "Engine/Linear/Identify.h"
-#include "Engine/Measurement/Bla.h"
-#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Engine/Polynomial/TakeRecords.h"
 #include "Engine/Signal/Fft.h"
 

@@ -3,7 +3,7 @@
 // nothing.
 #include "Cli/Chain.h"
 
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Take/WavFile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Cli/Program.h"
-#include "Engine/Measurement/WavFile.h"
-#include "Measurement/Scratch.h"
+#include "Engine/Take/WavFile.h"
+#include "Scratch.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

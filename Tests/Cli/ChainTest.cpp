@@ -2,7 +2,7 @@
 // The verbs one after the other on a virtual take, as a user would run them.
 #include "Cli/Chain.h"
 
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Take/WavFile.h"
 
 using namespace excursion::test;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models of fractional order from the command line.
 #include "Cli/Program.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Program.h"
 
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far the work is, for a program that reads it.
 #include "Cli/Program.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <nlohmann/json.hpp>
 

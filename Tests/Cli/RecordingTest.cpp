@@ -2,8 +2,9 @@
 // From a recording and the plan that was played to a verdict, and what is told on the way.
 #include "Cli/Chain.h"
 
-#include "Engine/Measurement/TakeFile.h"
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Import/ReadTake.h"
+#include "Engine/Take/TakeFile.h"
+#include "Engine/Take/WavFile.h"
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Datasheet/LossyInductance.h"
-#include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <catch2/catch.hpp>
 

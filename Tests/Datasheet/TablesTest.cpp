@@ -2,9 +2,9 @@
 #include "Engine/Datasheet/DatasheetFile.h"
 #include "Engine/Datasheet/ResponseCurves.h"
 #include "Engine/Datasheet/SpiceNetlist.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Linearize.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,10 +2,10 @@
 #include "Engine/Datasheet/ThieleSmall.h"
 
 #include "Engine/Datasheet/Impedances.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,8 +2,8 @@
 // Distortion of a weakly bent spring under a tone has a closed form; what is said of several effects must add up to it.
 #include "Engine/Design/DistortionByEffect.h"
 
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Model.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Model.h"
 
 #include <catch2/catch.hpp>
 

@@ -4,7 +4,7 @@
 #include "Engine/Design/WhatIf.h"
 #include "Engine/Design/WhatIfFile.h"
 #include "Engine/Document/JsonText.h"
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Signal/Fft.h"
 
 #include <catch2/catch.hpp>

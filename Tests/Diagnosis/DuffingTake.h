@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Measurement.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Multisine.h"
+#include "Engine/Take/Measurement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole way from a take to a verdict, on takes of a simulator that shares no code with the model.
-#include "SeedDriver.h"
 #include "Engine/Diagnosis/Improve.h"
-#include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "SeedDriver.h"
 
 #include <catch2/catch.hpp>
 

@@ -5,7 +5,7 @@
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Diagnosis/Remainder.h"
 #include "Engine/Diagnosis/RemainderFile.h"
-#include "Engine/Measurement/Wander.h"
+#include "Engine/Estimate/Wander.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,8 +3,8 @@
 
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/LadderFile.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Linearize.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <cmath>
 #include <limits>

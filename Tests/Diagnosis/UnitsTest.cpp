@@ -3,8 +3,8 @@
 #include "Bench/Draw.h"
 #include "Diagnosis/DuffingTake.h"
 #include "Engine/Diagnosis/Improve.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Linearize.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <catch2/catch.hpp>
 

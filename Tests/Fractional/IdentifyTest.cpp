@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Identification of fractional models: systems that are known, the spread of repeated estimates, and a fixed problem.
 #include "Engine/Fractional/FractionalIdentify.h"
-#include "Engine/Fractional/MixedImpedance.h"
+#include "Engine/GreyBox/MixedImpedance.h"
 #include "Engine/Linear/OrderSweep.h"
 #include "Linear/Problem.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Mittag-Leffler function against closed forms, and against its series summed with 180 digits by mpmath.
 #include "Engine/Fractional/MittagLeffler.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <cmath>
 #include <limits>

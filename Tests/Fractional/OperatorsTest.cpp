@@ -2,7 +2,7 @@
 // Fractional integrals and derivatives of monomials against D^alpha t^p = Gamma(p + 1)/Gamma(p + 1 - alpha) t^(p -
 // alpha).
 #include "Engine/Fractional/Operators.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <cmath>
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Measurement/ImportMat.h"
+#include "Engine/Import/ImportMat.h"
 #include "Fuzz/Target.h"
 
 #include <fstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Measurement/MeasurementJson.h"
+#include "Engine/Take/MeasurementJson.h"
 #include "Fuzz/Target.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/JsonField.h"
-#include "Engine/Driver/ModelFile.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 #include "Fuzz/Target.h"
 
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Error.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Take/Measurement.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Take/WavFile.h"
 #include "Fuzz/Target.h"
 
 #include <fstream>

@@ -3,7 +3,7 @@
 #include "Engine/Import/Calibration.h"
 #include "Engine/Import/ResponseCurve.h"
 #include "Engine/Import/Tone.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,8 +3,8 @@
 
 #include "Bench/Draw.h"
 #include "Bench/Run.h"
-#include "Engine/Measurement/ExcitationPlan.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Take/ExcitationPlan.h"
 
 #include <algorithm>
 #include <cmath>

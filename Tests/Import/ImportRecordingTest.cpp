@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recordings with known faults become takes whose time is right to a small part of a sample, or are refused for the
 // right reason.
+#include "Engine/Check/TakeCheck.h"
 #include "Engine/Import/ImportRecording.h"
-#include "Engine/Measurement/TakeCheck.h"
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Take/WavFile.h"
 #include "Import/FaultSimulator.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What recorders write: containers and sample formats, whole and broken.
 #include "Engine/Import/PlanClock.h"
-#include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Resample.h"
-#include "Measurement/Scratch.h"
+#include "Engine/Take/WavFile.h"
+#include "Scratch.h"
 
 #include <sndfile.h>
 

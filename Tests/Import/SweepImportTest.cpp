@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recordings of sweeps become takes that know their sweeps and whose time is right, or are refused.
 #include "Engine/Import/ImportRecording.h"
-#include "Engine/Measurement/SweepTake.h"
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Take/WavFile.h"
 #include "Import/FaultSimulator.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <algorithm>
 #include <cmath>

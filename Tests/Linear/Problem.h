@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Frf.h"
-#include "Measurement/Scratch.h"
+#include "Engine/Estimate/Frf.h"
+#include "Scratch.h"
 
 #include <fstream>
 #include <random>

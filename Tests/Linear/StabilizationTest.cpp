@@ -5,7 +5,7 @@
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Stabilization.h"
-#include "Engine/Linear/Sylvester.h"
+#include "Engine/Numerics/Sylvester.h"
 #include "Linear/Problem.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Editor.h"
 
-#include "Engine/Driver/ModelFile.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <catch2/catch.hpp>
 

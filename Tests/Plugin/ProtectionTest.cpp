@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What leaves the plugin, given to the plugin's own drivers as a simulation moves them; nothing is asked of the meters.
 #include "Plugin/Processor.h"
-#include "Linearization/Programme.h"
+#include "Predistortion/Programme.h"
 
-#include "Engine/Driver/Simulate.h"
+#include "Engine/Loudspeaker/Simulate.h"
 
 #include <catch2/catch.hpp>
 

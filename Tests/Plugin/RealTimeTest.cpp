@@ -5,7 +5,7 @@
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-#include "Linearization/Detectors.h"
+#include "Predistortion/Detectors.h"
 
 #include "Plugin/Editor.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Linear/Problem.h"
 
 #include <fstream>

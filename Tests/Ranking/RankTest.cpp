@@ -3,9 +3,9 @@
 // told to have found.
 #include "Bench/Draw.h"
 #include "Engine/Error.h"
+#include "Engine/Estimate/Bla.h"
 #include "Engine/Linear/Identify.h"
-#include "Engine/Measurement/Bla.h"
-#include "Engine/Polynomial/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Engine/Ranking/Agreement.h"
 #include "Engine/Ranking/Rank.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The physical driver as a polynomial model: coefficients by hand, and simulations of both.
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Ranking/TaylorExpansion.h"
-#include "Linearization/Drivers.h"
+#include "Predistortion/Drivers.h"
 
 #include <catch2/catch.hpp>
 
@@ -65,7 +65,7 @@ TEST_CASE("The coefficients of a driver's expansion are those that a person deri
     model = withLaw(model, "inductance-position", l1, l2);
     const auto expanded = expand(model, Quantity::current);
     REQUIRE(expanded.isValid());
-    const auto linear = linearize(model);
+    const auto linear = smallSignal(model);
     // The loops of Le(x) follow the current and, without weight, move nothing.
     const auto& A = expanded.form.linear.A;
     CHECK((A.topLeftCorner<3, 3>() - linear.A.topLeftCorner<3, 3>()).norm()

@@ -2,7 +2,7 @@
 // Measured impedances by models of integer, fractional and mixed order: what an order that is no integer is worth in
 // parameters.
 #include "RealData/OrderComparison.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <algorithm>
 #include <iterator>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "Engine/Fractional/FractionalIdentify.h"
-#include "Engine/Fractional/MixedImpedance.h"
+#include "Engine/GreyBox/MixedImpedance.h"
+#include "Engine/Import/ReadTake.h"
 #include "Engine/Linear/Identify.h"
-#include "Engine/Measurement/TakeFile.h"
 
 #include <cmath>
 #include <filesystem>

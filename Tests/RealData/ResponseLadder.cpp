@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measured frequency responses: what the ladder adds to the base model, and that it does not claim more than they show.
 #include "Engine/Diagnosis/Improve.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Summary.h"
-#include "Engine/Measurement/TakeFile.h"
-#include "Measurement/Scratch.h"
+#include "Engine/Import/ReadTake.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/Summary.h"
+#include "Scratch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,10 +2,10 @@
 // The Silverbox, an electronic Duffing oscillator (Wigren and Schoukens 2013): the ladder sees the multisines only and
 // is then asked about the arrow, noise that grows to 1.3 times what the multisines reached.
 #include "Engine/Diagnosis/Improve.h"
-#include "Engine/Driver/ModelFile.h"
-#include "Engine/Driver/Simulate.h"
-#include "Engine/Measurement/ImportMat.h"
-#include "Measurement/Scratch.h"
+#include "Engine/Import/ImportMat.h"
+#include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Scratch.h"
 
 #include <Eigen/QR>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Diagnosis/SyntheticLadder.h"
 
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
-#include "Plots/Engineering.h"
 #include "Plots/Words.h"
 #include "Report/CurveData.h"
 #include "Report/Draw.h"

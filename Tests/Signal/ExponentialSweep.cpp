@@ -4,7 +4,7 @@
 #include "Engine/Signal/Convolution.h"
 #include "Engine/Signal/ExponentialSweep.h"
 #include "Engine/Signal/Level.h"
-#include "Measurement/Scratch.h"
+#include "Scratch.h"
 
 #include <cmath>
 #include <numbers>

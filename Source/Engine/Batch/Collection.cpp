@@ -9,7 +9,7 @@
 #include "Engine/Document/Figures.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
-#include "Engine/Signal/Median.h"
+#include "Engine/Numerics/Median.h"
 
 #include <algorithm>
 #include <cmath>

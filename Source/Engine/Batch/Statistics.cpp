@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Batch/Statistics.h"
 
-#include "Engine/Signal/Median.h"
+#include "Engine/Numerics/Median.h"
 
 #include <algorithm>
 #include <cmath>

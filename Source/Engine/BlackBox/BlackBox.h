@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Polynomial/BlockModel.h"
-#include "Engine/Polynomial/FractionalPnlss.h"
-#include "Engine/Polynomial/Narx.h"
-#include "Engine/Polynomial/ParallelHammerstein.h"
 #include "Engine/BlackBox/Stimulus.h"
+#include "Engine/Polynomial/Block/BlockModel.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalPnlss.h"
+#include "Engine/Polynomial/Hammerstein/ParallelHammerstein.h"
+#include "Engine/Polynomial/Narx/Narx.h"
 
 #include <string>
 

@@ -2,11 +2,11 @@
 #include "Engine/BlackBox/BlackBoxFile.h"
 
 #include "Engine/Error.h"
-#include "Engine/Polynomial/BlockModelFile.h"
-#include "Engine/Polynomial/FractionalPnlssFile.h"
-#include "Engine/Polynomial/NarxFile.h"
-#include "Engine/Polynomial/ParallelHammersteinFile.h"
-#include "Engine/Polynomial/PnlssFile.h"
+#include "Engine/Polynomial/Block/BlockModelFile.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
+#include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
+#include "Engine/Polynomial/Narx/NarxFile.h"
+#include "Engine/Polynomial/Pnlss/PnlssFile.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
 
-#include "Engine/Linearization/Subnormals.h"
+#include "Engine/Predistortion/Subnormals.h"
 
 #include <algorithm>
 #include <cmath>

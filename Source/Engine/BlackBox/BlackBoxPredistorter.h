@@ -4,8 +4,8 @@
 #include "Engine/BlackBox/BlackBoxLinearizer.h"
 #include "Engine/BlackBox/BlackBoxRehearsal.h"
 #include "Engine/BlackBox/RegionLimiter.h"
-#include "Engine/Linearization/Glide.h"
-#include "Engine/Linearization/Peak.h"
+#include "Engine/Predistortion/Glide.h"
+#include "Engine/Predistortion/Peak.h"
 
 #include <atomic>
 #include <cstddef>

@@ -3,9 +3,9 @@
 
 #include "Engine/BlackBox/BlackBoxStep.h"
 #include "Engine/BlackBox/RateConverter.h"
-#include "Engine/Linearization/Glide.h"
-#include "Engine/Linearization/Peak.h"
-#include "Engine/Linearization/Recovery.h"
+#include "Engine/Predistortion/Glide.h"
+#include "Engine/Predistortion/Peak.h"
+#include "Engine/Predistortion/Recovery.h"
 
 #include <atomic>
 #include <vector>

@@ -3,8 +3,8 @@
 
 #include "Engine/BlackBox/BlackBoxStep.h"
 #include "Engine/BlackBox/RateConverter.h"
-#include "Engine/Linearization/PeakHold.h"
-#include "Engine/Linearization/Recovery.h"
+#include "Engine/Predistortion/PeakHold.h"
+#include "Engine/Predistortion/Recovery.h"
 
 #include <vector>
 

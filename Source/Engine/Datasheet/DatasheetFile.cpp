@@ -6,7 +6,7 @@
 #include "Engine/Document/CsvText.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Document/JsonText.h"
-#include "Engine/Driver/Network.h"
+#include "Engine/Loudspeaker/Network.h"
 
 namespace excursion {
 namespace {

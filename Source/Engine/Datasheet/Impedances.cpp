@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Datasheet/Impedances.h"
 
-#include "Engine/Driver/BalancedResolvent.h"
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Network.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Network.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Numerics/BalancedResolvent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ std::vector<std::complex<double>> blockedImpedance(const Model& model, const std
 {
     if (!model.electrical())
         throw Error(Error::Kind::data, "The model has no coil, and so no electrical impedance.");
-    const auto linear = linearize(linearPart(model));
+    const auto linear = smallSignal(linearPart(model));
     const auto states = statesWithout(linear.A.rows(), {1, velocity});
     BalancedResolvent resolvent(linear.A(states, states));
     const Eigen::VectorXcd B = linear.B(states).cast<std::complex<double>>();
@@ -63,7 +63,7 @@ double coilResistance(const Model& model, double frequency)
 
 OpenCoilMechanics::OpenCoilMechanics(const Model& model)
 {
-    const auto linear = linearize(linearPart(model), false, Drives::cone);
+    const auto linear = smallSignal(linearPart(model), false, Drives::cone);
     const auto states = statesWithout(linear.A.rows(), {current});
     A_ = linear.A(states, states);
     B_ = linear.B(states);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/Model.h"
+#include "Engine/Loudspeaker/Model.h"
 
 #include <optional>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/Effect.h"
-#include "Engine/Driver/Model.h"
+#include "Engine/Loudspeaker/Effect.h"
+#include "Engine/Loudspeaker/Model.h"
 
 #include <complex>
 #include <string>

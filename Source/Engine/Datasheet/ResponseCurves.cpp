@@ -3,12 +3,12 @@
 
 #include "Engine/Datasheet/ThieleSmall.h"
 #include "Engine/Document/Figures.h"
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/Air.h"
-#include "Engine/Measurement/Bla.h"
-#include "Engine/Measurement/ExcitationPlan.h"
+#include "Engine/Estimate/Bla.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Take/Air.h"
+#include "Engine/Take/ExcitationPlan.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "Engine/Datasheet/KnownScale.h"
-#include "Engine/Measurement/Frf.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Estimate/Frf.h"
 #include "Engine/Progress.h"
+#include "Engine/Take/Measurement.h"
 
 #include <vector>
 

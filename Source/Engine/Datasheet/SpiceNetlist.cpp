@@ -3,8 +3,8 @@
 
 #include "Engine/Document/Figures.h"
 #include "Engine/Document/Words.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/Network.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Network.h"
 
 #include <cctype>
 

@@ -2,9 +2,9 @@
 #include "Engine/Datasheet/ThieleSmall.h"
 
 #include "Engine/Datasheet/Impedances.h"
-#include "Engine/Driver/Propagate.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/Air.h"
+#include "Engine/Loudspeaker/Propagate.h"
+#include "Engine/Take/Air.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Design/DistortionByEffect.h"
 
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/OutputError.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Design/StrokeLimits.h"
 
-#include "Engine/Driver/Dynamics.h"
-#include "Engine/Measurement/Air.h"
+#include "Engine/Loudspeaker/Dynamics.h"
+#include "Engine/Take/Air.h"
 
 #include <Eigen/LU>
 

@@ -2,7 +2,7 @@
 #include "Engine/Design/WhatIf.h"
 
 #include "Engine/Document/Figures.h"
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>
 #include <cmath>

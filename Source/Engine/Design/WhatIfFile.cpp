@@ -2,7 +2,7 @@
 #include "Engine/Design/WhatIfFile.h"
 
 #include "Engine/Document/JsonText.h"
-#include "Engine/Measurement/MeasurementJson.h"
+#include "Engine/Take/MeasurementJson.h"
 
 #include <cmath>
 

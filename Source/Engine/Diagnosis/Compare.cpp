@@ -3,11 +3,11 @@
 
 #include "Engine/Diagnosis/ResidualCurves.h"
 #include "Engine/Document/Figures.h"
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/OutputError.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/Model.h"
-#include "Engine/Driver/Record.h"
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/Record.h"
 #include "Engine/Progress.h"
 
 #include <map>

@@ -3,7 +3,7 @@
 
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Document/JsonField.h"
-#include "Engine/Measurement/MeasurementJson.h"
+#include "Engine/Take/MeasurementJson.h"
 
 #include <nlohmann/json.hpp>
 

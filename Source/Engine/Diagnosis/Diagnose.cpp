@@ -5,10 +5,10 @@
 #include "Engine/Diagnosis/Separate.h"
 #include "Engine/Diagnosis/StepsByResponse.h"
 #include "Engine/Diagnosis/Trial.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/Parallel.h"
-#include "Engine/Driver/Seen.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/Seen.h"
+#include "Engine/Numerics/Parallel.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Check/TakeCheck.h"
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/Remainder.h"
 #include "Engine/Diagnosis/Vote.h"
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/Model.h"
-#include "Engine/Driver/Record.h"
-#include "Engine/Measurement/TakeCheck.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/Record.h"
 
 #include <map>
 #include <string>

@@ -2,11 +2,11 @@
 #include "Engine/Diagnosis/FitEffects.h"
 
 #include "Engine/Diagnosis/Trial.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/OutputError.h"
-#include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Seen.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/Fit.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Take/Measurement.h"
 
 #include <string>
 #include <vector>

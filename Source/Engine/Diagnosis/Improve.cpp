@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Improve.h"
 
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FitResponse.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
 
 #include <algorithm>
 

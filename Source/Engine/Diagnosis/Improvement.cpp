@@ -6,12 +6,12 @@
 #include "Engine/Diagnosis/StepsByResponse.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/Whole.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/OutputError.h"
-#include "Engine/Driver/ShownMotions.h"
-#include "Engine/Driver/Seen.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Seen.h"
+#include "Engine/Loudspeaker/ShownMotions.h"
 
 #include <algorithm>
 #include <utility>

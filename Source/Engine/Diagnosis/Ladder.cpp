@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Ladder.h"
 
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 namespace excursion {
 

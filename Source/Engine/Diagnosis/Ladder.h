@@ -3,8 +3,8 @@
 
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/Diagnose.h"
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/Model.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Model.h"
 
 #include <map>
 #include <optional>

@@ -6,7 +6,7 @@
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Diagnosis/RemainderFile.h"
 #include "Engine/Document/JsonText.h"
-#include "Engine/Driver/ModelFile.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Design/WhatIf.h"
 #include "Engine/Diagnosis/Ladder.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Measurement/PreparedTake.h"
+#include "Engine/Loudspeaker/FitResponse.h"
 
 #include <nlohmann/json.hpp>
 

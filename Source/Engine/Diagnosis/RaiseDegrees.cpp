@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/RaiseDegrees.h"
 
-#include "Engine/Driver/Curve.h"
+#include "Engine/Loudspeaker/Curve.h"
 #include "Engine/Numerics/LeastSquares.h"
 
 #include <algorithm>

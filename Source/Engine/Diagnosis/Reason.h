@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/Compare.h"
-#include "Engine/Driver/Model.h"
+#include "Engine/Loudspeaker/Model.h"
 
 #include <map>
 #include <string>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/ResidualCurves.h"
 
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Simulate.h"
-#include "Engine/Driver/StartState.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/StartState.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 
@@ -42,7 +42,7 @@ std::vector<Complex> displacementError(const Record& record, const Section& sect
 /// in that of i.
 class Repair {
 public:
-    explicit Repair(const Model& model) : linear_(linearize(model)), n_(linear_.A.rows()) {}
+    explicit Repair(const Model& model) : linear_(smallSignal(model)), n_(linear_.A.rows()) {}
 
     struct Drives {
         Complex voltage, acceleration;
@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    Linearization linear_;
+    SmallSignal linear_;
     Eigen::Index n_;
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/Compare.h"
-#include "Engine/Driver/OutputError.h"
+#include "Engine/Loudspeaker/OutputError.h"
 
 namespace excursion {
 

@@ -4,7 +4,7 @@
 #include "Engine/Diagnosis/Reason.h"
 #include "Engine/Diagnosis/Score.h"
 #include "Engine/Diagnosis/Trial.h"
-#include "Engine/Driver/Catalogue.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,12 +3,12 @@
 
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/Vote.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FeedbackError.h"
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/Parallel.h"
-#include "Engine/Driver/Seen.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/Seen.h"
+#include "Engine/Numerics/Parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include "Engine/Diagnosis/Sums.h"
 #include "Engine/Diagnosis/Vote.h"
-#include "Engine/Driver/Model.h"
-#include "Engine/Driver/Record.h"
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/Record.h"
 
 #include <map>
 #include <vector>

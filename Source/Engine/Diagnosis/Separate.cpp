@@ -2,9 +2,9 @@
 #include "Engine/Diagnosis/Separate.h"
 
 #include "Engine/Document/Figures.h"
-#include "Engine/Driver/OutputError.h"
-#include "Engine/Driver/Simulate.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/StepsByResponse.h"
 
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/Parallel.h"
-#include "Engine/Driver/Seen.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/Seen.h"
+#include "Engine/Numerics/Parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "Engine/Diagnosis/Vote.h"
-#include "Engine/Driver/Model.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Loudspeaker/Model.h"
 #include "Engine/Progress.h"
+#include "Engine/Take/Measurement.h"
 
 #include <string>
 #include <vector>

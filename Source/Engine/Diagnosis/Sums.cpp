@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Sums.h"
 
-#include "Engine/Driver/FeedbackError.h"
+#include "Engine/Loudspeaker/FeedbackError.h"
 
 #include <algorithm>
 

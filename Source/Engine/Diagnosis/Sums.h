@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/OutputError.h"
-#include "Engine/Driver/Record.h"
+#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Record.h"
 
 #include <map>
 #include <vector>

@@ -2,9 +2,9 @@
 #include "Engine/Diagnosis/Trial.h"
 
 #include "Engine/Diagnosis/RaiseDegrees.h"
-#include "Engine/Driver/FeedbackError.h"
-#include "Engine/Driver/FitResponse.h"
-#include "Engine/Driver/OutputError.h"
+#include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/OutputError.h"
 
 #include <algorithm>
 #include <cmath>

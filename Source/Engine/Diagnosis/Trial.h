@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Diagnosis/Score.h"
-#include "Engine/Driver/Fit.h"
+#include "Engine/Loudspeaker/Fit.h"
 
 #include <vector>
 

@@ -3,9 +3,9 @@
 
 #include "Engine/Diagnosis/Score.h"
 #include "Engine/Diagnosis/Trial.h"
-#include "Engine/Driver/Catalogue.h"
-#include "Engine/Driver/FeedbackError.h"
-#include "Engine/Driver/FitResponse.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/FitResponse.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Engine/Diagnosis/Vote.h"
-#include "Engine/Driver/Fit.h"
-#include "Engine/Driver/Model.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Model.h"
 
 #include <map>
 #include <string>

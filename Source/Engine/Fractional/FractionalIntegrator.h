@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Fractional/DiffusiveLadder.h"
+#include "Engine/Numerics/DiffusiveLadder.h"
 
 #include <complex>
 

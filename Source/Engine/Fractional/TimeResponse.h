@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Fractional/FractionalStateSpace.h"
-#include "Engine/Fractional/DiffusiveLadder.h"
+#include "Engine/Numerics/DiffusiveLadder.h"
 
 namespace excursion {
 

@@ -3,7 +3,7 @@
 
 #include "Engine/Import/PlanClock.h"
 #include "Engine/Import/PlanPeriods.h"
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Take/Measurement.h"
 
 #include <span>
 #include <string>

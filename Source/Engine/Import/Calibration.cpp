@@ -4,8 +4,8 @@
 #include "Engine/Document/JsonField.h"
 #include "Engine/Error.h"
 #include "Engine/Import/TextTable.h"
-#include "Engine/Measurement/MeasurementJson.h"
-#include "Engine/Measurement/Units.h"
+#include "Engine/Take/MeasurementJson.h"
+#include "Engine/Take/Units.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Measurement.h"
+#include "Engine/Take/Measurement.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -4,7 +4,7 @@
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/TextTable.h"
-#include "Engine/Measurement/Units.h"
+#include "Engine/Take/Units.h"
 
 #include <cmath>
 

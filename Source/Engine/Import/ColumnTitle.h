@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Import/ColumnUnits.h"
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,9 +21,6 @@ struct ColumnTitle {
 
 ColumnTitle columnTitle(std::string_view);
 
-/// "[Hz]" or "(Hz)" without its brackets.
-std::string withoutBrackets(std::string_view);
-
 /// Whether a text is the unit of anything that files of measurements hold: Hz, s, degrees, decibels, ohm, a quantity or
 /// a ratio of two.
 bool isUnit(std::string_view);
@@ -29,12 +28,5 @@ bool isUnit(std::string_view);
 /// Hz (and s) for each unit of a column that is a frequency (or a time); nullopt when it is none.
 std::optional<double> frequencyFactor(const ColumnTitle&);
 std::optional<double> timeFactor(const ColumnTitle&);
-
-/// Units of a frequency, a time, an angle (in rad) and a resistance (in ohm); nullopt when it is none. Case counts
-/// where kilo and milli hang on it.
-std::optional<double> frequencyUnit(std::string_view);
-std::optional<double> timeUnit(std::string_view);
-std::optional<double> angleUnit(std::string_view);
-std::optional<double> resistanceUnit(std::string_view);
 
 }  // namespace excursion

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/ImportRecording.h"
 
+#include "Engine/Check/Clipping.h"
+#include "Engine/Check/TakeCheck.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Import/AssignChannels.h"
-#include "Engine/Measurement/Clipping.h"
-#include "Engine/Measurement/TakeCheck.h"
-#include "Engine/Measurement/WavFile.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/WavFile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,11 +5,11 @@
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
+#include "Engine/Import/Export.h"
 #include "Engine/Import/PlainText.h"
 #include "Engine/Import/ResponseColumns.h"
 #include "Engine/Import/RewImpulse.h"
 #include "Engine/Import/TextTable.h"
-#include "Engine/Measurement/Export.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/ImportOptions.h"
+#include "Engine/Import/ImportOptions.h"
 
 #include <filesystem>
 #include <string>

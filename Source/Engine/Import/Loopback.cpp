@@ -2,7 +2,7 @@
 #include "Engine/Import/Loopback.h"
 
 #include "Engine/Import/PeriodDelays.h"
-#include "Engine/Signal/Median.h"
+#include "Engine/Numerics/Median.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "Engine/Import/PlanPeriods.h"
 
 #include "Engine/Error.h"
-#include "Engine/Measurement/FindExcitation.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Take/FindExcitation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Measurement.h"
-#include "Engine/Measurement/SweepExcitation.h"
+#include "Engine/Take/Measurement.h"
+#include "Engine/Take/SweepExcitation.h"
 
 #include <complex>
 #include <cstddef>

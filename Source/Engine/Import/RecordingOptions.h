@@ -3,9 +3,9 @@
 
 #include "Engine/Import/Calibration.h"
 #include "Engine/Import/ChannelMap.h"
-#include "Engine/Measurement/Measurement.h"
-#include "Engine/Measurement/SweepExcitation.h"
-#include "Engine/Measurement/WavFile.h"
+#include "Engine/Take/Measurement.h"
+#include "Engine/Take/SweepExcitation.h"
+#include "Engine/Take/WavFile.h"
 
 #include <filesystem>
 #include <optional>

@@ -2,8 +2,8 @@
 #include "Engine/Import/ResponseColumns.h"
 
 #include "Engine/Error.h"
-#include "Engine/Import/MinimumPhase.h"
-#include "Engine/Measurement/Units.h"
+#include "Engine/Signal/MinimumPhase.h"
+#include "Engine/Take/Units.h"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 #include "Engine/Import/ResponseCurve.h"
 
 #include "Engine/Error.h"
-#include "Engine/Import/MinimumPhase.h"
 #include "Engine/Import/PlainText.h"
 #include "Engine/Import/TextTable.h"
+#include "Engine/Signal/MinimumPhase.h"
 
 #include <algorithm>
 #include <cmath>

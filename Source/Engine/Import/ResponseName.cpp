@@ -2,9 +2,9 @@
 #include "Engine/Import/ResponseName.h"
 
 #include "Engine/Document/Words.h"
-#include "Engine/Import/ColumnTitle.h"
-#include "Engine/Measurement/Air.h"
-#include "Engine/Measurement/Units.h"
+#include "Engine/Import/ColumnUnits.h"
+#include "Engine/Take/Air.h"
+#include "Engine/Take/Units.h"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ColumnTitle.h"
+#include "Engine/Import/ImportOptions.h"
 #include "Engine/Import/ResponseColumns.h"
-#include "Engine/Measurement/ImportOptions.h"
-#include "Engine/Measurement/Units.h"
+#include "Engine/Take/Units.h"
 
 #include <algorithm>
 #include <utility>

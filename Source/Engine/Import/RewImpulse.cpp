@@ -6,8 +6,8 @@
 #include "Engine/Import/ColumnTitle.h"
 #include "Engine/Import/ResponseName.h"
 #include "Engine/Import/TextTable.h"
-#include "Engine/Measurement/Air.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Take/Air.h"
 
 #include <algorithm>
 #include <cmath>

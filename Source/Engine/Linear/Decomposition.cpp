@@ -2,7 +2,7 @@
 #include "Engine/Linear/Decomposition.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/Sylvester.h"
+#include "Engine/Numerics/Sylvester.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/Frf.h"
+#include "Engine/Estimate/Frf.h"
 
 #include <Eigen/Core>
 

@@ -2,9 +2,9 @@
 #include "Engine/Linear/PartialFractionFit.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/RealRows.h"
 #include "Engine/Linear/RelativeDegree.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Numerics/RealRows.h"
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Validity.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Estimate/Frf.h"
 #include "Engine/Linear/StateSpace.h"
-#include "Engine/Measurement/Frf.h"
 
 namespace excursion {
 

@@ -6,7 +6,7 @@
 #include "Engine/Linear/PoleZero.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
-#include "Engine/Linear/Sylvester.h"
+#include "Engine/Numerics/Sylvester.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 

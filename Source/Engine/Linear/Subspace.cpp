@@ -2,8 +2,8 @@
 #include "Engine/Linear/Subspace.h"
 
 #include "Engine/Error.h"
-#include "Engine/Linear/OrthogonalPowers.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Numerics/OrthogonalPowers.h"
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Numerics/TruncatedSolve.h"

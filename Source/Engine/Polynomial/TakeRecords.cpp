@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/TakeRecords.h"
 
-#include "Engine/Measurement/Periods.h"
+#include "Engine/Estimate/Periods.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>

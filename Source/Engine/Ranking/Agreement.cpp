@@ -3,9 +3,9 @@
 
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Document/Words.h"
-#include "Engine/Driver/Catalogue.h"
 #include "Engine/Error.h"
-#include "Engine/Measurement/Periods.h"
+#include "Engine/Estimate/Periods.h"
+#include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>
 

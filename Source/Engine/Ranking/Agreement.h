@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Diagnosis/Ladder.h"
-#include "Engine/Measurement/PreparedTake.h"
 #include "Engine/Progress.h"
 
 #include <Eigen/Core>

@@ -4,10 +4,10 @@
 
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
-#include "Engine/Driver/Linearize.h"
-#include "Engine/Driver/Simulate.h"
-#include "Engine/Driver/ModelFile.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
 
 namespace excursion {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Linear/FrequencyData.h"
-#include "Engine/Polynomial/FractionalPnlss.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalPnlss.h"
 #include "Engine/Ranking/Rank.h"
 
 #include <nlohmann/json.hpp>

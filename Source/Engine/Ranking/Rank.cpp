@@ -3,9 +3,9 @@
 
 #include "Engine/BlackBox/Stimulus.h"
 #include "Engine/Error.h"
+#include "Engine/Estimate/Bla.h"
+#include "Engine/Estimate/Welch.h"
 #include "Engine/Linear/OrderSweep.h"
-#include "Engine/Measurement/Bla.h"
-#include "Engine/Measurement/Welch.h"
 #include "Engine/Ranking/ModelClasses.h"
 #include "Engine/Validity.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Measurement/PreparedTake.h"
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Polynomial/TakeRecords.h"
 #include "Engine/Progress.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Ranking/TaylorExpansion.h"
 
-#include "Engine/Driver/Dynamics.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Dynamics.h"
 #include "Engine/Numerics/Exponential.h"
 #include "Engine/Validity.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Driver/Model.h"
-#include "Engine/Polynomial/FractionalPnlss.h"
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalPnlss.h"
 
 namespace excursion {
 

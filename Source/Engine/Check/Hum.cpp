@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Check/Hum.h"
+
+#include "Engine/Estimate/Periods.h"
+#include "Engine/Numerics/Median.h"
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// Power spectrum of the used periods less their average, Hann-windowed, averaged over realizations and levels,
+/// scaled so that the sum over lines is the mean square of the residual.
+std::vector<double> residualSpectrum(const Measurement& take, const Channel& channel)
+{
+    const Excitation& e = *take.excitation;
+    const auto length = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(e.periods);
+    std::vector<double> power(length / 2 + 1, 0.0), residual(length);
+    const double records = static_cast<double>(e.realizations) * static_cast<double>(e.levels.size());
+    for (int level = 0; level < static_cast<int>(e.levels.size()); ++level)
+        for (int m = 0; m < e.realizations; ++m) {
+            const auto used = usedPeriods(take, channel, level, m);
+            const auto mean = averagePeriod(take, channel, level, m);
+            for (std::size_t n = 0; n < length; ++n) {
+                const double window =
+                    0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
+                residual[n] = (used[n] - mean[n % mean.size()]) * window;
+            }
+            const auto spectrum = fft(residual);
+            for (std::size_t k = 1; k < power.size(); ++k)
+                power[k] += 2.0 * std::norm(spectrum[k])
+                            / (0.375 * static_cast<double>(length) * static_cast<double>(length)) / records;
+        }
+    return power;
+}
+
+double signalPower(const Measurement& take, const Channel& channel)
+{
+    const Excitation& e = *take.excitation;
+    double power = 0.0;
+    for (int m = 0; m < e.realizations; ++m) {
+        const auto period = averagePeriod(take, channel, static_cast<int>(e.levels.size()) - 1, m);
+        double mean = 0.0;
+        for (const double value : period)
+            mean += value / e.period;
+        for (const double value : period)
+            power += (value - mean) * (value - mean) / e.period / e.realizations;
+    }
+    return power;
+}
+
+/// The share of a sinusoid's power that is left when the average of P periods is taken away: 1 - |D|^2 with
+/// D = 1/P sum_p exp(2 pi j f N p / fs).
+double shareLeft(double frequency, const Measurement& take)
+{
+    const Excitation& e = *take.excitation;
+    std::complex<double> sum = 0.0;
+    for (int p = 0; p < e.periods; ++p)
+        sum += std::polar(1.0 / e.periods, 2.0 * std::numbers::pi * frequency * e.period / take.sampleRate * p);
+    return std::max(0.1, 1.0 - std::norm(sum));
+}
+
+}  // namespace
+
+std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
+{
+    const Excitation& e = periodicExcitation(take);
+    const double signal = signalPower(take, channel);
+    if (e.periods < 2 || !(signal > 0.0))
+        return std::nullopt;
+    const auto power = residualSpectrum(take, channel);
+    const double spacing = take.sampleRate / (static_cast<double>(e.period) * e.periods);
+    double all = 0.0;
+    for (const double p : power)
+        all += p;
+
+    std::optional<Hum> found;
+    for (const double mains : {50.0, 60.0}) {
+        Hum hum;
+        hum.mains = mains;
+        double total = 0.0, seen = 0.0, highest = 0.0;
+        for (int harmonic = 1; harmonic <= 6; ++harmonic) {
+            const double centre = harmonic * mains / spacing;
+            // The mains wander by 0.3 %, a Hann line is two bins wide on either side.
+            const double reach = 2.0 + 0.003 * centre, surroundings = std::min(reach + 20.0, 0.45 * mains / spacing);
+            if (surroundings < reach + 3.0 || centre - surroundings < 1.0
+                || centre + surroundings > static_cast<double>(power.size() - 1))
+                continue;
+            double peak = 0.0, sum = 0.0;
+            std::vector<double> beside;
+            for (auto k = static_cast<std::size_t>(centre - surroundings);
+                 static_cast<double>(k) <= centre + surroundings; ++k) {
+                const bool near = std::abs(static_cast<double>(k) - centre) <= reach;
+                if (near)
+                    sum += power[k];
+                // Multiples of the number of periods were taken away with the average.
+                if (k % static_cast<std::size_t>(e.periods) == 0)
+                    continue;
+                if (near) {
+                    peak = std::max(peak, power[k]);
+                } else {
+                    beside.push_back(power[k]);
+                }
+            }
+            const double floor = medianOf(beside);
+            const double standsOut = 10.0 * std::log10(peak / std::max(1e-30 * signal, floor));
+            if (standsOut < 15.0)
+                continue;
+            ++hum.harmonics;
+            highest = std::max(highest, standsOut);
+            seen += sum;
+            total += sum / shareLeft(harmonic * mains, take);
+        }
+        if (hum.harmonics < 2 && highest < 25.0)
+            continue;
+        hum.db = 10.0 * std::log10(total / signal);
+        hum.aboveNoise = 10.0 * std::log10(total / std::max(all - seen, 1e-30 * signal));
+        if (!found || hum.db > found->db)
+            found = hum;
+    }
+    return found;
+}
+
+}  // namespace excursion

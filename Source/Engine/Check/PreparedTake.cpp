@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Check/PreparedTake.h"
+
+#include "Engine/Error.h"
+#include "Engine/Take/FindExcitation.h"
+
+#include <mutex>
+#include <utility>
+#include <variant>
+
+namespace excursion {
+namespace {
+
+Take completed(Take take)
+{
+    if (auto* measurement = std::get_if<Measurement>(&take))
+        completeExcitation(*measurement);
+    return take;
+}
+
+}  // namespace
+
+struct PreparedTake::State {
+    explicit State(Take given) : take(completed(std::move(given))) {}
+
+    Take take;
+    mutable std::once_flag checked;
+    mutable CheckReport report;
+};
+
+PreparedTake::PreparedTake(Take take) : state_(std::make_shared<const State>(std::move(take))) {}
+
+PreparedTake::PreparedTake(Measurement measurement) : PreparedTake(Take(std::move(measurement))) {}
+
+PreparedTake::PreparedTake(Spectra spectra) : PreparedTake(Take(std::move(spectra))) {}
+
+const Measurement* PreparedTake::inTime() const { return std::get_if<Measurement>(&state_->take); }
+
+const Spectra* PreparedTake::asResponses() const { return std::get_if<Spectra>(&state_->take); }
+
+const Measurement& PreparedTake::measurement() const
+{
+    if (const auto* measurement = inTime())
+        return *measurement;
+    throw Error(Error::Kind::data, "This take is a frequency response; waveforms are needed here.");
+}
+
+const CheckReport& PreparedTake::report() const
+{
+    std::call_once(state_->checked,
+                   [this] { state_->report = std::visit([](const auto& take) { return check(take); }, state_->take); });
+    return state_->report;
+}
+
+}  // namespace excursion

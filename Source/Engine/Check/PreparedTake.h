@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Check/TakeCheck.h"
+#include "Engine/Take/Measurement.h"
+
+#include <memory>
+
+namespace excursion {
+
+/// A take that was made ready, once, for all that is asked of it: its excitation is completed (completeExcitation()),
+/// and it is checked. All that works on a take as a whole asks for one of these. Copies share the take; any thread may
+/// read it.
+class PreparedTake {
+public:
+    // Implicit, so that a raw take is prepared where a prepared one is asked for.
+    PreparedTake(Take);
+    PreparedTake(Measurement);
+    PreparedTake(Spectra);
+
+    /// Null where the take is a frequency response, or is none.
+    const Measurement* inTime() const;
+    const Spectra* asResponses() const;
+
+    /// The take in time. Throws Error (data) when it is a frequency response.
+    const Measurement& measurement() const;
+
+    /// Made when it is first asked for.
+    const CheckReport& report() const;
+
+private:
+    struct State;
+    std::shared_ptr<const State> state_;
+};
+
+}  // namespace excursion

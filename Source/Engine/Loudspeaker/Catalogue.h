@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Effect.h"
+
+#include <string_view>
+#include <vector>
+
+namespace excursion {
+
+/// Every effect that Excursion knows, in the order in which they came: new ones go to the end. Simulation, fit,
+/// diagnosis, report and the plugin are driven by it; none of them names an effect.
+const std::vector<const Effect*>& catalogue();
+
+/// The effect of that id; throws Error (usage) that lists the known ones.
+const Effect& effectNamed(std::string_view id);
+
+/// What every driver has, as an effect that is always present:
+///   "electrodynamic"  u = Re i + Le di/dt + Bl v,  m dv/dt = Bl i - Rms v - K x   [B 2.1, 2.2]
+///   "mechanical"      m dv/dt = F - Rms v - K x
+const Effect& electrodynamicBase();
+const Effect& mechanicalBase();
+const Effect& baseNamed(std::string_view id);
+
+/// The path from the cone to the microphone, which every driver has, too: area += Sd, acceleration += dv/dt, lateness
+/// += tau.
+const Effect& radiation();
+
+}  // namespace excursion

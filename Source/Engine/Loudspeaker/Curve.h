@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Effect.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace excursion {
+
+/// A smooth curve that is zero at rest,
+///     c(q) = sum_{k=1..n} c_k [T_k(q/Q) - T_k(0)],   |q| <= Q,
+/// with Chebyshev polynomials T_k, which keep the fit well conditioned at any degree that is of use. Beyond the visited
+/// range Q the curve stays at its end value, as a polynomial must not be believed where nothing was measured, unless
+/// the physics says how it goes on (see beyond). Coefficients are those of the monomials in q/Q, from degree 0 upwards
+/// (n + 1 of them).
+namespace curve {
+
+inline constexpr int maximumDegree = 18;
+
+/// Monomial coefficients b_0..b_n of sum c_k [T_k - T_k(0)], by the recurrence T_{k+1} = 2 s T_k - T_{k-1}.
+template <class T>
+void prepare(int n, const T* c, T* b)
+{
+    std::array<double, maximumDegree + 1> before {1.0}, now {0.0, 1.0}, next {};
+    for (int j = 0; j <= n; ++j)
+        b[j] = T(0.0);
+    for (int k = 1; k <= n; ++k) {
+        for (int j = 1; j <= k; ++j)
+            if (now[static_cast<std::size_t>(j)] != 0.0)
+                b[j] += now[static_cast<std::size_t>(j)] * c[k - 1];
+        next.fill(0.0);
+        for (int j = 0; j <= k && j < maximumDegree; ++j)
+            next[static_cast<std::size_t>(j) + 1] = 2.0 * now[static_cast<std::size_t>(j)];
+        for (int j = 0; j <= k; ++j)
+            next[static_cast<std::size_t>(j)] -= before[static_cast<std::size_t>(j)];
+        before = now;
+        now = next;
+    }
+}
+
+template <class T>
+struct ValueAndSlope {
+    T value, slope;  ///< slope with respect to q
+};
+
+/// Horner's scheme for the value and the slope at q. Part of what calls it, so that it is compiled for the same
+/// processor.
+template <class T>
+[[gnu::always_inline]] inline ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
+{
+    T s = q * (1.0 / range);
+    const bool outside = s > T(1.0) || s < T(-1.0);
+    if (outside)
+        s = s > T(0.0) ? T(1.0) : T(-1.0);
+    T value = b[n];
+    T slope = T(0.0);
+    for (int j = n - 1; j >= 0; --j) {
+        slope = slope * s + value;
+        value = value * s + b[j];
+    }
+    return {value, outside ? T(0.0) : slope * (1.0 / range)};
+}
+
+/// How a curve goes on beyond the visited range, from its end value. Its first two terms, which are the best
+/// determined, extend it:
+///     max(0, c_1 (T_1(s) - T_1(+-1)) + c_2 (T_2(s) - T_2(1))),   1 < |s| <= 2,   s = q/Q,
+/// and from twice the range on it stays. A law that hardens goes on hardening; it never gives way where nothing was
+/// measured.
+template <class T>
+[[gnu::always_inline]] inline T beyond(const T& c1, const T& c2, const T& q, double range)
+{
+    T s = q * (1.0 / range);
+    if (s > T(2.0) || s < T(-2.0))
+        s = s > T(0.0) ? T(2.0) : T(-2.0);
+    if (!(s > T(1.0) || s < T(-1.0)))
+        return T(0.0);
+    const T rise = c1 * (s - (s > T(0.0) ? 1.0 : -1.0)) + 2.0 * c2 * (s * s - 1.0);
+    return rise > T(0.0) ? rise : T(0.0);
+}
+
+inline double valueAt(int n, const double* c, double q, double range)
+{
+    std::array<double, maximumDegree + 1> b {};
+    prepare(n, c, b.data());
+    return at(n, b.data(), q, range).value;
+}
+
+/// What a coefficient of degree k may plausibly be: the coefficients of a smooth law fall geometrically. So weak a
+/// prior yields to any data, but keeps the ends of the range, where a record seldom is, from running off.
+inline double plausible(int k, double scale) { return 2.0 * std::abs(scale) * std::pow(0.75, k); }
+
+/// The n coefficients c_1..c_n as parameters, all strengths.
+inline std::vector<Parameter> parameters(const Extent& extent, const std::string& unit)
+{
+    std::vector<Parameter> result;
+    for (int k = 1; k <= extent.degree; ++k) {
+        Parameter p;
+        p.name = "c" + std::to_string(k);
+        p.unit = unit;
+        p.strength = true;
+        p.prior = plausible(k, extent.scale);
+        result.push_back(p);
+    }
+    return result;
+}
+
+}  // namespace curve
+
+/// An effect that is a law along one curve, and no more: its parameters are the curve's, its coefficients those of the
+/// monomials. A subclass says the law and what it does with the curve.
+template <class Self>
+class CurveLaw : public EffectOf<Self> {
+public:
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        return curve::parameters(e, this->law()->unit);
+    }
+    int coefficientCount(const Extent& e) const override { return e.degree + 1; }
+
+    template <class T>
+    void prepareFor(const Extent& e, const T* p, T* c) const
+    {
+        curve::prepare(e.degree, p, c);
+    }
+};
+
+}  // namespace excursion

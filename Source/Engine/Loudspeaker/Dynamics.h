@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Model.h"
+
+#include <vector>
+
+namespace excursion {
+
+/// The differential equations of a model, generic in the number type. State z = (i, x, v, memories of the components in
+/// order); the input is the voltage, or the force of a mechanical-only driver.
+///     di/dt = (u - drop - fluxSlope v) / inductance,   dx/dt = v,   dv/dt = force / mass
+/// The model must outlive the dynamics.
+template <class T>
+class Dynamics {
+public:
+    /// @param parameters  one value a parameter of the model, in the order of parametersOf()
+    Dynamics(const Model& model, const std::vector<T>& parameters) : electrical_(model.electrical())
+    {
+        std::size_t offset = 0;
+        int coefficients = 0;
+        for (const auto& component : model.components) {
+            const auto& e = *component.effect;
+            parts_.push_back({&e, &component.extent, coefficients, order_});
+            coefficients += e.coefficientCount(component.extent);
+            order_ += e.memorySize(component.extent);
+        }
+        coefficients_.resize(static_cast<std::size_t>(coefficients));
+        for (std::size_t k = 0; k < parts_.size(); ++k) {
+            const auto& part = parts_[k];
+            part.effect->prepare(*part.extent, parameters.data() + offset, coefficients_.data() + part.coefficients);
+            offset += model.components[k].parameters.size();
+        }
+        path_.assign(static_cast<std::size_t>(model.path.effect->coefficientCount(model.path.extent)), T(0.0));
+        model.path.effect->prepare(model.path.extent, parameters.data() + offset, path_.data());
+        radiation_ = &model.path;
+    }
+
+    int order() const { return order_; }
+
+    /// dz/dt at state z under input u, and a force on the cone.
+    void rates(const T* z, const T& u, T* dz, const T& push = T(0.0)) const
+    {
+        const Motion<T> at {z[0], z[1], z[2]};
+        Balance<T> sum;
+        for (const auto& part : parts_)
+            part.effect->contribute(*part.extent, coefficients_.data() + part.coefficients, at, z + part.memory,
+                                    dz + part.memory, sum);
+        dz[1] = at.v;
+        if (electrical_) {
+            dz[0] = (u - sum.drop - sum.fluxSlope * at.v) / sum.inductance;
+            dz[2] = (sum.force + push) / sum.mass;
+        } else {
+            dz[0] = T(0.0);
+            dz[2] = (sum.force + push + u) / sum.mass;
+        }
+    }
+
+    /// What leaves the driver at state z with the rates dz.
+    Emission<T> emission(const T* z, const T* dz) const
+    {
+        const Motion<T> at {z[0], z[1], z[2]};
+        Emission<T> sum;
+        radiation_->effect->emit(radiation_->extent, path_.data(), at, dz[2], nullptr, nullptr, sum);
+        for (const auto& part : parts_)
+            part.effect->emit(*part.extent, coefficients_.data() + part.coefficients, at, dz[2], z + part.memory,
+                              dz + part.memory, sum);
+        return sum;
+    }
+
+private:
+    struct Part {
+        const Effect* effect;
+        const Extent* extent;
+        int coefficients;  ///< where its coefficients start
+        int memory;        ///< where its memory starts in the state
+    };
+
+    bool electrical_;
+    int order_ = 3;
+    std::vector<Part> parts_;
+    std::vector<T> coefficients_, path_;
+    const Component* radiation_;
+};
+
+}  // namespace excursion

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Effect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace excursion {
+
+const Parameter& parameterNamed(const std::vector<Parameter>& parameters, std::string_view name)
+{
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const Parameter& p) { return p.name == name; });
+    if (found == parameters.end())
+        throw std::out_of_range("no parameter " + std::string(name));
+    return *found;
+}
+
+double resonanceOf(const std::vector<Parameter>& base)
+{
+    return std::sqrt(parameterNamed(base, "K").value / parameterNamed(base, "m").value) / (2.0 * std::numbers::pi);
+}
+
+std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
+{
+    std::vector<double> values;
+    for (const auto& parameter : parameters(extent))
+        values.push_back(parameter.strength ? 0.0 : parameter.value);
+    return {values};
+}
+
+std::vector<Part> Effect::parts(const Extent&) const { return {}; }
+
+std::vector<double> Effect::restarts(const Extent&, const std::vector<double>&) const { return {}; }
+
+bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::vector<Parameter>&) const
+{
+    return true;
+}
+
+std::vector<Figure> Effect::summary(const Extent&, const double*) const { return {}; }
+
+std::string Effect::sizedBy() const
+{
+    const auto info = law();
+    return info ? info->base : "";
+}
+
+double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
+
+}  // namespace excursion

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Effects/Effects.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// The coil's resistance rises with the power that it has turned into heat, through two stages (coil and magnet;
+/// Button, J. Audio Eng. Soc. 40, 1992; Zuccatti, 38, 1990):
+///     u = R i,   R = r (w_1 + share w_2),   dw_k/dt = (P - w_k)/tau_k,   P = (Re + R) i^2,
+/// w_k the power that stage k feels, in W. This is the two-stage ladder of thermal resistances and capacities seen from
+/// the coil, as its partial fractions. r is in ohm per watt and takes in the temperature coefficient of the wire. The
+/// time constants are sought between a small part of the take and many times its length: what is slower still is a
+/// steady rise.
+class CoilHeating final : public EffectOf<CoilHeating> {
+public:
+    std::string id() const override { return "coil-heating"; }
+    std::string title() const override { return "Coil heating Re(T)"; }
+    std::string physics() const override { return "The coil turns power into heat, and hot copper resists more."; }
+    std::string symptoms() const override
+    {
+        return "residual voltage in step with the current that grows with the level and in the course of the take, "
+               "without harmonics";
+    }
+    std::string remedy() const override
+    {
+        return "A larger coil, a closer gap, ferrofluid or a vented pole piece carry the heat away.";
+    }
+    bool electrical() const override { return true; }
+    bool linear() const override { return false; }
+    bool slow() const override { return true; }
+    std::string sizedBy() const override { return "Re"; }
+
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        constexpr double plausibleRise = 10.0;  // Re doubles at a current of a third of the visited peak
+        const auto time = [&e](const char* name, double likely, double least, double most) -> Parameter {
+            return {.name = name,
+                    .unit = "log10 s",
+                    .value = std::log10(likely * e.duration),
+                    .lower = std::log10(least * e.duration),
+                    .upper = std::log10(most * e.duration)};
+        };
+        return {{.name = "rise",
+                 .unit = "ohm/W",
+                 .lower = 0.0,
+                 .strength = true,
+                 .prior = plausibleRise / (e.current * e.current)},
+                time("fast", 0.1, 0.003, 2.0),
+                {.name = "share", .unit = "1", .value = 0.3, .lower = 0.0, .upper = 30.0},
+                time("slow", 4.0, 0.5, 100.0)};
+    }
+
+    int memorySize(const Extent&) const override { return 2; }
+    int coefficientCount(const Extent&) const override { return 4; }
+
+    /// Coefficients: the rise of both stages, ohm/W, and their rates, 1/s.
+    template <class T>
+    void prepareFor(const Extent&, const T* p, T* c) const
+    {
+        using std::exp;
+        c[0] = p[0];
+        c[1] = p[0] * p[2];
+        c[2] = exp(-std::numbers::ln10 * p[1]);
+        c[3] = exp(-std::numbers::ln10 * p[3]);
+    }
+
+    template <class T>
+    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    {
+        const T rise = c[0] * memory[0] + c[1] * memory[1];
+        const T power = (rise + e.scale) * at.i * at.i;
+        for (int k = 0; k < 2; ++k)
+            rate[k] = c[2 + k] * (power - memory[k]);
+        sum.drop += rise * at.i;
+    }
+};
+
+}  // namespace
+
+const Effect& coilHeating()
+{
+    static const CoilHeating effect;
+    return effect;
+}
+
+}  // namespace excursion

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Curve.h"
+#include "Engine/Loudspeaker/Effects/Effects.h"
+
+#include <array>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+/// Rms(v) = Rms + sum_{k=1..n} c_k [T_k(2 s - 1) - T_k(-1)] + a_1 w + a_3 w^3,  w = v/V,
+/// s = sqrt((w - w_0)^2 + e^2) - sqrt(w_0^2 + e^2),  e = 1/50,
+/// with Chebyshev polynomials T_k. Damping of air flow grows like |v|, which no short polynomial in v imitates: s is
+/// |w|, rounded at rest so that the law stays differentiable. The odd terms let inward and outward differ; w_0 is where
+/// the flow is least resisted, near rest. Beyond the visited range, up to twice it, a law that rises goes on in
+/// proportion to |v|.
+class DampingVelocity final : public EffectOf<DampingVelocity> {
+public:
+    std::string id() const override { return "damping-velocity"; }
+    std::string title() const override { return "Mechanical resistance Rms(v)"; }
+    std::string physics() const override
+    {
+        return "Air pumped through narrow vents and the spider resists more than in proportion to the velocity.";
+    }
+    std::string symptoms() const override
+    {
+        return "residual force that is a curve of v alone, strongest around resonance, no residual voltage";
+    }
+    std::string remedy() const override
+    {
+        return "Larger or rounder vents under the dust cap and spider make Rms(v) constant.";
+    }
+    bool electrical() const override { return false; }
+    bool linear() const override { return false; }
+
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        std::vector<Parameter> result;
+        result = curve::parameters(e, "N s/m");
+        for (const int k : {1, 3}) {
+            Parameter p = result.front();
+            p.name = "a" + std::to_string(k);
+            p.prior = curve::plausible(k, e.scale);
+            result.push_back(p);
+        }
+        Parameter centre;
+        centre.name = "centre";
+        centre.unit = "1";
+        centre.lower = -0.4;
+        centre.upper = 0.4;
+        centre.prior = 0.3;
+        result.push_back(centre);
+        return result;
+    }
+    std::optional<LawInfo> law() const override { return LawInfo {"Rms(v)", "N s/m", "v", "m/s", "Rms"}; }
+    double lawAt(const Extent& e, const double* p, double v) const override
+    {
+        std::array<double, curve::maximumDegree + 5> c {};
+        prepareFor(e, p, c.data());
+        return at(e, c.data(), v);
+    }
+    int coefficientCount(const Extent& e) const override { return e.degree + 5; }
+
+    template <class T>
+    void prepareFor(const Extent& e, const T* p, T* c) const
+    {
+        using std::sqrt;
+        // Powers of s: with y = 2 s - 1 Horner's rule is applied to whole polynomials, p <- p (2 s - 1) + b_j.
+        const int n = e.degree;
+        std::array<T, curve::maximumDegree + 1> b;
+        curve::prepare(n, p, b.data());
+        for (int j = 0; j <= n; ++j)
+            c[j] = T(0.0);
+        for (int j = n; j >= 0; --j) {
+            for (int k = n; k >= 0; --k)
+                c[k] = (k > 0 ? 2.0 * c[k - 1] : T(0.0)) - c[k];
+            c[0] += b[static_cast<std::size_t>(j)];
+        }
+        c[0] = T(0.0);  // no difference at rest
+        c[n + 1] = p[n];
+        c[n + 2] = p[n + 1];
+        c[n + 3] = p[n + 2];
+        c[n + 4] = sqrt(p[n + 2] * p[n + 2] + rounding * rounding);
+    }
+
+    template <class T>
+    void addTo(const Extent& e, const T* c, const Motion<T>& motion, const T*, T*, Balance<T>& sum) const
+    {
+        sum.force -= at(e, c, motion.v) * motion.v;
+    }
+
+private:
+    static constexpr double rounding = 0.02;
+
+    template <class T>
+    [[gnu::always_inline]] static T at(const Extent& e, const T* c, const T& v)
+    {
+        using std::sqrt;
+        T w = v * (1.0 / e.velocity);
+        T reach = T(1.0);
+        if (w > T(1.0) || w < T(-1.0)) {
+            reach = w > T(0.0) ? w : -w;
+            if (reach > T(2.0))
+                reach = T(2.0);
+            w = w > T(0.0) ? T(1.0) : T(-1.0);
+        }
+        const int n = e.degree;
+        const T square = w * w, off = w - c[n + 3];
+        const T s = sqrt(off * off + rounding * rounding) - c[n + 4];
+        T value = c[n];
+        for (int k = n - 1; k >= 0; --k)
+            value = value * s + c[k];
+        value += w * (c[n + 1] + square * c[n + 2]);
+        return value > T(0.0) ? value * reach : value;
+    }
+};
+
+}  // namespace
+
+const Effect& dampingVelocity()
+{
+    static const DampingVelocity effect;
+    return effect;
+}
+
+}  // namespace excursion

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Effects/Effects.h"
+
+#include "Engine/Loudspeaker/Network.h"
+#include "Engine/Loudspeaker/RelaxationSpectrum.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// Currents in the iron, Z(s) = sum_k R_k s/(s + p_k) with R_k > 0: resistors in parallel with inductors, as any set of
+/// passive loops that couple to the coil. Beforehand it is a semi-inductance Z(s) = K s^a [B 5]. From
+///     s^a = (sin(pi a)/pi) int_0^inf p^(a-1) s/(s + p) dp,     0 < a < 1,
+/// the trapezoidal rule in log p gives one resistor in parallel with one inductor per cell,
+///     R_k s/(s + p_k),   R_k = K (sin(pi a)/pi) p_k^a ln q,   p_k = p_0 q^k,
+/// with an error of about 2 exp(-pi^2/ln q) for the sum over all k. What it has below p_low and above p_high is
+/// not dropped: the moments of these tails are geometric series, and the first three of each are matched by one more
+/// cell with a series resistor (below) and a series inductor (above). So the element is K (jw)^a within 3.5e-4 from the
+/// lowest to the highest frequency of interest and still has finite resistance and stiffness in the numerical sense.
+/// The fastest cells below the upper tail, those that the impedance shows, depart from the law in rate and weight as
+/// far as the data asks (RelaxationSpectrum.h): real coils follow K s^a within a few to thirty percent. A cell's memory
+/// is the current j_k through its inductor: dj_k/dt = p_k (i - j_k), voltage R_k (i - j_k).
+class EddyCurrents final : public EffectOf<EddyCurrents>, public NetworkParts {
+public:
+    std::string id() const override { return "eddy-currents"; }
+    std::string title() const override { return "Eddy currents (semi-inductance)"; }
+    std::string physics() const override
+    {
+        return "Currents induced in the iron make the coil's impedance rise about like a fractional power of "
+               "frequency, K s^a.";
+    }
+    std::string symptoms() const override
+    {
+        return "linear residual voltage well above resonance, with a steady slope of the magnitude and a phase that "
+               "stays below 90 degrees";
+    }
+    std::string remedy() const override { return "It is no fault; a copper ring lowers it and makes it more linear."; }
+    bool electrical() const override { return true; }
+    bool linear() const override { return true; }
+
+    std::vector<Parameter> parameters(const Extent&) const override
+    {
+        Parameter K, a;
+        K.name = "Ks";
+        K.unit = "ohm s^a";
+        K.lower = 0.0;
+        K.strength = true;
+        a.name = "a";
+        a.unit = "1";
+        a.value = 0.7;
+        a.lower = 0.3;
+        a.upper = 0.98;
+        std::vector<Parameter> result {K, a};
+        for (auto& p : spectrum::parameters())
+            result.push_back(std::move(p));
+        return result;
+    }
+    std::vector<std::vector<double>> starts(const Extent&) const override
+    {
+        std::vector<std::vector<double>> result;
+        for (const double a : {0.5, 0.65, 0.8}) {
+            result.emplace_back(2 + spectrum::departures, 0.0);
+            result.back()[1] = a;
+        }
+        return result;
+    }
+
+    /// K and a of the straight line through log|Z| over log w in the band, and how far |Z| lies from it (rms).
+    std::vector<Figure> summary(const Extent& e, const double* parameters) const override
+    {
+        if (!(parameters[0] > 0.0))
+            return {{"K", "ohm s^a", 0.0}, {"a", "1", parameters[1]}, {"departure", "%", 0.0}};
+        std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
+        prepareFor(e, parameters, c.data());
+        constexpr int points = 60;
+        double mean = 0.0, slope = 0.0, spread = 0.0, rest = 0.0;
+        std::array<double, points> across {}, up {};
+        const double low = std::log(2.0 * std::numbers::pi * e.lowFrequency),
+                     high = std::log(2.0 * std::numbers::pi * e.highFrequency);
+        for (std::size_t n = 0; n < points; ++n) {
+            across[n] = (high - low) * ((static_cast<double>(n) + 0.5) / points - 0.5);
+            up[n] = std::log(std::abs(impedance(e, c.data(), {0.0, std::exp(across[n] + 0.5 * (low + high))})));
+            mean += up[n] / points;
+            slope += across[n] * up[n];
+            spread += across[n] * across[n];
+        }
+        slope /= spread;
+        for (std::size_t n = 0; n < points; ++n)
+            rest += std::pow(up[n] - mean - slope * across[n], 2) / points;
+        return {{"K", "ohm s^a", std::exp(mean - slope * 0.5 * (low + high))},
+                {"a", "1", slope},
+                {"departure", "%", 100.0 * std::sqrt(rest)}};
+    }
+
+    int memorySize(const Extent& e) const override { return innerCells(e) + 2; }
+    int coefficientCount(const Extent& e) const override { return 2 + 2 * memorySize(e); }
+
+    /// Coefficients: series resistance, series inductance, then per cell its rate p_k and resistance R_k.
+    template <class T>
+    void prepareFor(const Extent& e, const T* parameters, T* c) const
+    {
+        using std::exp;
+        using std::sin;
+        const T &K = parameters[0], &a = parameters[1];
+        const int inner = innerCells(e), first = inner - spectrum::cells;
+        // step: ln q
+        const double low = std::log(lowRate(e)), high = std::log(highRate(e)), step = (high - low) / inner;
+        const T factor = K * sin(std::numbers::pi * a) * (step / std::numbers::pi);
+        const auto power = [](double logarithm, const T& exponent) { return exp(exponent * logarithm); };
+
+        T* cell = c + 2;
+        for (int k = 0; k < inner; ++k) {
+            const double logRate = low + step * (k + 0.5);
+            const auto departs = k < first ? spectrum::Departure<T> {T(1.0), T(1.0)}
+                                           : spectrum::departure(parameters + 2, k - first);
+            *cell++ = std::exp(logRate) * departs.rate;
+            *cell++ = factor * power(logRate, a) * departs.weight;
+        }
+        // Tail below, s/(s + p) = 1 - p/s + p^2/s^2 - ...: the moments sum p_k^(a + n), k < 0, n = 0, 1, 2.
+        const auto below = [&](double n) { return power(low - 0.5 * step, a + n) / (1.0 - exp(-(a + n) * step)); };
+        const T belowRate = below(2) / below(1), belowR = below(1) / belowRate;
+        *cell++ = belowRate;
+        *cell++ = factor * belowR;
+        c[0] = factor * (below(0) - belowR);
+        // Tail above, s/(s + p) = s/p - s^2/p^2 + ...: the moments sum p_k^(a - n), k >= inner, n = 1, 2, 3.
+        const auto above = [&](double n) { return power(high + 0.5 * step, a - n) / (1.0 - exp((a - n) * step)); };
+        const T aboveRate = above(2) / above(3), aboveR = above(2) * aboveRate * aboveRate;
+        *cell++ = aboveRate;
+        *cell++ = factor * aboveR;
+        c[1] = factor * (above(1) - aboveR / aboveRate);
+    }
+
+    template <class T>
+    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    {
+        sum.inductance += c[1];
+        T voltage = c[0] * at.i;
+        const T* cell = c + 2;
+        for (int k = 0, n = memorySize(e); k < n; ++k, cell += 2) {
+            const T through = at.i - memory[k];
+            voltage += cell[1] * through;
+            rate[k] = cell[0] * through;
+        }
+        sum.drop += voltage;
+    }
+
+    void draw(const Extent& e, const double* c, NetworkDrawing& into) const override
+    {
+        into.resistor(c[0]);
+        into.inductor(c[1]);
+        for (int k = 0; k < memorySize(e); ++k)
+            into.cell(c[3 + 2 * k], c[3 + 2 * k] / c[2 + 2 * k]);
+    }
+
+private:
+    std::complex<double> impedance(const Extent& e, const double* c, std::complex<double> s) const
+    {
+        std::complex<double> sum = c[0] + s * c[1];
+        for (int k = 0; k < memorySize(e); ++k)
+            sum += c[3 + 2 * k] * s / (s + c[2 + 2 * k]);
+        return sum;
+    }
+
+    static double lowRate(const Extent& e) { return 2.0 * std::numbers::pi * e.lowFrequency * 0.15; }
+    static double highRate(const Extent& e) { return 2.0 * std::numbers::pi * e.highFrequency * 2.5; }
+    /// ln q of 1 and the margins of the two rates each leave an error below 3.5e-4; wider margins would make the
+    /// fastest cell stiff.
+    static int innerCells(const Extent& e)
+    {
+        return std::max(spectrum::cells, static_cast<int>(std::ceil(std::log(highRate(e) / lowRate(e)))));
+    }
+};
+
+}  // namespace
+
+const Effect& eddyCurrents()
+{
+    static const EddyCurrents effect;
+    return effect;
+}
+
+}  // namespace excursion

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Effects/Effects.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// Hysteresis that depends on how far the cone went and not on how fast: Dahl's model (1968), one element per reach
+/// r_k,
+///     F = -(F_c/n) sum_k g_k,   dg_k/dt = (v - |v| g_k) / r_k,   k = 1 .. n,
+/// g the share of its limit that an element carries. After a turn an element follows like a spring of F_c/(n r_k) and
+/// slips when the cone has gone a few r_k. The reaches lie evenly on a logarithmic axis, over `spread` octaves around
+/// `reach`; several elements approach the distributed slip of Iwan's model (1966). |v| is rounded within a thousandth
+/// of the visited velocity (a hundredth moves the motion by -78 dB),
+///     |v| = V s^2 (3 - 3 s + s^2),  s = |v|/V < 1,
+/// where it has two continuous derivatives and vanishes at rest, so that a cone that stands still forgets nothing.
+class Friction final : public EffectOf<Friction> {
+public:
+    std::string id() const override { return "friction"; }
+    std::string title() const override { return "Suspension hysteresis (friction)"; }
+    std::string physics() const override
+    {
+        return "Fibres of the spider and surround rub and slip: after every turn of the cone a force builds up against "
+               "it and then holds.";
+    }
+    std::string symptoms() const override
+    {
+        return "residual force that follows the sign of the velocity, as large at low as at high frequencies and the "
+               "same at all levels: "
+               "stiffer and more damped where the cone moves little";
+    }
+    std::string remedy() const override
+    {
+        return "Impregnation of the spider, glue joints and lead-out wires rub; a smoother weave or less doping lowers "
+               "the loss.";
+    }
+    bool electrical() const override { return false; }
+    bool linear() const override { return false; }
+    /// To undo what hysteresis holds the voltage would have to hold it in silence, too.
+    bool undone() const override { return false; }
+    std::string sizedBy() const override { return "K"; }
+
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        const double springForce = e.scale * e.displacement, X = e.displacement;
+        // its sign says nothing: a search that passes through the single element at 0 must not hit a wall
+        constexpr double anySpread = 3.0;
+        return {{.name = "Fc", .unit = "N", .lower = 0.0, .strength = true, .prior = springForce},
+                {.name = "reach", .unit = "m", .value = 0.08 * X, .lower = 2e-3 * X, .upper = 2.0 * X},
+                {.name = "spread", .unit = "octaves", .value = 2.0, .prior = anySpread}};
+    }
+
+    int memorySize(const Extent&) const override { return elements; }
+    int coefficientCount(const Extent&) const override { return 1 + elements; }
+
+    /// Coefficients: the limit of one element, then 1/r_k.
+    template <class T>
+    void prepareFor(const Extent&, const T* p, T* c) const
+    {
+        using std::exp;
+        c[0] = p[0] * (1.0 / elements);
+        for (int k = 0; k < elements; ++k)
+            c[1 + k] = exp(std::numbers::ln2 * p[2] * (0.5 - k / (elements - 1.0))) / p[1];
+    }
+
+    template <class T>
+    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    {
+        const T speed = size(at.v, rounding * e.velocity);
+        T carried = T(0.0);
+        for (int k = 0; k < elements; ++k) {
+            rate[k] = (at.v - speed * memory[k]) * c[1 + k];
+            carried += memory[k];
+        }
+        sum.force -= c[0] * carried;
+    }
+
+private:
+    static constexpr int elements = 4;
+    static constexpr double rounding = 0.001;  // of the visited velocity
+
+    template <class T>
+    static T size(const T& v, double width)
+    {
+        const T positive = v < T(0.0) ? -v : v;
+        if (positive > T(width))
+            return positive;
+        const T s = positive * (1.0 / width);
+        return width * s * s * (3.0 - 3.0 * s + s * s);
+    }
+};
+
+}  // namespace
+
+const Effect& friction()
+{
+    static const Friction effect;
+    return effect;
+}
+
+}  // namespace excursion

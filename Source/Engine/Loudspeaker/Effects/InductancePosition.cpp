@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Curve.h"
+#include "Engine/Loudspeaker/Effects/Effects.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace excursion {
+namespace {
+
+/// Le(x) = Le + c(x), where c is the change of the flux that the coil's position makes and that follows the current at
+/// once: inductance c, voltage c' v i, reluctance force 1/2 c' i^2.
+///
+/// Loops in the iron delay another part. The coil feeds a loop through the mutual inductance M and is fed by it through
+/// the same M, which goes with the root of the coil's inductance, M(x)/M(0) = k(x), k^2 = 1 + d c(x). So where the
+/// loops at rest are a low-pass G(s) of the current, they are k(x) G[k(x) i] in motion, of which G i belongs to the
+/// linear eddy currents. The rest is this effect's,
+///     flux    g_0 sum_n g_n (k h_n - j_n),   dh_n/dt = p_n (k i - h_n),   dj_n/dt = p_n (i - j_n),   g_n >= 0,
+///     force   g_0 k' i sum_n g_n h_n,
+/// with g_0 the base inductance when the effect was sized. A loop stores g_0 g_n h_n^2/2 and loses g_0 g_n
+/// (dh_n/dt)^2/p_n: terminals and cone get what is left, so nothing is made of nothing. Models that scale the loops'
+/// inductances and resistances by a curve instead feed them with k^2 and hear them at 1: `way` w lets data tell,
+///     1 + (1 + w)(k - 1) on the way in, 1 + (1 - w)(k - 1) on the way out,   -1 <= w <= 1, 0 for a mutual inductance.
+///
+/// The rates begin above the band, as what is slower than its end delays what is seen there; each next one is a fifth.
+/// A chain of loops that follows K s^0.4 is met to -82 dB of the current with four, to -75 with three.
+class InductancePosition final : public EffectOf<InductancePosition> {
+public:
+    std::string id() const override { return "inductance-position"; }
+    std::string title() const override { return "Inductance Le(x) with reluctance force"; }
+    std::string physics() const override
+    {
+        return "The coil sees more iron inward than outward, so its inductance falls with x and the iron pulls it in.";
+    }
+    std::string symptoms() const override
+    {
+        return "residual voltage that grows with frequency and is scaled by a curve of x; a small residual force like "
+               "the current squared";
+    }
+    std::string remedy() const override { return "Shorting rings or a copper cap near the gap flatten Le(x)."; }
+    bool electrical() const override { return true; }
+    bool linear() const override { return false; }
+
+    std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
+    double lawAt(const Extent& e, const double* p, double x) const override
+    {
+        return curve::valueAt(e.degree, p, x, e.displacement);
+    }
+
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        auto result = curve::parameters(e, "H");
+        for (int n = 1; n <= loops; ++n)
+            result.push_back(
+                {.name = "g" + std::to_string(n), .unit = "1", .lower = 0.0, .upper = 1e3, .prior = plausibleWeight});
+        result.push_back({.name = "depth", .unit = "1", .lower = -3.0, .upper = 3.0, .prior = 0.5});
+        result.push_back({.name = "way", .unit = "1", .lower = -1.0, .upper = 1.0, .prior = 0.5});
+        return result;
+    }
+    int memorySize(const Extent&) const override { return 2 * loops; }
+    int coefficientCount(const Extent& e) const override { return e.degree + 1 + 2 * loops + 2; }
+
+    /// The curve's, then each loop's rate and inductance, d = exp(depth)/g_0 and w.
+    template <class T>
+    void prepareFor(const Extent& e, const T* p, T* c) const
+    {
+        using std::exp;
+        curve::prepare(e.degree, p, c);
+        double rate = 2.0 * std::numbers::pi * e.highFrequency * fastest;
+        T* loop = c + e.degree + 1;
+        for (int n = 0; n < loops; ++n, rate /= spacing) {
+            *loop++ = T(rate);
+            *loop++ = p[e.degree + n] * e.scale;
+        }
+        *loop++ = exp(p[e.degree + loops]) / e.scale;
+        *loop++ = p[e.degree + loops + 1];
+    }
+
+    template <class T>
+    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    {
+        using std::sqrt;
+        const auto [value, slope] = curve::at(e.degree, c, at.x, e.displacement);
+        const T* loop = c + e.degree + 1;
+        const T &d = loop[2 * loops], &way = loop[2 * loops + 1];
+        // A trial of a search may go where the coil would have no inductance left.
+        const T squared = 1.0 + d * value;
+        const bool lost = squared < T(leastCoupling * leastCoupling);
+        const T k = lost ? T(leastCoupling) : sqrt(squared);
+        const T kSlope = lost ? T(0.0) : 0.5 * d * slope / k;
+        const T in = 1.0 + (1.0 + way) * (k - 1.0), out = 1.0 + (1.0 - way) * (k - 1.0);
+        T held = T(0.0), delayed = T(0.0);
+        for (int n = 0; n < loops; ++n, loop += 2) {
+            const T &h = memory[2 * n], &j = memory[2 * n + 1];
+            rate[2 * n] = loop[0] * (in * at.i - h);
+            rate[2 * n + 1] = loop[0] * (at.i - j);
+            held += loop[1] * h;
+            delayed += loop[1] * (out * rate[2 * n] - rate[2 * n + 1]);
+        }
+        sum.inductance += value;
+        sum.fluxSlope += slope * at.i + (1.0 - way) * kSlope * held;
+        sum.drop += delayed;
+        sum.force += (0.5 * slope * at.i + kSlope * held) * at.i;
+    }
+
+private:
+    static constexpr int loops = 4;
+    static constexpr double fastest = 1.2, spacing = 5.0;  // rates: over the band's upper end; from one to the next
+    // of the slowest loop beside a coil that is nothing but a semi-inductance
+    static constexpr double plausibleWeight = 30.0;
+    static constexpr double leastCoupling = 0.2;
+};
+
+}  // namespace
+
+const Effect& inductancePosition()
+{
+    static const InductancePosition effect;
+    return effect;
+}
+
+}  // namespace excursion

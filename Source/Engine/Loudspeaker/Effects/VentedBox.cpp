@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Effects/Effects.h"
+
+#include "Engine/Loudspeaker/Network.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace excursion {
+namespace {
+
+/// An air spring that cone and port share [Small, Vented-Box Loudspeaker Systems, J. Audio Eng. Soc. 21, 1973]. All
+/// displacements are volumes over the cone's area, positive outward: x of the cone, y of the port, l of what leaks; w =
+/// x + y + l expands the air, which pulls with Ka w. A passive radiator of mass mp has a spring Kp besides, r = Kp/Ka;
+/// an open port has none.
+///     port:   mp d2y/dt2 = -Ka (w + dA/wB dw/dt) - Kp y - mp wB dP dy/dt,     wB^2 = (Ka + Kp)/mp,   dP = 1/QP
+///     leak:   dl/dt = -wB dL (w + dA/wB dw/dt),                               dL = 1/QL; dA = 1/QA is absorption
+/// At rest, without a leak, x, y and the radiator share the spring's pull, so that the box adds Ka r/(1 + r) to the
+/// stiffness, and far above the tuning Ka, of which Kb = Ka/(1 + r) is the difference. The base's K stays the stiffness
+/// at rest, with the box in it:
+///     force:  -Ka (w + dA/wB dw/dt) + Kb r x
+/// For then the cone without leak and absorption does not depend on r, which the sound alone shows: the radiator's
+/// notch is at fB sqrt(r/(1 + r)). The microphone hears the cone, and the port as much as its place lets it: `port` is
+/// 1 far away, less close to the cone. The memory is w, dy/dt and y, and does not depend on Kb, which is a strength.
+/// The radiator's spring yields below a thousandth of the lowest frequency of interest, so that nothing integrates for
+/// ever. A closed box adds to K alone, until its air gets out through a leak, which is a port that does not ring: what
+/// is left below its tuning is the suspension alone.
+class VentedBox final : public EffectOf<VentedBox>, public NetworkParts {
+public:
+    std::string id() const override { return "vented-box"; }
+    std::string title() const override { return "Box with a port, a passive radiator or a leak"; }
+    std::string physics() const override
+    {
+        return "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a "
+               "second resonance. Through a leak a closed box loses its spring at the lowest frequencies.";
+    }
+    std::string symptoms() const override
+    {
+        return "two humps in the impedance with a dip between them, where the cone stands nearly still and the port "
+               "moves; of a leak, motion that grows far below the resonance";
+    }
+    std::string remedy() const override
+    {
+        return "It is no fault; box volume and port length set where the dip is, a leak or stuffing lowers the humps. "
+               "Where the box should be closed, seal it.";
+    }
+    bool electrical() const override { return false; }
+    bool linear() const override { return true; }
+
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        auto stiffness = positiveParameter("Kb", "N/m", 0.0),
+             tuning = positiveParameter("fB", "Hz", 4.0 * e.lowFrequency),
+             port = positiveParameter("1/QP", "1", someLoss), leak = positiveParameter("1/QL", "1", someLoss),
+             absorption = positiveParameter("1/QA", "1", 0.0), radiator = positiveParameter("Kp/Ka", "1", 0.0),
+             share = positiveParameter("port", "1", 0.0);
+        stiffness.strength = share.strength = true;
+        // Losses are small and an open port has no spring: without better knowledge they stay near zero.
+        for (auto* p : {&port, &leak, &absorption, &radiator})
+            p->prior = 0.3;
+        radiator.heard = share.heard = true;
+        return {stiffness, tuning, port, leak, absorption, radiator, share};
+    }
+    std::vector<std::vector<double>> starts(const Extent& e) const override
+    {
+        std::vector<std::vector<double>> starts;
+        for (const double octaves : {0.5, 1.5})  // a leak
+            starts.push_back({0.0, std::exp2(octaves) * e.lowFrequency, 1.0, someLoss, 0.0, 0.0, 0.0});
+        for (double f = 1.5 * e.lowFrequency;
+             f < 100.0 * e.lowFrequency && (starts.size() < 3 || f < 0.1 * e.highFrequency); f *= 1.5)
+            starts.push_back({0.0, f, someLoss, someLoss, 0.0, 0.0, 0.0});
+        return starts;
+    }
+    /// Without a port the cone would resonate at the tuning or above, where a fit of one hump to two does not look;
+    /// without the air of a closed box well above its leak.
+    std::vector<double> restarts(const Extent&, const std::vector<double>& start) const override
+    {
+        if (start[2] > someLoss)
+            return {2.0 * start[1], 6.0 * start[1]};
+        return {start[1], 1.5 * start[1]};
+    }
+    /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air
+    /// or the radiator is not much lighter than the cone, and the air in the box not much softer than the suspension:
+    /// what is found in real boxes lies well inside. Something lighter is a part that swings by itself. A leak does not
+    /// ring, far below the resonance of cone and box, whose air is stiffer than the suspension, but does not leave it
+    /// without a part: a weaker relaxation is rather one of the suspension, a total one of a liquid in the gap.
+    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+                   const std::vector<Parameter>& base) const override
+    {
+        constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.16, highestTuning = 4.0;
+        constexpr double leastLeakQuality = 0.4, lowestLeak = 0.5, highestLeak = 0.125;
+        constexpr double leastLeakStiffness = 2.0, mostLeakStiffness = 20.0;
+        const double K = parameterNamed(base, "K").value, m = parameterNamed(base, "m").value, tuning = own[1].value;
+        const double turn = 2.0 * std::numbers::pi,
+                     mass = own[0].value * std::pow((1.0 + own[5].value) / (turn * tuning), 2);
+        const double losses = own[2].value + own[3].value + own[4].value;
+        if (tuning > e.highFrequency || mass < leastMass * m)
+            return false;
+        if (losses < 1.0 / leastQuality)
+            return tuning > e.lowFrequency && tuning < highestTuning * resonanceOf(base)
+                   && own[0].value > leastStiffness * K;
+        return losses < 1.0 / leastLeakQuality && tuning > lowestLeak * e.lowFrequency
+               && tuning < highestLeak * std::sqrt((K + own[0].value) / m) / turn
+               && own[0].value > leastLeakStiffness * K && own[0].value < mostLeakStiffness * K;
+    }
+
+    int memorySize(const Extent&) const override { return 3; }
+    int coefficientCount(const Extent&) const override { return 8; }
+
+    /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard. The tuning stays at the
+    /// end of what was measured where a search that finds nothing runs away with it.
+    template <class T>
+    void prepareFor(const Extent& e, const T* p, T* c) const
+    {
+        const T w = 2.0 * std::numbers::pi * atMost(e.highFrequency, p[1]), &r = p[5];
+        c[0] = p[0] * (1.0 + r);
+        c[1] = p[0] * r;
+        c[2] = w * w / (1.0 + r);
+        c[3] = w * p[2];
+        c[4] = c[2] * r;
+        c[5] = w * p[3];
+        c[6] = p[4] / w;
+        c[7] = p[6];
+    }
+
+    template <class T>
+    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    {
+        const T &w = memory[0], &vy = memory[1], &y = memory[2];
+        rate[0] = (at.v + vy - c[5] * w) / (1.0 + c[5] * c[6]);  // dw/dt = v + dy/dt + dl/dt, solved
+        const T pull = w + c[6] * rate[0];
+        rate[1] = -c[2] * pull - c[3] * vy - c[4] * y;
+        rate[2] = vy - yield * e.lowFrequency * y;
+        sum.force += c[1] * at.x - c[0] * pull;
+    }
+
+    /// The air spring, with its absorption, between the cone and what leaks, from there to the port, which moves inward
+    /// as the cone moves outward; the port's mass, losses and, of a radiator, its spring with what it yields.
+    void draw(const Extent& e, const double* c, NetworkDrawing& into) const override
+    {
+        const double Ka = c[0];
+        if (Ka == 0.0)
+            return;
+        const double portMass = Ka / c[2], leak = c[5] / Ka;  // leak: velocity over force
+        const std::string air = leak > 0.0 ? "air" : "port";
+        into.spring(Network::cone, Network::ground, -c[1]);
+        into.spring(Network::cone, air, Ka);
+        into.damper(Network::cone, air, Ka * c[6]);
+        if (leak > 0.0)
+            into.damper(air, "port", 1.0 / leak);
+        into.mass("port", portMass);
+        into.damper("port", Network::ground, portMass * c[3]);
+        if (c[4] > 0.0) {
+            into.spring("port", "radiator", portMass * c[4]);
+            into.damper("radiator", Network::ground, portMass * c[4] / (yield * e.lowFrequency));
+        }
+    }
+    bool ofEnclosure() const override { return true; }
+
+    template <class T>
+    void radiate(const Extent&, const T* c, const Motion<T>&, const T&, const T*, const T* rate, Emission<T>& sum) const
+    {
+        sum.acceleration += c[7] * rate[1];
+    }
+
+private:
+    static constexpr double someLoss = 0.1, yield = 2.0 * std::numbers::pi * 0.001;
+};
+
+}  // namespace
+
+const Effect& ventedBox()
+{
+    static const VentedBox effect;
+    return effect;
+}
+
+}  // namespace excursion

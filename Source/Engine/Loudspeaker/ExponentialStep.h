@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Numerics/TiledProduct.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace excursion {
+
+/// One step of a model's simulation by exponential time differencing (ETDRK4: Cox & Matthews 2002, J. Comput. Phys.
+/// 176). The equations of Dynamics are split,
+///     dz/dt = A z + B u + E N,
+/// into the linear part A, B of the base, the ladders and the relaxations, and what the laws add to a few rates: to
+/// di/dt, to dv/dt, and the rates of their own memories, should they have any. The linear part is exact for inputs that
+/// are polynomials on the step, however stiff it is; the laws' part is of fourth order. N depends on a few outputs
+/// only,
+///     y = (i, x, v, A_i z, A_v z, the laws' memories) = C z,
+/// so the stages within a step are found from y alone, and a step costs little more than one product of exp(A h) and z.
+/// Of that product what is zero is left out: a state that moves neither coil nor cone (a mode that is heard only)
+/// follows the others, which know nothing of it, and the laws' memories stand still but for the laws.
+///
+/// Thread: after construction nothing allocates, locks or throws.
+class ExponentialStep {
+public:
+    static constexpr int terms = 7;  ///< coefficients of an input polynomial
+
+    /// @param model  it need not outlive this
+    /// @param h      step, s
+    ExponentialStep(const Model& model, double h);
+    ExponentialStep(const ExponentialStep&) = delete;  // the laws point into the model
+
+    /// Length of the state z = (i, x, v, memories in order), as in Dynamics.
+    int order() const { return static_cast<int>(z_.size()); }
+
+    /// Starts at state z; at first it is at rest.
+    void begin(const Eigen::VectorXd& z);
+
+    /// Advances by h, and tells dv/dt at the step's start, m/s^2.
+    /// @param u  coefficients of the input on the step, u(s) = sum u_k s^k, 0 <= s <= 1, V (or N); at most `terms`
+    double step(std::span<const double> u);
+
+    double current() const { return z_[0]; }       ///< A
+    double displacement() const { return z_[1]; }  ///< m
+    double velocity() const { return z_[2]; }      ///< m/s
+    void state(Eigen::VectorXd& z) const;
+
+    /// The largest eigenvalue of dN/d(i, v, the laws' memories), in size, over what was visited (1/s): where h times it
+    /// goes beyond 2, the step is too long to be stable.
+    double fastestLaw();
+
+private:
+    friend class ExponentialAdams;
+    friend class SensitivityStep;
+
+    static constexpr Eigen::Index rates = 2;    // di/dt and dv/dt lead N
+    static constexpr Eigen::Index motions = 5;  // i, x, v, A_i z and A_v z lead y
+
+    using Motions = Eigen::Matrix<double, motions, 1>;
+
+    struct Law {
+        const Component* component;
+        std::vector<double> coefficients;
+        Eigen::Index memory;  ///< where its memory starts among the laws' memories
+    };
+
+    /// Whether it is a law that moves something.
+    static bool isLaw(const Component&);
+
+    /// The input halfway and at the end of the step.
+    static std::pair<double, double> later(std::span<const double> u);
+    /// m/s^2 that the input makes at once
+    double motion(double u) const { return electrical_ ? 0.0 : u / mass_; }
+    void ask(double u, double* N);
+
+    /// Columns for the linear part's states, then inputs, as `from_` has them.
+    Eigen::MatrixXd arranged(const Eigen::MatrixXd& map) const;
+
+    const Model model_;
+    std::vector<Law> laws_;
+    bool electrical_;
+    double step_;                           ///< s
+    double inductance_ = 0.0, mass_ = 0.0;  ///< of the linear part
+    double byVoltage_ = 0.0;                ///< 1/inductance_
+    // The linear part's states: first those that act on coil and cone in the end, i, x and v ahead, then those that
+    // only follow.
+    Eigen::Index moving_ = 0;
+    /// of the linear part's states, and of the laws' memories, in the state
+    std::vector<Eigen::Index> linearPlace_, lawPlace_;
+    Eigen::MatrixXd A_;
+    Eigen::MatrixXd C_;  ///< linear states -> (i, x, v, A_i z, A_v z)
+    Eigen::MatrixXd E_;  ///< what laws add to di/dt and dv/dt
+    /// (linear states, u) -> linear states at the end, halfway, without the laws
+    Eigen::MatrixXd whole_, halfway_;
+    /// (E_'s rates at the start, sum of both halfway, at the end) -> what they add to the linear states
+    Eigen::MatrixXd quadrature_;
+    Eigen::MatrixXd Q_;                                   ///< int exp(A t) E dt over h/2
+    Eigen::Matrix<double, motions, rates> stage_, last_;  ///< C Q and C exp(A h/2) Q
+
+    TiledProduct carry_, drive_;  ///< of from_, and of the laws' rates, to run_
+    std::vector<double> from_;    ///< moving, u, following
+    /// moving at the end, (A_i z, A_v z) at the start, motions halfway, (A_i z, A_v z) at the end, following at the end
+    std::vector<double> run_;
+    Eigen::VectorXd z_;  ///< linear states, then the laws' memories
+    Eigen::VectorXd y_;
+    std::array<Eigen::VectorXd, 4> N_;
+};
+
+}  // namespace excursion

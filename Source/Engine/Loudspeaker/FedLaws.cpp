@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/FedLaws.h"
+
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+bool isLaw(const Component& component) { return !component.effect->linear(); }
+
+MemoryStart atRest(const Component& law)
+{
+    const auto size = static_cast<Eigen::Index>(law.effect->memorySize(law.extent));
+    return {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(law.parameters.size()))};
+}
+
+/// Where the memory of a law that is not slow stands a quarter of a period before the window.
+MemoryStart startOf(const Component& law, const Section& section, const ShownMotion& motion, double sampleRate)
+{
+    if (law.effect->memorySize(law.extent) == 0)
+        return atRest(law);
+    return settledMemory(law, everySample(motion), section.window - section.window / 4, sampleRate);
+}
+
+/// Where the slow memory of a law stands a quarter of a period before the window of each section.
+std::vector<MemoryStart> startsOf(const Component& law, const Record& record, const std::vector<std::size_t>& sections,
+                                  const std::vector<ShownMotion>& motions, bool withGradient)
+{
+    std::vector<MemoryStart> starts(sections.size());
+    // Sections that are not asked for have heated the coil all the same: as much as those of the same level, or of the
+    // nearest.
+    std::vector<PeriodicMotion> all;
+    std::vector<double> run;
+    for (const auto& section : record.sections) {
+        const auto nearest = std::min_element(sections.begin(), sections.end(), [&](std::size_t a, std::size_t b) {
+            const auto distance = [&](std::size_t n) {
+                const auto& other = record.sections[n];
+                return std::pair(&other == &section ? 0 : 1, std::abs(other.level - section.level));
+            };
+            return distance(a) < distance(b);
+        });
+        all.push_back(everySample(motions[static_cast<std::size_t>(nearest - sections.begin())]));
+        run.push_back(0.75 * static_cast<double>(section.window) / record.sampleRate);
+    }
+    const auto histories = historyOf(law, record, all, run, withGradient);
+    for (std::size_t s = 0; s < sections.size(); ++s)
+        starts[s] = histories[sections[s]];
+    return starts;
+}
+
+/// Lines from the first to the last, all of them until they are denser than a two-hundredth of an octave.
+std::vector<std::size_t> sparseLines(std::size_t first, std::size_t last)
+{
+    constexpr double step = 1.00347;
+    std::vector<std::size_t> lines;
+    for (std::size_t k = first; k < last; k = std::max(k + 1, static_cast<std::size_t>(step * static_cast<double>(k))))
+        lines.push_back(k);
+    lines.push_back(last);
+    return lines;
+}
+
+/// Rows of lines, on straight lines between those that are known.
+Eigen::MatrixXcd between(const Eigen::MatrixXcd& known, const std::vector<std::size_t>& lines)
+{
+    Eigen::MatrixXcd all(static_cast<Eigen::Index>(lines.back() - lines.front() + 1), known.cols());
+    for (Eigen::Index c = 0; c < known.cols(); ++c) {
+        Eigen::Index row = 0;
+        for (std::size_t n = 0; n + 1 < lines.size(); ++n) {
+            const auto here = known(static_cast<Eigen::Index>(n), c), next = known(static_cast<Eigen::Index>(n) + 1, c);
+            const auto count = static_cast<double>(lines[n + 1] - lines[n]);
+            for (double k = 0.0; k < count; ++k)
+                all(row++, c) = here + (next - here) * (k / count);
+        }
+        all(row, c) = known(known.rows() - 1, c);
+    }
+    return all;
+}
+
+}  // namespace
+
+Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::size_t first, std::size_t last,
+              double resolution, bool withGradient, unsigned threads)
+{
+    constexpr double nearlyRest = 1e-3;
+    const auto frequencyOf = [&](std::size_t line) {
+        return resolution * (line > 0 ? static_cast<double>(line) : nearlyRest);
+    };
+    const std::vector<Drives> drives {Drives::terminals, Drives::cone};
+    std::vector<double> frequency, sparse;
+    for (std::size_t k = first; k <= last; ++k)
+        frequency.push_back(frequencyOf(k));
+    Paths paths {{}, {}, first, smallSignal(model).lateness};
+    auto responses = respondToEach(model, quantities, frequency, drives, false, threads);
+    if (withGradient) {  // slopes are dear, and smooth from line to line at high frequencies
+        const auto lines = sparseLines(first, last);
+        for (const auto k : lines)
+            sparse.push_back(frequencyOf(k));
+        const auto slopes = respondToEach(model, quantities, sparse, drives, true, threads);
+        for (std::size_t d = 0; d < drives.size(); ++d)
+            for (std::size_t q = 0; q < quantities.size(); ++q)
+                responses[d][q].gradient = between(slopes[d][q].gradient, lines);
+    }
+    paths.fromVoltage = std::move(responses[0]);
+    paths.fromForce = std::move(responses[1]);
+    return paths;
+}
+
+LawHistories lawHistories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                          const std::vector<ShownMotion>& motions, bool withGradient)
+{
+    LawHistories histories;
+    for (const auto& component : model.components)
+        histories.push_back(isLaw(component) && component.effect->slow()
+                                ? startsOf(component, record, sections, motions, withGradient)
+                                : std::vector<MemoryStart> {});
+    return histories;
+}
+
+Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion,
+         const LawHistories& histories, std::size_t place, const std::vector<std::vector<bool>>& wanted)
+{
+    Fed fed;
+    fed.voltage = fft(section.input);
+    fed.force.assign(fed.voltage.size(), 0.0);
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto& law = model.components[k];
+        if (!isLaw(law))
+            continue;
+        const auto start = law.effect->slow() ? histories[k][place] : startOf(law, section, motion, record.sampleRate);
+        auto drive = driveOf(law, motion, start, record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
+        for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
+            if (model.electrical())
+                fed.voltage[n] -= drive.voltage[n];
+            fed.force[n] += drive.force[n];
+        }
+        fed.component.push_back(k);
+        fed.laws.push_back(std::move(drive));
+    }
+    return fed;
+}
+
+}  // namespace excursion

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/FeedbackError.h"
+
+#include "Engine/Loudspeaker/Arrival.h"
+#include "Engine/Loudspeaker/FedLaws.h"
+#include "Engine/Numerics/Parallel.h"
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+namespace excursion {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Residuals and columns of one section.
+class FedSection {
+public:
+    FedSection(const Model& model, const Record& record, const Section& section, const Fed& fed, const Paths& paths)
+        : model_(model), record_(record), section_(section), residual_(record, section), fed_(fed), paths_(paths)
+    {
+    }
+
+    /// @param played  null: residuals are those of the fed laws
+    SectionFit run(const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, const SectionFit* played)
+    {
+        SectionFit fit;
+        fit.finite = true;
+        for (std::size_t c = 0; c < record_.channels.size(); ++c) {
+            auto predicted = sum(c, fed_.voltage, fed_.force);
+            const bool heard = record_.channels[c] == Quantity::pressure && hear(predicted);
+            const auto r = residual_.of(c, played ? played->predicted[c] : predicted);
+            NormalEquations normal(r);
+            fit.finite = fit.finite && std::isfinite(normal.cost);
+            if (options.gradient && !active.empty())
+                normal.differentiateBy(columns(c, active, heard), r);
+            fit.channels.push_back(std::move(normal));
+            fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted));
+            if (options.spectra)
+                fit.predicted.push_back(std::move(predicted));
+        }
+        return fit;
+    }
+
+private:
+    /// The spectrum that a voltage and a force make of a channel.
+    Spectrum sum(std::size_t c, const Spectrum& voltage, const Spectrum& force) const
+    {
+        Spectrum result(voltage.size(), 0.0);
+        for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
+            result[k] = paths_.fromVoltage[c].value[k - paths_.first] * voltage[k]
+                        + paths_.fromForce[c].value[k - paths_.first] * force[k];
+        return result;
+    }
+
+    /// What leaves the cone, of what arrives as late as at rest.
+    std::vector<double> leaving(const Spectrum& sound) const
+    {
+        return inverseFft(later(sound, -paths_.lateness), section_.window);
+    }
+    /// What arrives, as late as the laws make it.
+    Spectrum arriving(const std::vector<double>& flow) const
+    {
+        return later(fft(arrival_.back().heard(flow)), paths_.lateness);
+    }
+
+    Spectrum later(Spectrum sound, double time) const
+    {
+        for (std::size_t k = 0; k < sound.size(); ++k)
+            sound[k] *= std::polar(1.0, -2.0 * std::numbers::pi * record_.frequency(section_, k) * time);
+        return sound;
+    }
+
+    /// Makes the sound of laws arrive late; true where any does.
+    bool hear(Spectrum& sound)
+    {
+        for (const auto& law : fed_.laws) {
+            if (law.lateness.empty())
+                continue;
+            const auto flow = leaving(sound);
+            arrival_.emplace_back(law.lateness, record_.sampleRate);
+            byLeaving_ = slopeByLeaving(flow, law.lateness, record_.sampleRate);
+            sound = arriving(flow);
+        }
+        return !arrival_.empty();
+    }
+
+    Eigen::MatrixXd columns(std::size_t c, const std::vector<Eigen::Index>& active, bool heard) const
+    {
+        Eigen::MatrixXd J = Eigen::MatrixXd::Zero(residual_.rows(), static_cast<Eigen::Index>(active.size()));
+        Spectrum slope(fed_.voltage.size(), 0.0);
+        const auto fill = [&](Eigen::Index column, const auto& at) {
+            for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
+                slope[k] = at(k);
+            if (heard)
+                slope = arriving(leaving(slope));
+            residual_.fill(c, slope, J.col(column));
+            if (heard)
+                std::fill(slope.begin(), slope.end(), 0.0);
+        };
+        const auto& byVoltage = paths_.fromVoltage[c];
+        const auto& byForce = paths_.fromForce[c];
+        std::vector<std::pair<std::size_t, std::size_t>> owner;  // law (or none) and own index of every parameter
+        const auto none = fed_.laws.size();
+        for (std::size_t k = 0; k < model_.components.size(); ++k) {
+            const auto law = static_cast<std::size_t>(std::find(fed_.component.begin(), fed_.component.end(), k)
+                                                      - fed_.component.begin());
+            for (std::size_t j = 0; j < model_.components[k].parameters.size(); ++j)
+                owner.emplace_back(law, j);
+        }
+        owner.resize(owner.size() + model_.path.parameters.size(), {none, 0});
+        for (std::size_t a = 0; a < active.size(); ++a) {
+            const auto column = static_cast<Eigen::Index>(a);
+            const auto [law, own] = owner[static_cast<std::size_t>(active[a])];
+            if (law == none) {
+                fill(column, [&](std::size_t k) {
+                    const auto row = static_cast<Eigen::Index>(k - paths_.first);
+                    return byVoltage.gradient(row, active[a]) * fed_.voltage[k]
+                           + byForce.gradient(row, active[a]) * fed_.force[k];
+                });
+                continue;
+            }
+            const auto& drive = fed_.laws[law];
+            const auto &U = drive.voltageSlopes[own], &F = drive.forceSlopes[own];
+            if (U.empty())
+                continue;
+            const double electrical = model_.electrical() ? 1.0 : 0.0;
+            Spectrum late;
+            if (heard && !drive.latenessSlopes[own].empty()) {
+                auto change = drive.latenessSlopes[own];
+                for (std::size_t n = 0; n < change.size(); ++n)
+                    change[n] *= -byLeaving_[n];
+                late = later(fft(change), paths_.lateness);  // as at rest, which arriving() makes later still
+            }
+            fill(column, [&](std::size_t k) {
+                const auto sum = byForce.value[k - paths_.first] * F[k]
+                                 - electrical * byVoltage.value[k - paths_.first] * U[k];
+                return late.empty() ? sum : sum + late[k];
+            });
+        }
+        return J;
+    }
+
+    const Model& model_;
+    const Record& record_;
+    const Section& section_;
+    Residual residual_;
+    const Fed& fed_;
+    const Paths& paths_;
+    std::vector<Arrival> arrival_;
+    std::vector<double> byLeaving_;
+};
+
+}  // namespace
+
+std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
+                                      const std::vector<std::size_t>& sections, const ShownMotions& motions,
+                                      const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
+                                      const Progress& progress, const std::vector<SectionFit>* played)
+{
+    const bool gradient = options.gradient && !active.empty();
+    std::vector<std::vector<bool>> wanted;
+    Eigen::Index index = 0;
+    for (const auto& component : model.components) {
+        wanted.emplace_back();
+        for (std::size_t j = 0; j < component.parameters.size(); ++j, ++index)
+            wanted.back().push_back(gradient && std::binary_search(active.begin(), active.end(), index));
+    }
+    const auto histories = lawHistories(model, record, sections, motions, gradient);
+    std::map<std::size_t, Paths> paths;  // by window
+    for (const auto s : sections)
+        if (const auto& section = record.sections[s]; !paths.contains(section.window)) {
+            const auto [first, last] = record.lineRange(section);
+            paths[section.window] = pathsOf(model, record.channels, first, last,
+                                            record.sampleRate / static_cast<double>(section.window), gradient,
+                                            options.threads);
+        }
+    std::vector<SectionFit> fits(sections.size());
+    inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
+        const auto& section = record.sections[sections[s]];
+        const auto fed = feed(model, record, section, motions[s], histories, s, wanted);
+        fits[s] = FedSection(model, record, section, fed, paths.at(section.window))
+                      .run(active, options, played ? &(*played)[s] : nullptr);
+        return fits[s].finite;
+    });
+    return fits;
+}
+
+Record withoutLaws(const Model& model, const Record& record, unsigned threads)
+{
+    const auto still = linearPart(model);
+    if (!hasPeriods(record) || still.components.size() == model.components.size())
+        return record;
+    std::vector<std::size_t> every(record.sections.size());
+    std::iota(every.begin(), every.end(), std::size_t {0});
+    OutputErrorOptions run;
+    run.gradient = false;
+    run.spectra = true;
+    run.threads = threads;
+    const auto with = quickError(model, record, every, {}, run), without = quickError(still, record, every, {}, run);
+    Record result = record;
+    for (std::size_t s = 0; s < every.size(); ++s) {
+        if (!with[s].finite || !without[s].finite)
+            return record;
+        for (std::size_t c = 0; c < record.channels.size(); ++c)
+            for (std::size_t k = 0; k < result.sections[s].measured[c].size(); ++k)
+                result.sections[s].measured[c][k] += without[s].predicted[c][k] - with[s].predicted[c][k];
+    }
+    return result;
+}
+
+std::vector<SectionFit> quickError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                   const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
+                                   const Progress& progress)
+{
+    return hasPeriods(record)
+               ? feedbackError(model, record, sections, settledMotions(model, record, sections, options.threads),
+                               active, options, progress)
+               : outputError(model, record, sections, active, options, progress);
+}
+
+}  // namespace excursion

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Fit.h"
+
+#include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
+#include "Engine/Validity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace excursion {
+namespace {
+
+/// Peak of a channel's window, integrated `integrations` times (negative: differentiated), without its mean.
+double measuredPeak(const Record& record, const Section& section, std::size_t channel, int integrations)
+{
+    auto spectrum = section.measured[channel];
+    spectrum.front() = 0.0;
+    for (std::size_t k = 1; k < spectrum.size(); ++k) {
+        const double f = record.frequency(section, k);
+        // Below the band an integrated channel holds little but amplified noise, above it a differentiated one.
+        const bool trusted = (integrations <= 0 || f > 0.5 * record.bandLow)
+                             && (integrations >= 0 || f < 1.5 * record.bandHigh);
+        spectrum[k] = trusted
+                          ? spectrum[k] / std::pow(std::complex<double>(0.0, 2.0 * std::numbers::pi * f), integrations)
+                          : 0.0;
+    }
+    return peakOf(inverseFft(spectrum, section.window));
+}
+
+/// What the model leaves of the sections to fit, with normal equations of the active parameters when asked for.
+using ErrorOf = std::function<std::vector<SectionFit>(const std::vector<Eigen::Index>& active, bool gradient)>;
+
+/// The free parameters but for shapes of which the record says no more than was plausible beforehand: a spread of
+/// relaxations that has shrunk to a single one has no sensitivity left, and its wild steps would hold up the others. Of
+/// an effect that is not at work yet nothing can be said: its shapes are kept.
+/// @param fits  of the model, when they had to be known and no parameter is left out; else none
+std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, std::vector<SectionFit>& fits)
+{
+    const auto active = freeParameters(model);
+    const auto all = parametersOf(model);
+    std::vector<bool> atWork;
+    for (const auto& component : model.components)
+        atWork.insert(atWork.end(), component.parameters.size(), isAtWork(component));
+    atWork.resize(all.size(), true);  // the path
+    const auto isShape = [&](Eigen::Index k) {
+        const auto& p = *all[static_cast<std::size_t>(k)];
+        return !p.strength && std::isfinite(p.prior) && atWork[static_cast<std::size_t>(k)];
+    };
+    if (std::none_of(active.begin(), active.end(), isShape))
+        return active;
+    NormalEquations sum;
+    fits = errorOf(active, true);
+    for (const auto& section : fits)
+        for (const auto& channel : section.channels)
+            if (section.finite)
+                sum.add(channel);
+    if (sum.N.size() == 0)
+        return active;
+    std::vector<Eigen::Index> kept;
+    constexpr double fewTimes = 4.0;  // what the record must say, in units of what was known
+    const double variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
+    for (std::size_t j = 0; j < active.size(); ++j) {
+        const auto k = static_cast<Eigen::Index>(j);
+        const double prior = all[static_cast<std::size_t>(active[j])]->prior;
+        if (!isShape(active[j]) || sum.N(k, k) * prior * prior > fewTimes * variance)
+            kept.push_back(active[j]);
+    }
+    if (kept.size() < active.size())
+        fits.clear();
+    return kept;
+}
+
+bool areFinite(const std::vector<SectionFit>& fits)
+{
+    return std::all_of(fits.begin(), fits.end(), [](const SectionFit& fit) { return fit.finite; });
+}
+
+/// The search of the model's parameters for the least error.
+FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const FitOptions& options,
+                  const Progress& progress)
+{
+    FitSummary summary;
+    std::vector<SectionFit> atStart;
+    const auto active = telling(model, errorOf, atStart);
+    const auto all = parametersOf(model);
+    const auto P = static_cast<Eigen::Index>(active.size());
+    Eigen::VectorXd theta(P), lower(P), upper(P);
+    for (Eigen::Index k = 0; k < P; ++k) {
+        const auto& p = *all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])];
+        theta[k] = p.value;
+        // Mass, inductance and their like stay away from zero, where the equations of motion are singular.
+        lower[k] = p.lower == 0.0 && !p.strength ? 1e-3 * p.value : p.lower;
+        upper[k] = p.upper;
+    }
+    const auto place = [&](const Eigen::VectorXd& at) {
+        for (Eigen::Index k = 0; k < P; ++k)
+            all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
+    };
+    NormalEquations last;   // at the last accepted gradient
+    double variance = 0.0;  // of the residuals at the start
+    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        place(at);
+        // asked for there first
+        const auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});
+        auto total = sumOf(fits);
+        if (!total)
+            return false;
+        sum = std::move(*total);
+        const bool onlyNoise = noiseKnown && worstPower(fits) <= ErrorPower::most;
+        sum.sure = noiseKnown && !onlyNoise ? sureNoise * sum.rows : 0.0;
+        if (variance == 0.0)
+            variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
+        addPrior(model, active, sum, variance);
+        if (gradient) {
+            last = sum;
+            summary.onlyNoise = onlyNoise;
+        }
+        return true;
+    };
+    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
+    place(theta);
+    if (!summary.usable())
+        return summary;
+    summary.costPerResidual = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
+    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.costPerResidual));
+    model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
+                                             static_cast<Eigen::Index>(all.size()));
+    for (Eigen::Index r = 0; r < P; ++r) {
+        const auto row = active[static_cast<std::size_t>(r)];
+        for (Eigen::Index c = 0; c < P; ++c)
+            model.covariance(row, active[static_cast<std::size_t>(c)]) = covariance(r, c);
+        all[static_cast<std::size_t>(row)]->standardError = std::sqrt(covariance(r, r));
+    }
+    return summary;
+}
+
+}  // namespace
+
+bool FitOptions::isValid(std::string* reason) const
+{
+    if (!search.isValid(reason))
+        return false;
+    if (!(simulationTolerance >= 0.0 && simulationTolerance < 1.0))
+        return refuse(reason, "the tolerance of the simulation must lie between 0 (chosen from the noise) and 1");
+    if (substeps < 0 || threads < 1)
+        return refuse(reason, "steps a sample and threads are positive");
+    return true;
+}
+
+int substepsFor(const Model& model, const Record& record, double tolerance)
+{
+    const Section* loudest = nullptr;
+    double peak = -1.0;
+    for (const auto& section : record.sections)
+        if (const double p = peakOf(section.input); p > peak) {
+            peak = p;
+            loudest = &section;
+        }
+    if (tolerance <= 0.0) {
+        tolerance = 1e-4;
+        for (std::size_t c = 0; c < record.channels.size() && record.noiseKnown; ++c) {
+            double noise = 0.0, signal = 0.0;
+            for (std::size_t k = 1; k < loudest->measured[c].size(); ++k) {
+                noise += loudest->deviation[c][k] * loudest->deviation[c][k];
+                signal += std::norm(loudest->measured[c][k]);
+            }
+            tolerance = std::min(tolerance, 0.15 * std::sqrt(noise / signal));
+        }
+        tolerance = std::max(tolerance, 1e-6);
+    }
+    SimulationOptions options;
+    options.tolerance = tolerance;
+    options.maximumSubsteps = 16;
+    return chooseSubsteps(model, loudest->input, record.sampleRate, options).substeps;
+}
+
+void adapt(Record& record, const Model& model)
+{
+    if (record.sections.empty() || !record.sections.front().periodic)
+        return;
+    for (auto& section : record.sections) {
+        if (section.inputVariance.empty())
+            continue;
+        const auto U = fft(section.input);
+        const auto [first, last] = record.lineRange(section);
+        std::vector<std::size_t> played;
+        std::vector<double> frequency;
+        for (std::size_t k = first; k <= last; ++k)
+            if (std::norm(U[k]) > section.inputVariance[k]) {
+                played.push_back(k);
+                frequency.push_back(record.frequency(section, k));
+            }
+        const auto responses = respond(model, record.channels, frequency);
+        for (std::size_t c = 0; c < record.channels.size(); ++c)
+            for (std::size_t n = 0; n < played.size(); ++n)
+                section.deviation[c][played[n]] = std::hypot(section.deviation[c][played[n]],
+                                                             std::abs(responses[c].value[n])
+                                                                 * std::sqrt(section.inputVariance[played[n]]));
+        section.inputVariance.clear();
+    }
+    record.leadIn = settlingTime(model, record);
+}
+
+Extent visitedExtent(const Model& model, const Record& record, int degree)
+{
+    Extent extent;
+    extent.degree = degree;
+    extent.lowFrequency = record.bandLow;
+    extent.highFrequency = record.bandHigh;
+    if (!record.sections.empty() && record.sections.back().end > 0.0)
+        extent.duration = record.sections.back().end;
+    double x = 0.0, v = 0.0, i = 0.0;
+    for (const auto& section : record.sections)
+        for (std::size_t c = 0; c < record.channels.size(); ++c) {
+            if (record.channels[c] == Quantity::current)
+                i = std::max(i, measuredPeak(record, section, c, 0));
+            if (const auto n = integrationsToDisplacement(record.channels[c])) {
+                x = std::max(x, measuredPeak(record, section, c, *n));
+                v = std::max(v, measuredPeak(record, section, c, *n - 1));
+            }
+        }
+    if (x == 0.0 || (i == 0.0 && model.electrical())) {
+        const int substeps = stableSubsteps(model, record.sampleRate);
+        double simulatedX = 0.0, simulatedV = 0.0, simulatedI = 0.0;
+        for (const auto& section : record.sections) {
+            Trajectory run;
+            const auto drive = record.drive(section);
+            if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
+                continue;
+            simulatedX = std::max(simulatedX, peakOf(run.displacement));
+            simulatedV = std::max(simulatedV, peakOf(run.velocity));
+            simulatedI = std::max(simulatedI, peakOf(run.current));
+        }
+        if (x == 0.0) {
+            x = simulatedX;
+            v = simulatedV;
+        }
+        if (i == 0.0)
+            i = simulatedI;
+    }
+    // Where nothing moves (the current of a driver without a coil) the default stands.
+    const auto keep = [](double peak, double& to) {
+        if (peak > 0.0)
+            to = 1.02 * peak;
+    };
+    keep(x, extent.displacement);
+    keep(v, extent.velocity);
+    keep(i, extent.current);
+    return extent;
+}
+
+FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,
+               const Progress& progress)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The fit cannot run: " + reason + ".");
+    followOthers(model);
+    OutputErrorOptions run;
+    run.threads = options.threads;
+    if (options.fed && hasPeriods(record)) {
+        FitSummary summary;
+        auto motions = settledMotions(model, record, sections, options.threads);
+        const ErrorOf errorOf = [&](const std::vector<Eigen::Index>& active, bool gradient) {
+            run.gradient = gradient;
+            return feedbackError(model, record, sections, motions, active, run, progress);
+        };
+        // What the take does not show is expected better from the model that has been found.
+        constexpr int mostRounds = 4;
+        constexpr double settled = 0.95;
+        double before = std::numeric_limits<double>::infinity();
+        for (int n = 0; n < mostRounds; ++n) {
+            if (n > 0)
+                motions = shownMotions(model, record, sections, motions, options.threads);
+            const auto round = search(model, errorOf, record.noiseKnown, options, progress);
+            if (n > 0 && !round.usable())
+                break;
+            summary = round;
+            if (!(summary.usable() && summary.finalCost < settled * before))
+                break;
+            before = summary.finalCost;
+        }
+        return summary;
+    }
+    run.substeps = std::max(stableSubsteps(model, record.sampleRate),
+                            options.substeps > 0 ? options.substeps
+                                                 : substepsFor(model, record, options.simulationTolerance));
+    if (options.exactGradient)
+        run.gradientSubsteps = run.substeps;
+    const bool slopesFed = options.fedGradient && hasPeriods(record);
+    const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
+    auto summary = search(
+        model,
+        [&](const std::vector<Eigen::Index>& active, bool gradient) {
+            run.gradient = gradient && !slopesFed;
+            run.spectra = gradient && slopesFed;
+            auto played = outputError(model, record, sections, active, run, progress);
+            if (!run.spectra || !areFinite(played))
+                return played;
+            auto slopes = run;
+            slopes.gradient = true;
+            slopes.spectra = false;
+            return feedbackError(model, record, sections, motions, active, slopes, progress, &played);
+        },
+        record.noiseKnown, options, progress);
+    summary.substeps = run.substeps;
+    return summary;
+}
+
+Model startModel(const Record& record)
+{
+    return startModel(linearResponsesOf(record), record.electrical, record.driver);
+}
+
+}  // namespace excursion

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/LawDrive.h"
+
+#include "Engine/Numerics/RungeKutta.h"
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+// a law is asked once a sample, and its memory in between; a record's rate leaves room for products
+constexpr std::size_t fine = ShownMotion::fine;
+
+/// What a law answers along a motion: one value a sample.
+template <class T>
+struct Answers {
+    std::vector<T> voltage, force, lateness;
+    std::vector<T> memory;  ///< where the window begins
+};
+
+/// A law that is asked along a motion.
+template <class T>
+class Along {
+public:
+    Along(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion)
+        : law_(law), coefficients_(coefficientsOf(law, parameters)), motion_(motion)
+    {
+    }
+
+    /// @param place  between two fine values of the motion as well
+    Balance<T> ask(double place, const T* memory, T* rate) const
+    {
+        Balance<T> sum;
+        law_.effect->contribute(law_.extent, coefficients_.data(), at(place), memory, rate, sum);
+        return sum;
+    }
+
+    /// Adds what was asked there to the answers.
+    void answer(std::size_t n, const Balance<T>& sum, const T* memory, const T* rate, Answers<T>& answers) const
+    {
+        answers.voltage.push_back(sum.drop + sum.fluxSlope * motion_.v[n] + sum.inductance * motion_.slope[n]);
+        answers.force.push_back(sum.force - sum.mass * motion_.a[n]);
+        if (!law_.effect->emits())
+            return;
+        Emission<T> emission;
+        law_.effect->emit(law_.extent, coefficients_.data(), at(static_cast<double>(n)), T(motion_.a[n]), memory, rate,
+                          emission);
+        answers.lateness.push_back(emission.lateness);
+    }
+
+private:
+    Motion<T> at(double place) const
+    {
+        const auto whole = static_cast<std::size_t>(place);
+        const double share = place - static_cast<double>(whole);
+        const std::size_t length = motion_.i.size(), here = whole % length, next = (here + 1) % length;
+        const auto between = [&](const std::vector<double>& q) { return T(q[here] + share * (q[next] - q[here])); };
+        return {between(motion_.i), between(motion_.x), between(motion_.v)};
+    }
+
+    const Component& law_;
+    std::vector<T> coefficients_;
+    const ShownMotion& motion_;
+};
+
+/// How quick a law's memory is along the motion.
+struct Pace {
+    int steps = 1;  ///< a sample, in which the memory can be followed: its fastest rate times one stays below one
+    bool quarterForgets = true;  ///< nothing of what was is left of its slowest part after a quarter of the period
+};
+
+Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
+{
+    const auto size = static_cast<std::size_t>(law.effect->memorySize(law.extent));
+    if (size == 0)
+        return {};
+    const auto coefficients = coefficientsOf(law, valuesOf(law));
+    std::vector<double> memory(size, 0.0), rest(size), moved(size), sum(size, 0.0);
+    double fastest = 0.0, asked = 0.0;
+    for (std::size_t n = 0; n < motion.i.size(); n += 2 * fine, asked += 1.0) {
+        const auto rates = [&](std::vector<double>& out) {
+            Balance<double> unused;
+            law.effect->contribute(law.extent, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]},
+                                   memory.data(), out.data(), unused);
+        };
+        rates(rest);
+        for (std::size_t k = 0; k < size; ++k) {
+            memory[k] = 1.0;
+            rates(moved);
+            memory[k] = 0.0;
+            const double rate = std::abs(moved[k] - rest[k]);
+            fastest = std::max(fastest, rate);
+            sum[k] += rate;
+        }
+    }
+    constexpr double most = 32.0, forgotten = 7.0;  // exp(-7): a thousandth
+    const double quarter = static_cast<double>(motion.i.size() / fine) / (4.0 * sampleRate);
+    return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)),
+            *std::min_element(sum.begin(), sum.end()) / asked * quarter > forgotten};
+}
+
+/// Follows a law's memory from the lead-in before the window to its end, and shows what it meets there once a sample:
+/// see(fine value, sum, memory, its rate).
+/// @param leadIn  fine values, up to a period
+template <class T, class See>
+void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, std::size_t leadIn, int steps,
+            double sampleRate, const See& see)
+{
+    RungeKutta<T> method(memory.size());
+    std::vector<T> rate(memory.size());
+    const double h = 1.0 / (steps * sampleRate), across = static_cast<double>(fine) / steps;
+    for (std::size_t step = 0; step < leadIn + length; step += fine) {
+        const std::size_t n = (length - leadIn + step) % length;
+        const auto sum = law.ask(static_cast<double>(n), memory.data(), rate.data());
+        if (step >= leadIn)
+            see(n, sum, memory, rate);
+        for (int part = 0; part < steps; ++part) {
+            const double begin = static_cast<double>(n) + across * part;
+            if (part > 0)
+                law.ask(begin, memory.data(), rate.data());
+            method.step(memory, rate, h, [&](double share, const std::vector<T>& held, std::vector<T>& out) {
+                law.ask(begin + share * across, held.data(), out.data());
+            });
+        }
+    }
+}
+
+template <class T>
+Answers<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion,
+               const std::vector<T>& start, std::size_t leadIn, int steps, double sampleRate)
+{
+    const Along<T> along(law, parameters, motion);
+    const std::size_t length = motion.i.size();
+    Answers<T> answers;
+    answers.voltage.reserve(length / fine);
+    answers.force.reserve(length / fine);
+    if (!start.empty()) {
+        follow(along, start, length, leadIn, steps, sampleRate,
+               [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory, const std::vector<T>& rate) {
+                   if (answers.memory.empty())
+                       answers.memory = memory;
+                   along.answer(n, sum, memory.data(), rate.data(), answers);
+               });
+        return answers;
+    }
+    for (std::size_t n = 0; n < length; n += fine)
+        along.answer(n, along.ask(static_cast<double>(n), nullptr, nullptr), nullptr, nullptr, answers);
+    return answers;
+}
+
+template <class T, class Read>
+std::vector<double> series(const std::vector<T>& samples, const Read& read)
+{
+    std::vector<double> result(samples.size());
+    std::transform(samples.begin(), samples.end(), result.begin(), read);
+    return result;
+}
+
+}  // namespace
+
+LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate,
+                 const std::vector<bool>& wanted)
+{
+    const auto count = law.parameters.size();
+    const auto size = static_cast<std::size_t>(start.value.size());
+    const auto pace = paceOf(law, motion, sampleRate);
+    const std::size_t length = motion.i.size(), quarter = length / fine / 4 * fine;
+    LawDrive drive;
+    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, quarter,
+                                   pace.steps, sampleRate);
+    drive.voltage = fft(plain.voltage);
+    drive.force = fft(plain.force);
+    drive.lateness = plain.lateness;
+    if (std::none_of(wanted.begin(), wanted.end(), [](bool w) { return w; }))
+        return drive;
+    drive.voltageSlopes.resize(count);
+    drive.forceSlopes.resize(count);
+    drive.latenessSlopes.resize(count);
+    // A start of a slow part knows nothing of the parameters: a whole period, which begins as the window does, forgets
+    // more of that than a quarter.
+    const bool whole = !pace.quarterForgets && !law.effect->slow();
+    std::vector<std::size_t> own;  // of a chunk
+    const auto differentiate = [&] {
+        auto parameters = valuesOf<Jet>(law);
+        std::vector<Jet> memory(size);
+        for (std::size_t m = 0; m < size; ++m)
+            memory[m] = Jet(whole ? plain.memory[m] : start.value[static_cast<Eigen::Index>(m)]);
+        for (std::size_t j = 0; j < own.size(); ++j) {
+            const auto slot = static_cast<Eigen::Index>(j);
+            parameters[own[j]].v[slot] = 1.0;
+            for (std::size_t m = 0; m < size && !whole; ++m)
+                memory[m].v[slot] = start.gradient(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(own[j]));
+        }
+        const auto jets = ask<Jet>(law, parameters, motion, memory, whole ? length : quarter, pace.steps, sampleRate);
+        for (std::size_t j = 0; j < own.size(); ++j) {
+            const auto slope = [slot = static_cast<Eigen::Index>(j)](const Jet& value) { return value.v[slot]; };
+            drive.voltageSlopes[own[j]] = fft(series(jets.voltage, slope));
+            drive.forceSlopes[own[j]] = fft(series(jets.force, slope));
+            drive.latenessSlopes[own[j]] = series(jets.lateness, slope);
+        }
+        own.clear();
+    };
+    for (std::size_t k = 0; k < count; ++k) {
+        if (wanted[k])
+            own.push_back(k);
+        if (own.size() == static_cast<std::size_t>(jetWidth) || (k + 1 == count && !own.empty()))
+            differentiate();
+    }
+    return drive;
+}
+
+}  // namespace excursion

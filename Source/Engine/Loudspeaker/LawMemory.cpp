@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/LawMemory.h"
+
+#include "Engine/Numerics/RungeKutta.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace excursion {
+namespace {
+
+double rateOf(double value) { return std::abs(value); }
+double rateOf(const Jet& value) { return std::abs(value.a); }
+
+/// dm/dt = a + B m
+template <class T>
+struct Affine {
+    std::size_t size = 0;
+    std::vector<T> a, B;  ///< B by columns
+
+    std::vector<T> rate(const std::vector<T>& m) const
+    {
+        auto result = a;
+        for (std::size_t column = 0; column < size; ++column)
+            for (std::size_t row = 0; row < size; ++row)
+                result[row] += B[column * size + row] * m[column];
+        return result;
+    }
+
+    /// m a time later, by the fourth-order Runge-Kutta method.
+    void advance(std::vector<T>& m, double time) const
+    {
+        if (!(time > 0.0))
+            return;
+        double fastest = 0.0;
+        for (const auto& value : B)
+            fastest = std::max(fastest, rateOf(value));
+        const int steps = static_cast<int>(std::clamp(std::ceil(2.0 * fastest * time), 1.0, 2000.0));
+        RungeKutta<T> method(size);
+        for (int n = 0; n < steps; ++n)
+            method.step(m, rate(m), time / steps,
+                        [&](double, const std::vector<T>& memory, std::vector<T>& out) { out = rate(memory); });
+    }
+};
+
+template <class T>
+Affine<T> meanRate(const Component& component, const std::vector<T>& coefficients, const PeriodicMotion& motion)
+{
+    Affine<T> result;
+    result.size = static_cast<std::size_t>(component.effect->memorySize(component.extent));
+    const auto mean = [&](const std::vector<T>& memory) {
+        std::vector<T> sum(result.size, T(0.0)), rate(result.size);
+        for (std::size_t n = 0; n < motion.i.size(); ++n) {
+            Balance<T> unused;
+            component.effect->contribute(component.extent, coefficients.data(),
+                                         {T(motion.i[n]), T(motion.x[n]), T(motion.v[n])}, memory.data(), rate.data(),
+                                         unused);
+            for (std::size_t k = 0; k < result.size; ++k)
+                sum[k] += rate[k];
+        }
+        for (auto& value : sum)
+            value = value * (1.0 / static_cast<double>(std::max<std::size_t>(motion.i.size(), 1)));
+        return sum;
+    };
+    std::vector<T> memory(result.size, T(0.0));
+    result.a = mean(memory);
+    for (std::size_t column = 0; column < result.size; ++column) {
+        memory[column] = T(1.0);
+        const auto there = mean(memory);
+        memory[column] = T(0.0);
+        for (std::size_t row = 0; row < result.size; ++row)
+            result.B.push_back(there[row] - result.a[row]);
+    }
+    return result;
+}
+
+/// The memory at the start of every section's drive.
+template <class T>
+std::vector<std::vector<T>> walk(const Component& component, const std::vector<T>& parameters, const Record& record,
+                                 const std::vector<PeriodicMotion>& motions, const std::vector<double>& run)
+{
+    const auto coefficients = coefficientsOf(component, parameters);
+    std::vector<std::size_t> order(record.sections.size());
+    std::iota(order.begin(), order.end(), std::size_t {0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return record.sections[a].begin < record.sections[b].begin; });
+    std::vector<std::vector<T>> starts(order.size());
+    std::vector<T> m(static_cast<std::size_t>(component.effect->memorySize(component.extent)), T(0.0));
+    for (const auto n : order) {
+        const auto& section = record.sections[n];
+        const auto mean = meanRate(component, coefficients, motions[n]);
+        // from when it was played to where the drive begins
+        const double since = section.middle - section.begin - run[n];
+        starts[n] = m;
+        if (since >= 0.0) {
+            mean.advance(starts[n], since);
+        } else {
+            // The lead-in is longer than what was really played before: so much has to come on top of it.
+            const auto rate = mean.rate(m);
+            for (std::size_t k = 0; k < m.size(); ++k)
+                starts[n][k] += since * rate[k];
+        }
+        mean.advance(m, section.end - section.begin);
+    }
+    return starts;
+}
+
+}  // namespace
+
+MemoryStart settledMemory(const Component& component, const PeriodicMotion& motion, std::size_t begin,
+                          double sampleRate)
+{
+    const auto size = static_cast<std::size_t>(component.effect->memorySize(component.extent));
+    const auto coefficients = coefficientsOf(component, valuesOf(component));
+    constexpr int parts = 2;  // steps a sample
+    const double h = 1.0 / (parts * sampleRate);
+    const std::size_t N = motion.i.size();
+    std::vector<double> m(size, 0.0), k1(size);
+    RungeKutta<double> method(size);
+    const auto rate = [&](std::size_t n, double s, const std::vector<double>& memory, std::vector<double>& out) {
+        const std::size_t from = (begin + n) % N, to = (from + 1) % N;
+        const auto at = [&](const std::vector<double>& q) { return q[from] + s * (q[to] - q[from]); };
+        Balance<double> unused;
+        component.effect->contribute(component.extent, coefficients.data(), {at(motion.i), at(motion.x), at(motion.v)},
+                                     memory.data(), out.data(), unused);
+    };
+    std::vector<double> once;  // after the first period
+    for (std::size_t n = 0; n < 2 * N; ++n) {
+        if (n == N)
+            once = m;
+        for (int part = 0; part < parts; ++part) {
+            const double begun = static_cast<double>(part) / parts;
+            rate(n, begun, m, k1);
+            method.step(m, k1, h, [&](double share, const std::vector<double>& memory, std::vector<double>& out) {
+                rate(n, begun + share / parts, memory, out);
+            });
+        }
+    }
+    // What a period leaves of a difference, the next one leaves again: where the memory repeats, m = once + q m.
+    for (std::size_t k = 0; k < size; ++k)
+        if (const double q = (m[k] - once[k]) / once[k]; q >= 0.0 && q < 1.0)
+            m[k] = once[k] / (1.0 - q);
+    MemoryStart result;
+    result.value = Eigen::Map<const Eigen::VectorXd>(m.data(), static_cast<Eigen::Index>(size));
+    if (!result.value.allFinite())
+        result.value.setZero();
+    result.gradient = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(size),
+                                            static_cast<Eigen::Index>(component.parameters.size()));
+    return result;
+}
+
+std::vector<MemoryStart> historyOf(const Component& component, const Record& record,
+                                   const std::vector<PeriodicMotion>& motions, const std::vector<double>& run,
+                                   bool withGradient)
+{
+    const auto size = static_cast<Eigen::Index>(component.effect->memorySize(component.extent));
+    const auto count = static_cast<Eigen::Index>(component.parameters.size());
+    std::vector<MemoryStart> starts(record.sections.size(),
+                                    {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});
+    if (!withGradient) {
+        const auto values = walk(component, valuesOf(component), record, motions, run);
+        for (std::size_t n = 0; n < starts.size(); ++n)
+            starts[n].value = Eigen::Map<const Eigen::VectorXd>(values[n].data(), size);
+        return starts;
+    }
+    for (Eigen::Index first = 0; first < count; first += jetWidth) {
+        auto parameters = valuesOf<Jet>(component);
+        for (Eigen::Index k = first; k < std::min<Eigen::Index>(count, first + jetWidth); ++k)
+            parameters[static_cast<std::size_t>(k)].v[k - first] = 1.0;
+        const auto values = walk(component, parameters, record, motions, run);
+        for (std::size_t n = 0; n < starts.size(); ++n)
+            for (Eigen::Index row = 0; row < size; ++row) {
+                const auto& value = values[n][static_cast<std::size_t>(row)];
+                starts[n].value[row] = value.a;
+                for (Eigen::Index k = first; k < std::min<Eigen::Index>(count, first + jetWidth); ++k)
+                    starts[n].gradient(row, k) = value.v[k - first];
+            }
+    }
+    return starts;
+}
+
+}  // namespace excursion

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Model.h"
+
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Take/Air.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace excursion {
+namespace {
+
+template <class Pointer, class ModelType>
+std::vector<Pointer> collect(ModelType& model)
+{
+    std::vector<Pointer> all;
+    for (auto& component : model.components)
+        for (auto& parameter : component.parameters)
+            all.push_back(&parameter);
+    for (auto& parameter : model.path.parameters)
+        all.push_back(&parameter);
+    return all;
+}
+
+/// Value of a component's law at q, the base parameter not included.
+double lawValue(const Component& component, const std::vector<double>& values, double q)
+{
+    return component.effect->lawAt(component.extent, values.data(), q);
+}
+
+}  // namespace
+
+Component scaled(Component component, double factor)
+{
+    for (auto& p : component.parameters)
+        if (p.strength)
+            p.value *= factor;
+    return component;
+}
+
+bool isAtWork(const Component& component)
+{
+    const auto& parameters = component.parameters;
+    return std::any_of(parameters.begin(), parameters.end(),
+                       [](const Parameter& p) { return p.strength && p.value != 0.0; })
+           || std::none_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength; });
+}
+
+double radiationPerArea() { return airDensity / (2.0 * std::numbers::pi); }
+
+const Component* Model::find(std::string_view effectId) const
+{
+    const auto found = std::find_if(components.begin() + 1, components.end(),
+                                    [&](const Component& c) { return c.effect->id() == effectId; });
+    return found == components.end() ? nullptr : &*found;
+}
+
+bool Model::has(std::string_view effectId) const { return find(effectId) != nullptr; }
+
+std::vector<std::string> Model::effectIds() const
+{
+    std::vector<std::string> ids;
+    for (std::size_t k = 1; k < components.size(); ++k)
+        ids.push_back(components[k].effect->id());
+    return ids;
+}
+
+const Parameter& Model::baseParameter(std::string_view name) const { return parameterNamed(base().parameters, name); }
+Parameter& Model::baseParameter(std::string_view name)
+{
+    return const_cast<Parameter&>(std::as_const(*this).baseParameter(name));
+}
+
+Model makeModel(std::string_view baseId)
+{
+    Model model;
+    Component base;
+    base.effect = &baseNamed(baseId);
+    base.parameters = base.effect->parameters(base.extent);
+    model.components.push_back(base);
+    model.path.effect = &radiation();
+    model.path.parameters = radiation().parameters(model.path.extent);
+    return model;
+}
+
+namespace {
+
+bool relaxes(const Model& model)
+{
+    return std::any_of(model.components.begin(), model.components.end(),
+                       [](const Component& c) { return c.effect->relaxes(); });
+}
+
+}  // namespace
+
+bool movable(const Model& model, const Parameter& p)
+{
+    const bool listens = model.path.parameters[1].free;  // the delay is, where a pressure was measured
+    return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model));
+}
+
+Model withEffect(Model model, const Effect& effect, const Extent& visited, std::size_t start)
+{
+    Extent extent = visited;
+    if (const auto base = effect.sizedBy(); !base.empty())
+        extent.scale = model.baseParameter(base).value;
+    Component component {&effect, extent, effect.parameters(extent)};
+    const auto starts = effect.starts(extent);
+    const auto& values = starts.at(start);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        component.parameters[k].value = values[k];
+    for (auto& p : component.parameters)
+        p.free = movable(model, p);
+    model.components.push_back(std::move(component));
+    model.covariance.resize(0, 0);
+    return model;
+}
+
+void followOthers(Model& model)
+{
+    const bool yields = relaxes(model);
+    for (auto& component : model.components) {
+        if (const auto base = component.effect->sizedBy(); !base.empty())
+            component.extent.scale = model.baseParameter(base).value;
+        component.extent.relaxed = yields;
+        for (auto& p : component.parameters)
+            if (p.relaxed) {
+                p.free = yields;
+                p.value = yields ? p.value : 0.0;
+            }
+    }
+}
+
+Model withoutEffect(Model model, std::string_view effectId)
+{
+    std::erase_if(model.components, [&](const Component& c) { return c.effect->id() == effectId; });
+    model.covariance.resize(0, 0);
+    return model;
+}
+
+Model linearPart(Model model)
+{
+    std::erase_if(model.components, [](const Component& c) { return !c.effect->linear(); });
+    return model;
+}
+
+Model undonePart(Model model)
+{
+    if (std::erase_if(model.components, [](const Component& c) { return !c.effect->undone(); }) > 0)
+        model.covariance.resize(0, 0);
+    return model;
+}
+
+Model withDegree(Model model, std::size_t component, int degree)
+{
+    auto& c = model.components.at(component);
+    const auto before = std::move(c.parameters);
+    c.extent.degree = degree;
+    c.parameters = c.effect->parameters(c.extent);
+    for (auto& p : c.parameters)
+        for (const auto& old : before)
+            if (old.name == p.name)
+                p.value = old.value;
+    model.covariance.resize(0, 0);
+    return model;
+}
+
+std::vector<Parameter*> parametersOf(Model& model) { return collect<Parameter*>(model); }
+std::vector<const Parameter*> parametersOf(const Model& model) { return collect<const Parameter*>(model); }
+
+Eigen::VectorXd parameterVector(const Model& model)
+{
+    const auto all = parametersOf(model);
+    Eigen::VectorXd values(static_cast<Eigen::Index>(all.size()));
+    for (std::size_t k = 0; k < all.size(); ++k)
+        values[static_cast<Eigen::Index>(k)] = all[k]->value;
+    return values;
+}
+
+void setParameterVector(Model& model, const Eigen::VectorXd& values)
+{
+    const auto all = parametersOf(model);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        all[k]->value = values[static_cast<Eigen::Index>(k)];
+}
+
+std::vector<LawCurve> laws(const Model& model, int points)
+{
+    std::vector<LawCurve> curves;
+    Eigen::Index offset = static_cast<Eigen::Index>(model.base().parameters.size());
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto& component = model.components[k];
+        const auto count = static_cast<Eigen::Index>(component.parameters.size());
+        const auto info = component.effect->law();
+        if (info) {
+            LawCurve curve;
+            curve.info = *info;
+            curve.effectId = component.effect->id();
+            const auto values = valuesOf(component);
+            const auto& baseParameters = model.base().parameters;
+            const auto* base = &parameterNamed(baseParameters, info->base);
+            const auto& e = component.extent;
+            const double range = info->argument == "x"   ? e.displacement
+                                 : info->argument == "v" ? e.velocity
+                                                         : e.current;
+            for (int n = 0; n < points; ++n) {
+                const double q = range * (2.0 * n / (points - 1) - 1.0);
+                const double difference = lawValue(component, values, q);
+                curve.argument.push_back(q);
+                curve.value.push_back(base->value + difference);
+                double halfWidth = std::numeric_limits<double>::quiet_NaN();
+                if (model.covariance.size() > 0) {
+                    // Differences over a small share of each standard error: exact where a law is linear in its
+                    // coefficients, as most are.
+                    constexpr double share = 1e-3;
+                    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.covariance.rows());
+                    gradient[base - baseParameters.data()] = 1.0;
+                    for (Eigen::Index j = 0; j < count; ++j) {
+                        const double deviation = std::sqrt(model.covariance(offset + j, offset + j));
+                        const double step = deviation > 0.0 ? share * deviation : 1.0;
+                        auto above = values, below = values;
+                        above[static_cast<std::size_t>(j)] += step;
+                        below[static_cast<std::size_t>(j)] -= step;
+                        gradient[offset + j] = (lawValue(component, above, q) - lawValue(component, below, q))
+                                               / (2.0 * step);
+                    }
+                    halfWidth = 1.96 * std::sqrt(std::max(0.0, gradient.dot(model.covariance * gradient)));
+                }
+                curve.halfWidth.push_back(halfWidth);
+            }
+            curves.push_back(std::move(curve));
+        }
+        offset += count;
+    }
+    return curves;
+}
+
+}  // namespace excursion

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Effect.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace excursion {
+
+/// A base or an effect at work in a model.
+struct Component {
+    const Effect* effect = nullptr;
+    Extent extent;
+    std::vector<Parameter> parameters;
+};
+
+/// The values of a component's parameters.
+template <class T = double>
+std::vector<T> valuesOf(const Component& component)
+{
+    std::vector<T> values;
+    for (const auto& p : component.parameters)
+        values.emplace_back(p.value);
+    return values;
+}
+
+/// Whether any of its strengths is not zero; a component without strengths always is.
+bool isAtWork(const Component&);
+
+/// The component with its strengths times a factor; zero puts it at rest.
+Component scaled(Component, double factor);
+
+/// The coefficients that its effect makes of such parameters (Effect::prepare).
+template <class T>
+std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& parameters)
+{
+    std::vector<T> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
+    component.effect->prepare(component.extent, parameters.data(), coefficients.data());
+    return coefficients;
+}
+
+/// The physical model of a driver: the base, then the effects in the order in which they were added, and the path to
+/// the microphone, as whose sum the sound comes (Emission); without an effect that is heard, p(t) = rho Sd / (2 pi d)
+/// a(t - tau).
+struct Model {
+    std::string name;
+    std::vector<Component> components;  ///< components.front() is the base
+    Component path;                     ///< radiation(): Sd in m^2 and tau in s
+    double microphoneDistance = 1.0;    ///< d, m
+    Eigen::MatrixXd covariance;         ///< of parameterVector(); empty when unknown
+
+    const Component& base() const { return components.front(); }
+    bool electrical() const { return base().effect->electrical(); }
+    bool has(std::string_view effectId) const;
+    std::vector<std::string> effectIds() const;
+    const Component* find(std::string_view effectId) const;
+
+    /// The parameter of the base of that name; throws std::out_of_range.
+    Parameter& baseParameter(std::string_view name);
+    const Parameter& baseParameter(std::string_view name) const;
+};
+
+/// Pa per m/s^2 of a piston of 1 m^2 at 1 m in a half space: rho / (2 pi).
+double radiationPerArea();
+
+/// A model of the base alone (baseId "electrodynamic" or "mechanical") with default parameters.
+Model makeModel(std::string_view baseId);
+
+/// Whether a fit of the model may move that parameter of an effect as it comes: one that is only heard not where
+/// nothing listens.
+bool movable(const Model&, const Parameter&);
+/// The model with that effect at zero strength (its first start unless another is given).
+Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
+/// Every component as the others are now: Extent::scale of an effect as its base parameter is, and parameters that mean
+/// something beside other effects only are free, or zero, as these are there or not.
+void followOthers(Model&);
+Model withoutEffect(Model, std::string_view effectId);
+/// The base and those effects that are linear.
+Model linearPart(Model);
+/// The base and those effects that predistortion reckons with.
+Model undonePart(Model);
+/// The model with the law of that component expanded to another degree; coefficients that are new are zero.
+Model withDegree(Model, std::size_t component, int degree);
+
+/// All parameters one after the other: components in order, then the path.
+std::vector<Parameter*> parametersOf(Model&);
+std::vector<const Parameter*> parametersOf(const Model&);
+Eigen::VectorXd parameterVector(const Model&);
+void setParameterVector(Model&, const Eigen::VectorXd&);
+
+/// A law of the model with its 95 % band over [-range, range] of what was visited, for plots and reports.
+struct LawCurve {
+    LawInfo info;
+    std::string effectId;                            ///< of the effect that bends it
+    std::vector<double> argument, value, halfWidth;  ///< halfWidth of the 95 % band; NaN when unknown
+};
+std::vector<LawCurve> laws(const Model&, int points = 81);
+
+}  // namespace excursion

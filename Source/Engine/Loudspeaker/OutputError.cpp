@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/OutputError.h"
+
+#include "Engine/Loudspeaker/Sensors.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/StartState.h"
+#include "Engine/Numerics/Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+using Spectrum = std::vector<std::complex<double>>;
+
+/// Whether a law is at work whose memory forgets by the way that the cone goes, and not in time.
+bool remembersWay(const Component& component)
+{
+    const auto& effect = *component.effect;
+    return !effect.linear() && !effect.slow() && effect.memorySize(component.extent) > 0
+           && std::any_of(component.parameters.begin(), component.parameters.end(),
+                          [](const Parameter& p) { return p.strength && p.value != 0.0; });
+}
+
+class SectionRun {
+public:
+    SectionRun(const Model& model, const Record& record, const Section& section,
+               const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, std::size_t leadIn,
+               const StartState& from)
+        : model_(model),
+          record_(record),
+          section_(section),
+          residual_(record, section),
+          active_(active),
+          options_(options),
+          from_(from)
+    {
+        const auto drive = record.drive(section, leadIn);
+        drive_.emplace(drive, record.sampleRate, options.substeps);
+        if (options.gradient && options.gradientSubsteps != options.substeps)
+            gradientDrive_.emplace(drive, record.sampleRate, options.gradientSubsteps);
+        start_ = drive.size() - section.window;
+    }
+
+    SectionFit run()
+    {
+        SectionFit fit;
+        const auto channels = record_.channels.size();
+        const auto columns = static_cast<Eigen::Index>(active_.size());
+
+        Trajectory trajectory;
+        fit.finite = integrate(model_, *drive_, start_, trajectory, from_.value);
+        if (!fit.finite)
+            return fit;
+        std::vector<Eigen::VectorXd> residual;
+        std::vector<Spectrum> predicted;
+        Sensors sensors(model_, trajectory, record_.sampleRate);
+        for (std::size_t c = 0; c < channels; ++c) {
+            predicted.push_back(sensors.seen(record_.channels[c]));
+            residual.push_back(residual_.of(c, predicted[c]));
+            fit.power.push_back(residual_.power(c, predicted[c]));
+            fit.channels.emplace_back(residual[c]);
+        }
+        if (options_.gradient && columns > 0) {
+            std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(residual_.rows(), columns));
+            fit.finite = sensitivities(sensors, J);
+            if (!fit.finite)
+                return fit;
+            for (std::size_t c = 0; c < channels; ++c)
+                fit.channels[c].differentiateBy(J[c], residual[c]);
+        }
+        if (options_.spectra)
+            fit.predicted = std::move(predicted);
+        return fit;
+    }
+
+private:
+    bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
+    {
+        std::vector<Trace> traces;  // of all channels, each once
+        for (const auto quantity : record_.channels)
+            for (const auto trace : sensors.tracesOf(quantity))
+                if (std::find(traces.begin(), traces.end(), trace) == traces.end())
+                    traces.push_back(trace);
+        // As many parameters at once as their records leave room for.
+        constexpr std::size_t room = 1 << 23;  // numbers
+        const auto together = std::clamp<std::size_t>(room / (section_.window * traces.size()), 1, active_.size());
+        for (std::size_t block = 0; block < active_.size(); block += together) {
+            const std::span parameters(active_.data() + block, std::min(together, active_.size() - block));
+            std::vector<Eigen::MatrixXd> slopes;
+            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, traces, from_,
+                               slopes))
+                return false;
+            for (std::size_t c = 0; c < record_.channels.size(); ++c) {
+                const auto made = sensors.tracesOf(record_.channels[c]);
+                Eigen::MatrixXd rows(static_cast<Eigen::Index>(made.size()),
+                                     static_cast<Eigen::Index>(section_.window));
+                for (std::size_t b = 0; b < parameters.size(); ++b) {
+                    for (std::size_t r = 0; r < made.size(); ++r) {
+                        const auto place = std::find(traces.begin(), traces.end(), made[r]) - traces.begin();
+                        rows.row(static_cast<Eigen::Index>(r)) = slopes[static_cast<std::size_t>(place)].row(
+                            static_cast<Eigen::Index>(b));
+                    }
+                    if (!rows.isZero(0.0))
+                        residual_.fill(c, sensors.slope(record_.channels[c], rows),
+                                       J[c].col(static_cast<Eigen::Index>(block + b)));
+                }
+            }
+        }
+        return true;
+    }
+
+    const Model& model_;
+    const Record& record_;
+    const Section& section_;
+    Residual residual_;
+    const std::vector<Eigen::Index>& active_;
+    const OutputErrorOptions& options_;
+    const StartState& from_;
+    std::optional<Drive> drive_, gradientDrive_;
+    std::size_t start_ = 0;
+};
+
+}  // namespace
+
+std::size_t settlingTime(const Model& model, const Record& record)
+{
+    if (record.sections.empty() || !record.sections.front().periodic)
+        return 0;
+    constexpr double by110dB = 12.7, by60dB = 6.9;  // nepers
+    Model base = model;
+    base.components.resize(1);
+    double needed = 0.0;  // s
+    for (const auto& pole : poles(smallSignal(base)))
+        if (pole.real() < 0.0)
+            needed = std::max(needed, by110dB / -pole.real());
+    const double slowest = 0.3 * 2.0 * std::numbers::pi * record.bandLow;
+    if (model.components.size() > 1)
+        for (const auto& pole : poles(smallSignal(model)))
+            if (-pole.real() > slowest)
+                needed = std::max(needed, by60dB / -pole.real());
+    const auto period = static_cast<double>(record.sections.front().window);
+    // periods
+    const double least = std::any_of(model.components.begin(), model.components.end(), remembersWay) ? 2.0 : 0.25;
+    return static_cast<std::size_t>(std::clamp(needed * record.sampleRate, least * period, 4.0 * period));
+}
+
+std::vector<SectionFit> outputError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                    const std::vector<Eigen::Index>& active, const OutputErrorOptions& wanted,
+                                    const Progress& progress)
+{
+    const auto leadIn = settlingTime(model, record);
+    const int stable = stableSubsteps(model, record.sampleRate);
+    OutputErrorOptions options = wanted;
+    options.substeps = std::max(wanted.substeps, stable);
+    options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
+    const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
+    std::vector<SectionFit> fits(sections.size());
+    inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
+        fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
+        return fits[n].finite;
+    });
+    return fits;
+}
+
+std::optional<NormalEquations> sumOf(const std::vector<SectionFit>& fits)
+{
+    NormalEquations sum;
+    for (const auto& section : fits) {
+        if (!section.finite)
+            return std::nullopt;
+        for (const auto& channel : section.channels)
+            sum.add(channel);
+    }
+    return sum;
+}
+
+double worstPower(const std::vector<SectionFit>& fits)
+{
+    std::vector<ErrorPower> channels;
+    for (const auto& section : fits) {
+        channels.resize(section.power.size());
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            channels[c].add(section.power[c]);
+    }
+    double worst = 0.0;
+    for (const auto& channel : channels)
+        worst = std::max(worst, channel.overNoise());
+    return worst;
+}
+
+void addPrior(const Model& model, const std::vector<Eigen::Index>& active, NormalEquations& sum, double variance)
+{
+    const auto all = parametersOf(model);
+    for (std::size_t j = 0; j < active.size(); ++j) {
+        const auto& p = *all[static_cast<std::size_t>(active[j])];
+        if (!std::isfinite(p.prior))
+            continue;
+        const double weight = variance / (p.prior * p.prior);
+        sum.cost += weight * p.value * p.value;
+        if (sum.N.size() > 0) {
+            const auto k = static_cast<Eigen::Index>(j);
+            sum.N(k, k) += weight;
+            sum.g[k] += weight * p.value;
+        }
+    }
+}
+
+std::vector<Eigen::Index> freeParameters(const Model& model)
+{
+    std::vector<Eigen::Index> result;
+    const auto all = parametersOf(model);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (all[k]->free)
+            result.push_back(static_cast<Eigen::Index>(k));
+    return result;
+}
+
+std::vector<std::size_t> estimationSections(const Record& record)
+{
+    std::vector<std::size_t> result;
+    for (std::size_t n = 0; n < record.sections.size(); ++n)
+        if (!record.sections[n].validation)
+            result.push_back(n);
+    return result;
+}
+
+std::vector<std::size_t> validationSections(const Record& record)
+{
+    std::vector<std::size_t> result;
+    for (std::size_t n = 0; n < record.sections.size(); ++n)
+        if (record.sections[n].validation)
+            result.push_back(n);
+    if (result.empty())
+        return estimationSections(record);
+    return result;
+}
+
+}  // namespace excursion

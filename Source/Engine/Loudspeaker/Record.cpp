@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Record.h"
+
+#include "Engine/Error.h"
+#include "Engine/Estimate/Periods.h"
+#include "Engine/Estimate/Wander.h"
+#include "Engine/Signal/Fft.h"
+#include "Engine/Take/FindExcitation.h"
+#include "Engine/Validity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace excursion {
+namespace {
+
+using Spectrum = std::vector<std::complex<double>>;
+
+// of the sample rate: near its half converters and interpolation are not to be trusted
+constexpr double trustedBand = 0.42;
+constexpr double distortionBand = 2.0;  // times the band: distortion products lie above it, too
+// products up to this order do not fold into the compared lines when samples are left out
+constexpr double foldingOrder = 6.0;
+
+double power(const Spectrum& spectrum)
+{
+    double sum = 0.0;
+    for (std::size_t k = 1; k < spectrum.size(); ++k)
+        sum += std::norm(spectrum[k]);
+    return sum;
+}
+
+/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. A line that sticks out
+/// (hum) keeps its own level.
+std::vector<double> smoothVariance(const std::vector<double>& raw)
+{
+    std::vector<double> total(raw.size() + 1, 0.0);
+    std::partial_sum(raw.begin(), raw.end(), total.begin() + 1);
+    std::vector<double> result(raw.size());
+    for (std::size_t k = 0; k < raw.size(); ++k) {
+        const std::size_t reach = std::max<std::size_t>(12, k / 16);
+        const std::size_t from = k > reach ? k - reach : 0, to = std::min(raw.size(), k + reach + 1);
+        const double mean = (total[to] - total[from]) / static_cast<double>(to - from);
+        result[k] = std::max(mean, raw[k] / 6.0);
+    }
+    return result;
+}
+
+/// @param variance  of each line; empty when unknown, then all lines weigh the same
+std::vector<double> deviations(const Spectrum& measured, std::vector<double> variance, double relativeFloor)
+{
+    const double perLine = power(measured) / static_cast<double>(measured.size());
+    constexpr double nominal = 1e-3;  // of unknown noise: only its evenness matters
+    std::vector<double> result(measured.size(), std::sqrt(perLine) * nominal);
+    if (!variance.empty())
+        for (std::size_t k = 0; k < result.size(); ++k)
+            result[k] = std::sqrt(variance[k] + perLine * relativeFloor * relativeFloor);
+    for (auto& deviation : result)
+        deviation = std::max(deviation, 1e-300);
+    return result;
+}
+
+/// The simulation is driven by the measured input, noise and all. Where nothing was played and nothing stands out of
+/// the scatter there is no signal, and the noise need not be played to the model; what the amplifier added is kept.
+void silenceNoise(std::vector<double>& period, const std::vector<double>& variance, const std::vector<int>& excited)
+{
+    constexpr double standsOut = 16.0;  // times the noise power
+    auto spectrum = fft(period);
+    const auto before = spectrum;
+    for (std::size_t k = 0; k < spectrum.size(); ++k)
+        if (std::norm(spectrum[k]) < standsOut * variance[k])
+            spectrum[k] = 0.0;
+    for (const int k : excited)
+        spectrum[static_cast<std::size_t>(k)] = before[static_cast<std::size_t>(k)];
+    period = inverseFft(spectrum, period.size());
+}
+
+/// Peaks upwards and downwards of an averaged period integrated n times within the excited band, in any unit.
+std::pair<double, double> integratedPeaks(const Measurement& take, const Channel& channel, int level, int realization,
+                                          int integrations)
+{
+    const auto& e = *take.excitation;
+    auto spectrum = fft(averagePeriod(take, channel, level, realization));
+    const auto first = static_cast<std::size_t>(e.lines.front()), last = static_cast<std::size_t>(e.lines.back());
+    for (std::size_t k = 0; k < spectrum.size(); ++k)
+        spectrum[k] = k >= first && k <= last
+                          ? spectrum[k] * std::pow(std::complex<double>(0.0, static_cast<double>(k)), -integrations)
+                          : 0.0;
+    const auto samples = inverseFft(spectrum, static_cast<std::size_t>(e.period));
+    const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+    return {*high, -*low};
+}
+
+/// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current to
+/// either side (what the channels tell of them; the input's low frequencies when they tell nothing of the cone), each
+/// relative to where the others go, its largest is the lowest.
+int quietestRealization(const Measurement& take)
+{
+    const auto& e = *take.excitation;
+    const int loudest = static_cast<int>(e.levels.size()) - 1;
+    std::vector<std::pair<const Channel*, int>> motions;
+    for (const auto& channel : take.channels)
+        // The pressure of a piston follows the acceleration.
+        if (const auto n = integrationsToDisplacement(channel.quantity == Quantity::pressure ? Quantity::acceleration
+                                                                                             : channel.quantity)) {
+            motions.emplace_back(&channel, *n);      // displacement
+            motions.emplace_back(&channel, *n - 1);  // velocity
+        } else if (channel.quantity == Quantity::current) {
+            motions.emplace_back(&channel, 0);
+        }
+    motions.emplace_back(&take.input(), motions.empty() ? 1 : 0);
+    std::vector<double> farthest(static_cast<std::size_t>(e.realizations), 0.0);
+    for (const auto& [channel, integrations] : motions) {
+        std::vector<double> up, down;
+        for (int realization = 0; realization < e.realizations; ++realization) {
+            const auto [high, low] = integratedPeaks(take, *channel, loudest, realization, integrations);
+            up.push_back(high);
+            down.push_back(low);
+        }
+        for (auto* peaks : {&up, &down})
+            for (std::size_t r = 0; r < peaks->size(); ++r) {
+                auto others = *peaks;
+                others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
+                if (const double reach = *std::max_element(others.begin(), others.end()); reach > 0.0)
+                    farthest[r] = std::max(farthest[r], (*peaks)[r] / reach);
+            }
+    }
+    return static_cast<int>(std::min_element(farthest.begin(), farthest.end()) - farthest.begin());
+}
+
+/// The section sampled at the rate divided by `factor`: the same lines, without those above the new half of the sample
+/// rate.
+void thinOut(Section& section, std::size_t factor)
+{
+    const double share = 1.0 / static_cast<double>(factor);
+    const std::size_t length = section.window / factor, lines = length / 2 + 1;
+    auto input = fft(section.input);
+    input.resize(lines);
+    input.back() = 0.0;
+    for (auto& value : input)
+        value *= share;
+    section.input = inverseFft(input, length);
+    section.window = length;
+    for (auto& measured : section.measured) {
+        measured.resize(lines);
+        for (auto& value : measured)
+            value *= share;
+    }
+    for (auto& deviation : section.deviation) {
+        deviation.resize(lines);
+        for (auto& value : deviation)
+            value *= share;
+    }
+    section.inputVariance.resize(std::min(lines, section.inputVariance.size()));
+    for (auto& variance : section.inputVariance)
+        variance *= share * share;
+}
+
+void addPeriodicSections(const Measurement& take, const RecordOptions& options, std::size_t factor, Record& record)
+{
+    const auto& e = *take.excitation;
+    record.levels = e.levels;
+    record.noiseKnown = e.periods > 1;
+    const int held = options.holdOut && e.realizations > 1 ? quietestRealization(take) : -1;
+    const int levels = static_cast<int>(e.levels.size());
+    for (int level = 0; level < levels; ++level) {
+        const auto scatter = periodNoise(take, take.input(), level).variance;
+        const auto inputVariance = scatter.empty() ? scatter : smoothVariance(scatter);
+        std::vector<std::vector<double>> variance;
+        for (const auto quantity : record.channels) {
+            auto noise = periodNoise(take, *take.find(quantity), level).variance;
+            variance.push_back(noise.empty() ? noise : smoothVariance(noise));
+        }
+        for (int realization = 0; realization < e.realizations; ++realization) {
+            Section section;
+            section.level = level;
+            section.realization = realization;
+            section.periodic = true;
+            section.validation = realization == held;
+            const double period = static_cast<double>(e.period) / take.sampleRate;
+            const int played = e.settlePeriods + e.periods;
+            section.begin = period * played * (level * e.realizations + realization);
+            section.end = section.begin + period * played;
+            section.middle = section.end - 0.5 * period * e.periods;
+            section.input = averagePeriod(take, take.input(), level, realization);
+            section.window = section.input.size();
+            section.excited = e.lines;
+            section.inputVariance = inputVariance;
+            if (!inputVariance.empty())
+                silenceNoise(section.input, inputVariance, e.lines);
+            for (std::size_t c = 0; c < record.channels.size(); ++c) {
+                section.measured.push_back(
+                    fft(averagePeriod(take, *take.find(record.channels[c]), level, realization)));
+                section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
+            }
+            if (factor > 1)
+                thinOut(section, factor);
+            record.sections.push_back(std::move(section));
+        }
+    }
+    for (const auto quantity : record.channels)
+        record.wanderDb.push_back(wanderDb(take, *take.find(quantity)));
+    record.leadIn = static_cast<std::size_t>(e.period) / factor
+                    * static_cast<std::size_t>(std::max(1, e.settlePeriods));
+}
+
+void addAperiodicSections(const Measurement& take, const RecordOptions& options, Record& record)
+{
+    const std::size_t length = take.length();
+    const auto lead = static_cast<std::size_t>(std::max(options.leadInSeconds * take.sampleRate, 1024.0));
+    auto window = static_cast<std::size_t>(std::max(options.windowSeconds * take.sampleRate, 2048.0));
+    if (length < lead + 256)
+        throw Error(Error::Kind::data, "The take is only " + std::to_string(length)
+                                           + " samples long; a fit needs at least a second of signal.");
+    window = std::min(window, length - lead);
+    const std::size_t count = std::max<std::size_t>(1, (length - lead) / window);
+    const std::size_t fitted = options.holdOut && count > 1 ? std::max<std::size_t>(1, count * 2 / 3) : count;
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t begin = lead + n * window;
+        Section section;
+        section.window = window;
+        section.validation = n >= fitted;
+        section.begin = n > 0 ? static_cast<double>(begin) / take.sampleRate : 0.0;
+        section.end = static_cast<double>(begin + window) / take.sampleRate;
+        section.middle = section.end - 0.5 * static_cast<double>(window) / take.sampleRate;
+        const auto& input = take.input().samples;
+        section.input.assign(input.begin() + static_cast<std::ptrdiff_t>(begin - lead),
+                             input.begin() + static_cast<std::ptrdiff_t>(begin + window));
+        for (const auto quantity : record.channels) {
+            const auto& samples = take.find(quantity)->samples;
+            section.measured.push_back(fft(std::span(samples).subspan(begin, window)));
+            section.deviation.push_back(deviations(section.measured.back(), {}, options.relativeFloor));
+        }
+        record.sections.push_back(std::move(section));
+    }
+    record.leadIn = lead;
+}
+
+}  // namespace
+
+std::optional<int> integrationsToDisplacement(Quantity quantity)
+{
+    switch (quantity) {
+    case Quantity::displacement: return 0;
+    case Quantity::velocity: return 1;
+    case Quantity::acceleration: return 2;
+    default: return std::nullopt;
+    }
+}
+
+std::optional<std::size_t> Record::channelIndex(Quantity quantity) const
+{
+    const auto found = std::find(channels.begin(), channels.end(), quantity);
+    if (found == channels.end())
+        return std::nullopt;
+    return static_cast<std::size_t>(found - channels.begin());
+}
+
+std::pair<std::size_t, std::size_t> Record::lineRange(const Section& section) const
+{
+    const double resolution = sampleRate / static_cast<double>(section.window);
+    const auto first = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(lowFrequency / resolution)));
+    const auto last = std::min<std::size_t>(section.window / 2 - 1,
+                                            static_cast<std::size_t>(highFrequency / resolution));
+    return {first, std::max(first, last)};
+}
+
+std::size_t Record::driveBegin(const Section& section, std::size_t atLeast) const
+{
+    const std::size_t N = section.input.size();
+    return section.periodic ? (N - std::max(leadIn, atLeast) % N) % N : 0;
+}
+
+std::vector<double> Record::drive(const Section& section, std::size_t atLeast) const
+{
+    if (!section.periodic)
+        return section.input;
+    const auto& period = section.input;
+    const std::size_t N = period.size();
+    const std::size_t begin = driveBegin(section, atLeast);
+    std::vector<double> samples(std::max(leadIn, atLeast) + N);
+    for (std::size_t n = 0; n < samples.size(); ++n)
+        samples[n] = period[(n + begin) % N];
+    return samples;
+}
+
+bool RecordOptions::isValid(std::string* reason) const
+{
+    if (!(windowSeconds > 0.0) || !(leadInSeconds >= 0.0))
+        return refuse(reason, "the window and the lead-in of a record are positive times in seconds");
+    if (!(relativeFloor > 0.0 && relativeFloor < 0.1))
+        return refuse(reason, "the relative floor of the noise must lie between 0 and 0.1");
+    return true;
+}
+
+Record makeRecord(const Measurement& take, const RecordOptions& options)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, "The take cannot be prepared: " + reason + ".");
+    Record record;
+    record.sampleRate = take.sampleRate;
+    record.driver = take.driver;
+    record.electrical = take.find(Quantity::voltage) != nullptr;
+    const auto inputQuantity = take.input().quantity;
+    for (const auto& channel : take.channels)
+        if (channel.quantity != inputQuantity && channel.quantity != Quantity::force
+            && (record.electrical || channel.quantity != Quantity::current)) {
+            record.channels.push_back(channel.quantity);
+            record.units.push_back(channel.unit);
+        }
+    if (record.channels.empty())
+        throw Error(Error::Kind::data,
+                    "The take holds no output of the loudspeaker; a fit needs at least one of current, "
+                    "displacement, velocity, acceleration or pressure.");
+
+    const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
+    if (periodic && take.excitation->lines.empty()) {
+        Measurement completed = take;
+        completed.excitation->lines = findLines(take.input().samples, *take.excitation);
+        return makeRecord(completed, options);
+    }
+    record.bandLow = 0.0;
+    record.bandHigh = trustedBand * take.sampleRate;
+    if (periodic) {
+        periodicExcitation(take);  // checks the structure against the length
+        const double resolution = take.sampleRate / take.excitation->period;
+        if (!take.excitation->lines.empty()) {
+            record.bandLow = resolution * take.excitation->lines.front();
+            record.bandHigh = resolution * take.excitation->lines.back();
+        }
+        // Above the distortion's band there is nothing to compare, and fewer samples are simulated sooner.
+        std::size_t factor = 1;
+        while (static_cast<std::size_t>(take.excitation->period) % (2 * factor) == 0
+               && (distortionBand + foldingOrder) * record.bandHigh
+                      <= take.sampleRate / static_cast<double>(2 * factor))
+            factor *= 2;
+        record.sampleRate = take.sampleRate / static_cast<double>(factor);
+        addPeriodicSections(take, options, factor, record);
+    } else {
+        record.wanderDb.resize(record.channels.size());
+        addAperiodicSections(take, options, record);
+    }
+    if (record.bandLow <= 0.0)
+        record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
+    record.highFrequency = std::min(trustedBand * record.sampleRate, distortionBand * record.bandHigh);
+    return record;
+}
+
+}  // namespace excursion

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Residual.h"
+
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace excursion {
+
+void ErrorPower::add(const ErrorPower& other)
+{
+    error += other.error;
+    measured += other.measured;
+    noise += other.noise;
+}
+
+Residual::Residual(const Record& record, const Section& section) : section_(section)
+{
+    std::tie(first_, last_) = record.lineRange(section);
+    lines_ = static_cast<Eigen::Index>(last_ - first_ + 1);
+}
+
+Eigen::VectorXd Residual::of(std::size_t channel, const std::vector<std::complex<double>>& predicted) const
+{
+    auto error = predicted;
+    for (std::size_t k = first_; k <= last_; ++k)
+        error[k] -= section_.measured[channel][k];
+    Eigen::VectorXd r(rows());
+    fill(channel, error, r);
+    return r;
+}
+
+ErrorPower Residual::power(std::size_t channel, const std::vector<std::complex<double>>& predicted) const
+{
+    const auto& measured = section_.measured[channel];
+    const auto& deviation = section_.deviation[channel];
+    ErrorPower power;
+    for (std::size_t k = first_; k <= last_; ++k) {
+        power.error += std::norm(predicted[k] - measured[k]);
+        power.measured += std::norm(measured[k]);
+        power.noise += deviation[k] * deviation[k];
+    }
+    return power;
+}
+
+void Residual::fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,
+                    Eigen::Ref<Eigen::VectorXd> column) const
+{
+    const auto& deviation = section_.deviation[channel];
+    for (Eigen::Index n = 0; n < lines_; ++n) {
+        const auto k = first_ + static_cast<std::size_t>(n);
+        const auto weighted = std::numbers::sqrt2 / deviation[k] * derivative[k];
+        column[n] = weighted.real();
+        column[lines_ + n] = weighted.imag();
+    }
+}
+
+}  // namespace excursion

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/SensitivityStep.h"
+
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Numerics/Exponential.h"
+#include "Engine/Numerics/TallProduct.h"
+
+#include <algorithm>
+
+namespace excursion {
+namespace {
+
+/// By component and parameter: its place among the active ones, or -1.
+std::vector<std::vector<Eigen::Index>> columnsByComponent(const Model& model, std::span<const Eigen::Index> active)
+{
+    std::vector<std::vector<Eigen::Index>> columns;
+    Eigen::Index first = 0;
+    for (const auto& component : model.components) {
+        auto& own = columns.emplace_back(component.parameters.size(), -1);
+        const auto size = static_cast<Eigen::Index>(own.size());
+        for (std::size_t c = 0; c < active.size(); ++c)
+            if (active[c] >= first && active[c] < first + size)
+                own[static_cast<std::size_t>(active[c] - first)] = static_cast<Eigen::Index>(c);
+        first += size;
+    }
+    return columns;
+}
+
+}  // namespace
+
+SensitivityStep::SensitivityStep(const Model& model, double h, std::span<const Eigen::Index> active)
+    : motion_(model, h), count_(static_cast<Eigen::Index>(active.size()))
+{
+    constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
+    // with the laws' memories
+    const auto states = motion_.A_.rows(), outputs = motion_.y_.size(), laws = motion_.N_[0].size();
+    dInductance_.setZero(count_);
+    dMass_.setZero(count_);
+    memoryFrom_ = padded(count_);
+    const auto columns = columnsByComponent(model, active);
+    addLinear(model, columns);
+    std::size_t law = 0;
+    for (std::size_t n = 0; n < model.components.size(); ++n)
+        if (ExponentialStep::isLaw(model.components[n]))
+            addLaw(law++, columns[n]);
+
+    const auto& C = motion_.C_;
+    const Eigen::MatrixXd whole = motion_.whole_.leftCols(states), decay = motion_.halfway_.leftCols(states);
+    const auto moving = motion_.moving_, following = states - moving;
+    carryMoving_ = whole.topLeftCorner(moving, moving).transpose();
+    carryFollowing_ = whole.bottomRows(following).transpose();
+    const Eigen::MatrixXd accelerations = C.bottomRows(2), halfway = C * decay, atEnd = accelerations * whole;
+    carryMotions_.resize(moving, 4 + motions);
+    carryMotions_ << accelerations.leftCols(moving).transpose(), halfway.leftCols(moving).transpose(),
+        atEnd.leftCols(moving).transpose();
+    const auto memories = static_cast<Eigen::Index>(
+        std::count_if(place_.begin(), place_.end(), [](Eigen::Index p) { return p != none; }));
+    for (auto& weights : memoryQuadrature_)
+        weights.resize(memories, states);
+    memoryStage_.resize(memories, motions);
+    memoryLater_.resize(memories, motions);
+    for (Eigen::Index state = 0; state < states; ++state)
+        if (const auto k = place_[static_cast<std::size_t>(state)]; k != none) {
+            const Eigen::VectorXd unit = Eigen::VectorXd::Unit(states, state);
+            const auto weights = quadrature(motion_.A_, unit, h);
+            for (Eigen::Index point = 0; point < 3; ++point)
+                memoryQuadrature_[static_cast<std::size_t>(point)].row(k) = weights.col(point).transpose();
+            const Eigen::VectorXd Q = exponential(motion_.A_, unit, 0.5 * h, 1).phi;
+            memoryStage_.row(k) = (C * Q).transpose();
+            memoryLater_.row(k) = (C * (decay * Q)).transpose();
+        }
+    stageWeights_ = motion_.stage_.transpose();
+    laterWeights_ = motion_.last_.transpose();
+    quadratureWeights_ = motion_.quadrature_.transpose();
+    toHalfway_ = TiledProduct(motion_.arranged(motion_.halfway_));
+    const auto rows = padded(count_);
+    step_ = h;
+    for (auto* instant : {&start_, &halfway_, &end_}) {
+        instant->Ny.setZero(outputs, laws);
+        instant->Ntheta.setZero(rows, laws);
+        instant->memory.setZero(rows, memories);
+    }
+    for (auto& K : stage_)
+        K.setZero(rows, laws);
+    middle_.setZero(toHalfway_.rows());
+    remembered_.setZero(laws - rates);
+    y_.setZero(outputs);
+    accelerationSlopes_.setZero(count_);
+    twice_.setZero(rows, memories);
+    run_.setZero(rows, states + 4 + motions);
+    now_.setZero(rows, motions);
+    later_.setZero(rows, motions);
+    Y_.setZero(rows, outputs);
+    K_.setZero(rows, 3 * ExponentialStep::rates);
+    S_.setZero(rows, motion_.z_.size());
+}
+
+void SensitivityStep::addLinear(const Model& model, const std::vector<std::vector<Eigen::Index>>& columnsByComponent)
+{
+    const auto linear = smallSignal(linearPart(model), true);
+    const auto n = linear.A.rows();
+    place_.assign(static_cast<std::size_t>(n), none);
+    // Their order there, by that here, which is the one of the components.
+    std::vector<Eigen::Index> sorted(motion_.linearPlace_), state(sorted.size());
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 0; k < sorted.size(); ++k)
+        state[k] = std::find(motion_.linearPlace_.begin(), motion_.linearPlace_.end(), sorted[k])
+                   - motion_.linearPlace_.begin();
+    Eigen::Index memories = 0;
+    std::size_t k = 0;  // parameter of the linear part
+    for (std::size_t place = 0; place < model.components.size(); ++place) {
+        const auto& component = model.components[place];
+        if (!component.effect->linear())
+            continue;
+        for (std::size_t own = 0; own < component.parameters.size(); ++own, ++k) {
+            const auto c = columnsByComponent[place][own];
+            if (c == none)
+                continue;
+            linearParameters_.push_back(c);
+            for (Eigen::Index row = 0; row < n; ++row)
+                for (Eigen::Index column = 0; column <= n; ++column)
+                    if (const double value = column < n ? linear.dA[k](row, column) : linear.dB[k][row]; value != 0.0) {
+                        const auto to = state[static_cast<std::size_t>(row)];
+                        entries_.push_back({c, to, column < n ? state[static_cast<std::size_t>(column)] : n, value});
+                        if (row < 3)
+                            continue;
+                        if (place_[static_cast<std::size_t>(to)] == none)
+                            place_[static_cast<std::size_t>(to)] = memories++;
+                        memoryFrom_ = std::min(memoryFrom_, c / tallBlock * tallBlock);
+                        memoryTo_ = std::max(memoryTo_, padded(c + 1));
+                    }
+            auto parameters = valuesOf<Jet>(component);
+            parameters[own].v[0] = 1.0;
+            const auto coefficients = coefficientsOf(component, parameters);
+            std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)),
+                unused(memory);
+            Balance<Jet> atRest;
+            component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)},
+                                         memory.data(), unused.data(), atRest);
+            dInductance_[c] = atRest.inductance.v[0];
+            dMass_[c] = atRest.mass.v[0];
+        }
+    }
+}
+
+void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& columns)
+{
+    const auto& component = *motion_.laws_[law].component;
+    const int memories = component.effect->memorySize(component.extent);
+    struct Direction {
+        int output = none;
+        std::size_t own = 0;  // parameter of the law
+        Eigen::Index column = none;
+    };
+    std::vector<Direction> directions;
+    for (int q = 0; q < 3; ++q)
+        directions.push_back({q, 0, none});
+    for (int k = 0; k < memories; ++k)
+        directions.push_back({static_cast<int>(ExponentialStep::motions + motion_.laws_[law].memory) + k, 0, none});
+    for (std::size_t p = 0; p < columns.size(); ++p)
+        if (columns[p] != none)
+            directions.push_back({none, p, columns[p]});
+    for (std::size_t first = 0; first < directions.size(); first += jetWidth) {
+        Chunk chunk;
+        chunk.law = law;
+        chunk.output.fill(none);
+        chunk.parameter.fill(none);
+        auto parameters = valuesOf<Jet>(component);
+        for (std::size_t lane = 0; lane < jetWidth && first + lane < directions.size(); ++lane) {
+            const auto& direction = directions[first + lane];
+            chunk.output[lane] = direction.output;
+            chunk.parameter[lane] = static_cast<int>(direction.column);
+            if (direction.column != none)
+                parameters[direction.own].v[static_cast<Eigen::Index>(lane)] = 1.0;
+        }
+        chunk.coefficients = coefficientsOf(component, parameters);
+        chunk.memory.resize(static_cast<std::size_t>(memories));
+        chunk.rate.resize(static_cast<std::size_t>(memories));
+        chunks_.push_back(std::move(chunk));
+    }
+}
+
+/// The laws' derivatives at a state, and what the linear part's parameters change there.
+void SensitivityStep::look(const double* z, const double* memory, double u, Instant& at)
+{
+    const auto states = motion_.A_.rows();
+    y_.head<ExponentialStep::motions>().noalias() = motion_.C_ * Eigen::Map<const Eigen::VectorXd>(z, states);
+    std::copy_n(memory, motion_.lawPlace_.size(), y_.data() + ExponentialStep::motions);
+
+    Balance<double> sum;
+    std::size_t counted = motion_.laws_.size();  // the law whose values have been added last
+    for (auto& chunk : chunks_) {
+        const auto& law = motion_.laws_[chunk.law];
+        Jet motion[3] {Jet(y_[0]), Jet(y_[1]), Jet(y_[2])};
+        for (std::size_t k = 0; k < chunk.memory.size(); ++k)
+            chunk.memory[k] = Jet(y_[ExponentialStep::motions + law.memory + static_cast<Eigen::Index>(k)]);
+        for (std::size_t lane = 0; lane < jetWidth; ++lane)
+            if (const int q = chunk.output[lane]; q != none)
+                (q < 3 ? motion[q] : chunk.memory[static_cast<std::size_t>(q - ExponentialStep::motions - law.memory)])
+                    .v[static_cast<Eigen::Index>(lane)] = 1.0;
+        chunk.sum = {};
+        law.component->effect->contribute(law.component->extent, chunk.coefficients.data(),
+                                          {motion[0], motion[1], motion[2]}, chunk.memory.data(), chunk.rate.data(),
+                                          chunk.sum);
+        if (counted != chunk.law) {
+            sum.inductance += chunk.sum.inductance.a;
+            sum.fluxSlope += chunk.sum.fluxSlope.a;
+            sum.drop += chunk.sum.drop.a;
+            sum.force += chunk.sum.force.a;
+            sum.mass += chunk.sum.mass.a;
+            counted = chunk.law;
+        }
+    }
+    // Rates g of the linear part and f of the whole.
+    const double L0 = motion_.inductance_, m0 = motion_.mass_, m = m0 + sum.mass, v = y_[2];
+    const double L = motion_.electrical_ ? L0 + sum.inductance : 1.0;
+    const double gi = motion_.electrical_ ? y_[3] + u / L0 : 0.0, gv = y_[4] + motion_.motion(u);
+    const double fi = motion_.electrical_ ? (L0 * gi - sum.drop - sum.fluxSlope * v) / L : 0.0,
+                 fv = (m0 * gv + sum.force) / m;
+
+    at.Ny.setZero();
+    at.Ntheta.setZero();
+    at.memory.setZero();
+    for (const auto& chunk : chunks_)
+        for (std::size_t lane = 0; lane < jetWidth; ++lane) {
+            if (chunk.output[lane] == none && chunk.parameter[lane] == none)
+                break;
+            const auto k = static_cast<Eigen::Index>(lane);
+            auto row = chunk.output[lane] != none ? at.Ny.row(chunk.output[lane])
+                                                  : at.Ntheta.row(chunk.parameter[lane]);
+            if (motion_.electrical_)
+                row[0] -= (chunk.sum.drop.v[k] + chunk.sum.fluxSlope.v[k] * v + fi * chunk.sum.inductance.v[k]) / L;
+            row[1] += (chunk.sum.force.v[k] - fv * chunk.sum.mass.v[k]) / m;
+            for (std::size_t j = 0; j < chunk.rate.size(); ++j)
+                row[ExponentialStep::rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] +=
+                    chunk.rate[j].v[k];
+        }
+    if (motion_.electrical_) {
+        at.Ny(2, 0) -= sum.fluxSlope / L;
+        at.Ny(3, 0) += L0 / L - 1.0;
+    }
+    at.Ny(4, 1) += m0 / m - 1.0;
+
+    // By a parameter of the linear part: f_i = (L0 g_i - ...)/L, f_v = (m0 g_v + ...)/m.
+    for (const auto& entry : entries_) {
+        const double rate = entry.value * (entry.column < states ? z[entry.column] : u);
+        if (entry.row == 0)
+            at.Ntheta(entry.parameter, 0) += L0 / L * rate;
+        else if (entry.row == 2)
+            at.Ntheta(entry.parameter, 1) += m0 / m * rate;
+        else if (entry.row > 2)
+            at.memory(entry.parameter, place_[static_cast<std::size_t>(entry.row)]) += rate;
+    }
+    for (const auto c : linearParameters_) {
+        at.Ntheta(c, 0) += (gi - fi) * dInductance_[c] / L;
+        at.Ntheta(c, 1) += (gv - fv) * dMass_[c] / m;
+    }
+}
+
+void SensitivityStep::begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S)
+{
+    motion_.begin(z);
+    const auto& linear = motion_.linearPlace_;
+    const auto& laws = motion_.lawPlace_;
+    S_.setZero(padded(count_), z.size());
+    S_.topLeftCorner(count_, static_cast<Eigen::Index>(linear.size())) = S(Eigen::all, linear);
+    S_.topRightCorner(count_, static_cast<Eigen::Index>(laws.size())) = S(Eigen::all, laws);
+    fresh_ = true;
+}
+
+void SensitivityStep::slopesByState(Eigen::MatrixXd& out) const
+{
+    out.resize(count_, order());
+    Eigen::Index from = 0;
+    for (const auto* places : {&motion_.linearPlace_, &motion_.lawPlace_})
+        for (const auto place : *places)
+            out.col(place) = S_.col(from++).head(count_);
+}
+
+void SensitivityStep::step(std::span<const double> u)
+{
+    constexpr auto motions = ExponentialStep::motions, rates = ExponentialStep::rates;
+    const auto outputs = y_.size(), laws = motion_.N_[0].size(), lawMemories = laws - rates, n = motion_.A_.rows(),
+               memories = memoryStage_.rows();
+    const auto [middle, end] = ExponentialStep::later(u);
+    const double* const z = motion_.z_.data();
+    if (fresh_)
+        look(z, z + n, u[0], start_);
+    fresh_ = false;
+    remembered_ = motion_.z_.tail(lawMemories);
+    acceleration_ = motion_.step(u);
+    middle_.setZero();
+    toHalfway_.addTo(middle_.data(), motion_.from_.data());
+    middle_.head(n).noalias() += motion_.Q_ * motion_.N_[2].head<rates>();
+    remembered_ += 0.5 * step_ * motion_.N_[2].tail(lawMemories);
+    look(middle_.data(), remembered_.data(), middle, halfway_);
+    look(z, z + n, end, end_);
+
+    const auto add = [this](const double* X, Eigen::Index inner, const Eigen::MatrixXd& W, double* Y) {
+        addTallProduct(X, S_.rows(), inner, W.data(), W.cols(), Y, 0, S_.rows());
+    };
+    run_.setZero();
+    const auto moving = motion_.moving_;
+    const auto column = [this](Eigen::Index k) { return run_.data() + k * run_.rows(); };
+    add(S_.data(), moving, carryMoving_, run_.data());
+    add(S_.data(), n, carryFollowing_, column(moving));
+    add(S_.data(), moving, carryMotions_, column(n));
+    const auto remembered = S_.rightCols(lawMemories);  // stands still but for the laws: no exponential is needed
+    auto atEnd = run_.leftCols(n), half = run_.middleCols(n + 2, motions);
+    // i, x and v are among the states.
+    now_ << S_.leftCols(3), run_.middleCols(n, 2);
+    later_ << run_.leftCols(3), run_.rightCols(2);
+    if (memories > 0) {
+        const auto addMemory = [&](const Eigen::MatrixXd& memory, const double* W, Eigen::Index columns, double* Y) {
+            addTallProduct(memory.data(), S_.rows(), memories, W, columns, Y, memoryFrom_, memoryTo_);
+        };
+        twice_ = 2.0 * halfway_.memory;
+        addMemory(halfway_.memory, memoryStage_.data(), motions, half.data());
+        addMemory(start_.memory, memoryQuadrature_[0].data(), n, atEnd.data());
+        addMemory(twice_, memoryQuadrature_[1].data(), n, atEnd.data());
+        addMemory(end_.memory, memoryQuadrature_[2].data(), n, atEnd.data());
+        addMemory(start_.memory, memoryLater_.data(), motions, later_.data());
+        twice_ -= start_.memory;
+        addMemory(twice_, memoryStage_.data(), motions, later_.data());
+    }
+    // The stages of ExponentialStep, for the derivatives.
+    auto& [K1, K2, K3, K4] = stage_;
+    // from motions (their memories are in Y_) to K
+    const auto drive = [&](const auto& motion, Eigen::MatrixXd& K, const Instant& at) {
+        Y_.leftCols(motions) += motion;
+        K = at.Ntheta;
+        add(Y_.data(), outputs, at.Ny, K.data());
+    };
+    const auto stageFrom = [&](const Eigen::MatrixXd& K) {
+        Y_.leftCols(motions).setZero();
+        add(K.data(), rates, stageWeights_, Y_.data());
+        Y_.rightCols(lawMemories) = remembered + 0.5 * step_ * K.rightCols(lawMemories);
+    };
+    Y_.leftCols(motions).setZero();
+    Y_.rightCols(lawMemories) = remembered;
+    drive(now_, K1, start_);
+    accelerationSlopes_ = now_.col(4).head(count_) + K1.col(1).head(count_);
+    stageFrom(K1);
+    drive(half, K2, halfway_);
+    stageFrom(K2);
+    drive(half, K3, halfway_);
+    Y_.leftCols(motions).setZero();
+    add(K1.data(), rates, laterWeights_, Y_.data());
+    K_.leftCols(rates) = 2.0 * K3.leftCols(rates) - K1.leftCols(rates);
+    add(K_.data(), rates, stageWeights_, Y_.data());
+    Y_.rightCols(lawMemories) = remembered + step_ * K3.rightCols(lawMemories);
+    drive(later_, K4, end_);
+    K_.leftCols(rates) = K1.leftCols(rates);
+    K_.middleCols(rates, rates) = K2.leftCols(rates) + K3.leftCols(rates);
+    K_.rightCols(rates) = K4.leftCols(rates);
+    S_.rightCols(lawMemories) += step_ / 6.0 * (K1 + 2.0 * (K2 + K3) + K4).rightCols(lawMemories);
+    S_.leftCols(n) = atEnd;
+    add(K_.data(), 3 * rates, quadratureWeights_, S_.data());
+    std::swap(start_, end_);
+}
+
+}  // namespace excursion

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Arrival.h"
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <span>
+#include <vector>
+
+namespace excursion {
+
+/// What the channels of a take see of a trajectory, as unnormalized DFTs of its window, which is taken for one period:
+///     displacement  X = DFT{x + spot},   velocity, acceleration: of its derivatives,
+///     pressure      P = rho/(2 pi d) exp(-j w tau_0) DFT{area acceleration, heard later by lateness - tau_0},
+/// tau_0 the lateness at rest (Emission, Arrival). The trajectory must outlive this.
+class Sensors {
+public:
+    using Spectrum = std::vector<std::complex<double>>;
+
+    Sensors(const Model& model, const Trajectory& run, double sampleRate)
+        : Sensors(model, smallSignal(model), run, sampleRate)
+    {
+    }
+
+    /// The traces of a trajectory that a channel is made of.
+    std::vector<Trace> tracesOf(Quantity) const;
+
+    Spectrum seen(Quantity) const;
+
+    /// Derivative of seen() by one parameter.
+    /// @param slopes  derivatives of the traces of tracesOf(quantity), one row a trace
+    Spectrum slope(Quantity, const Eigen::MatrixXd& slopes);
+
+    /// The channel in time, one value a sample.
+    std::vector<double> record(Quantity) const;
+
+private:
+    Sensors(const Model&, const SmallSignal&, const Trajectory&, double sampleRate);
+    void delay(Spectrum&) const;
+    void addSpot(Spectrum&, std::span<const double> spot, int order) const;
+
+    const Trajectory& run_;
+    double sampleRate_, gain_, restLateness_;
+    bool spot_;
+    Arrival arrival_;                    ///< of what the lateness is more than at rest
+    std::vector<double> flowByLeaving_;  ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope asks for it
+};
+
+}  // namespace excursion

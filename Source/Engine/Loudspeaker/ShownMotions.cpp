@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/ShownMotions.h"
+
+#include "Engine/Loudspeaker/FedLaws.h"
+#include "Engine/Numerics/Parallel.h"
+#include "Engine/Signal/Fft.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace excursion {
+
+bool hasPeriods(const Record& record)
+{
+    return std::all_of(record.sections.begin(), record.sections.end(),
+                       [](const Section& s) { return s.periodic && s.window == s.input.size(); });
+}
+
+ShownMotions shownMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                          const ShownMotions& before, unsigned threads)
+{
+    const std::vector motion {Quantity::current, Quantity::displacement};
+    const auto histories = before.empty() ? LawHistories {} : lawHistories(model, record, sections, before, false);
+    std::map<std::size_t, Paths> paths;  // by window
+    for (const auto s : sections)
+        if (const auto& section = record.sections[s]; !paths.contains(section.window))
+            paths[section.window] = pathsOf(model, motion, 0, record.lineRange(section).second,
+                                            record.sampleRate / static_cast<double>(section.window), false, threads);
+    ShownMotions motions(sections.size());
+    inParallel(sections.size(), threads, {}, [&](std::size_t s) {
+        const auto& section = record.sections[sections[s]];
+        const auto last = record.lineRange(section).second;
+        const auto& path = paths.at(section.window);
+        const auto fed = before.empty() ? Fed {{}, {}, fft(section.input), Spectrum(section.window / 2 + 1, 0.0)}
+                                        : feed(model, record, section, before[s], histories, s, {});
+        std::array<Spectrum, 2> expected;
+        for (std::size_t q = 0; q < 2; ++q) {
+            expected[q].assign(fed.voltage.size(), 0.0);
+            for (std::size_t k = 0; k <= last; ++k)
+                expected[q][k] = path.fromVoltage[q].value[k] * fed.voltage[k]
+                                 + path.fromForce[q].value[k] * fed.force[k];
+            expected[q][0] = expected[q][0].real();
+        }
+        motions[s] = shownMotion(record, section, expected[0], expected[1]);
+        return true;
+    });
+    return motions;
+}
+
+ShownMotions settledMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                            unsigned threads)
+{
+    return shownMotions(model, record, sections, shownMotions(model, record, sections, {}, threads), threads);
+}
+
+}  // namespace excursion

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Polynomial/Block/BlockModel.h"
+#include "Engine/Polynomial/Named.h"
+
+#include <filesystem>
+
+namespace excursion {
+
+/// The document "excursion-block-model" 1, which keeps G as a state space with the names of input and output.
+nlohmann::ordered_json toJson(const Named<BlockModel>&);
+
+/// Throws Error (input) naming the field when the document is none of these, or its linear part not of discrete time
+/// with one input and output.
+Named<BlockModel> blockModelFromJson(const JsonField&);
+
+Named<BlockModel> readBlockModel(const std::filesystem::path&);
+void writeBlockModel(const Named<BlockModel>&, const std::filesystem::path&);
+
+}  // namespace excursion

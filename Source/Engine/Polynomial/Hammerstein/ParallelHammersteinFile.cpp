@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
+
+#include "Engine/Document/JsonText.h"
+#include "Engine/Linear/StateSpaceFile.h"
+
+namespace excursion {
+
+nlohmann::ordered_json toJson(const Named<ParallelHammerstein>& named)
+{
+    auto document = modelHeader("excursion-parallel-hammerstein", 1, named.name, named.model.sampleRate, named.input,
+                                named.output);
+    document["offset"] = named.model.offset;
+    document["branches"] = matrixJson(named.model.filters.transpose());
+    return document;
+}
+
+Named<ParallelHammerstein> parallelHammersteinFromJson(const JsonField& field)
+{
+    auto named = namedFromHeader<ParallelHammerstein>(field, "excursion-parallel-hammerstein", 1);
+    named.model.offset = field.at("offset").number();
+    const auto branches = field.at("branches").items();
+    if (branches.empty() || branches[0].items().empty())
+        field.at("branches").refuse("a list of taps for each power of the input, at least one");
+    const auto degree = static_cast<Eigen::Index>(branches.size()),
+               length = static_cast<Eigen::Index>(branches[0].items().size());
+    named.model.filters = matrixFrom(field.at("branches"), degree, length).transpose();
+    return named;
+}
+
+Named<ParallelHammerstein> readParallelHammerstein(const std::filesystem::path& path)
+{
+    const auto document = readJson(path);
+    return parallelHammersteinFromJson(JsonField(document, "", path.string()));
+}
+
+void writeParallelHammerstein(const Named<ParallelHammerstein>& named, const std::filesystem::path& path)
+{
+    writeJson(toJson(named), path);
+}
+
+}  // namespace excursion

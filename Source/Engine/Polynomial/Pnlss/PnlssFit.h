@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Numerics/SearchSummary.h"
+#include "Engine/Polynomial/Pnlss/Pnlss.h"
+#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Progress.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// How a fit begins; see fitPnlss.
+enum class PnlssSearch {
+    plain,   ///< by simulation
+    guided,  ///< following the measured output
+    grown,   ///< on the first quarter of each record
+    any      ///< in all three ways, one after the other as long as none comes to enoughDb; the best one goes on
+};
+
+struct PnlssFitOptions {
+    /// of a way, by simulation of the whole records; what leads up to that comes on top
+    int maximumIterations = 100;
+    /// stop when three accepted steps in a row lower the cost by less than this fraction
+    double costTolerance = 1e-8;
+    /// singular values of the scaled Jacobian below this, relative to the largest, are cut off
+    double rankTolerance = 1e-13;
+    bool linearFree = true;  ///< A, B, C, D move too
+    bool estimateInitialStates =
+        false;  ///< each record's first state is a parameter; else it is zero, and `skip` has to do
+    PnlssSearch search = PnlssSearch::any;
+    std::vector<double> guideGains {1.0, 0.5, 0.2, 0.1, 0.05, 0.02};  ///< of a guided search: see fitPnlss
+    /// relative rms error, on the validation records where there are any, below which no other way is tried; of the
+    /// weighted error where there are weights and no such records
+    double enoughDb = -200.0;
+    /// where the noise is not known: no other way is tried either once what is left is noise, as far as the input can
+    /// tell (see ResidualTest.h). A gain of less than 0.1 over the number of samples, which changes no likelihood, then
+    /// counts as none.
+    bool judgeResidual = false;
+
+    /// Weights of the error's spectrum, one a line 0 .. N/2 of the judged samples of each record (all equally long,
+    /// periodic); empty: all equal.
+    Eigen::VectorXd lineWeights;
+
+    bool isValid(std::string* reason = nullptr) const;
+};
+
+/// Where a search sets out.
+struct PnlssStart {
+    Pnlss model;
+    std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they are estimated; empty: zero
+};
+
+/// What became of a fit: iterations are those of all ways, the rest of the summary is that of the way that was kept.
+/// Costs are relative squared errors, weighted where lines are.
+struct PnlssFit : SearchSummary {
+    Pnlss model;
+    std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they were estimated
+    /// relative rms error [B 4.26], of the model that is returned; validation NaN without records
+    double estimationDb = 0.0, validationDb = 0.0;
+    /// dB of the output: what is left that the input does not tell, where the residual was judged
+    std::optional<double> untoldDb;
+    bool stable = false;  ///< its linear part is stable and no record made it run away
+    /// relative rms error in dB on the estimation records after each accepted step of the way that was kept
+    std::vector<double> history;
+};
+
+/// 20 log10(|model - measured| / |measured|) over all records and outputs, samples after `skip`; +infinity when the
+/// model runs away.
+double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
+                       const std::vector<Eigen::VectorXd>& initialStates = {});
+
+/// Levenberg-Marquardt on the simulation error [B 4.3.1, appendix C], columns scaled to unit length, singular
+/// values truncated, steps bent along the error's valleys (see Engine/Numerics/Search.h).
+///
+/// Only the triangular factor of [J, r] is kept, gathered block by block by orthogonal transformations, so memory stays
+/// bounded and no condition number is squared: what [B] loses to its normal equations. A step that lets a
+/// simulation run away is refused. Where there are validation records the model with the least error on them is
+/// returned.
+///
+/// A plain search may end in a valley that leads nowhere; which one depends on where it sets out. Three ways fail in
+/// different cases, so each is gone for half of the iterations, and the best one on to their end.
+///
+/// Guided: with gains g_1 > g_2 > .. the model is first fitted while it follows the measured output, x(t+1) = f(x, u) +
+/// g L (y - yhat), L the gain of a Kalman filter on the linear part. A guided model cannot drift away from the data, so
+/// its error is far smoother in the parameters than that of a simulation over thousands of samples; as g falls to 0 it
+/// becomes the simulation. Such a search also copes with a linear part that is not stable.
+///
+/// Grown: a quarter of a record lets errors of the model add up for a shorter time, and its error has fewer valleys.
+/// Weights of the spectrum come later.
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
+                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
+
+/// From several starts of one structure, such as linear models that were found in different ways (see LinearStarts.h):
+/// where one leads into a valley, another need not. Each is gone in the ways that the options name until one is good
+/// enough; then the best one goes on. Throws Error (usage) without a start, or where structures differ.
+PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
+                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
+
+}  // namespace excursion

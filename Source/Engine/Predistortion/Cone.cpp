@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Predistortion/Cone.h"
+
+#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Predistortion/Cubic.h"
+
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr double shareTime = 0.003;  // s, see Glide
+
+}  // namespace
+
+Cone::Cone(const Model& model, double sampleRate)
+    : corrected_(stableSubsteps(model, sampleRate, ExponentialAdams::stable) > 1),
+      substeps_(corrected_ ? stableSubsteps(model, sampleRate, ExponentialAdams::stableCorrected) : 1),
+      motion_(model, 1.0 / (sampleRate * substeps_), corrected_),
+      plausible_(model),
+      reference_(model, sampleRate),
+      radiator_(model),
+      area_(radiator_.area()),
+      share_(shareTime, sampleRate)
+{
+    const auto linear = smallSignal(linearPart(model));  // as in Reference
+    linear_ = (linear.C.row(SmallSignal::sound) * reference_.basis()).transpose() / area_;
+    linearInput_ = linear.D[SmallSignal::sound] / area_;
+}
+
+void Cone::rest()
+{
+    motion_.reset();
+    past_ = {};
+    reference_.reset();
+}
+
+void Cone::reset()
+{
+    rest();
+    share_.jump();
+}
+
+void Cone::setLinearShareRemoved(double share)
+{
+    if (share >= 0.0 && share <= 1.0)
+        share_.aim(share);
+}
+
+bool Cone::step(double& sample)
+{
+    const double u = sample;
+    const auto drive = Cubic::through(past_[2], past_[1], past_[0], u);
+    double acceleration = 0.0;
+    for (int s = 0; s < substeps_; ++s)
+        acceleration = motion_.step(drive.part(static_cast<double>(s) / substeps_, 1.0 / substeps_).c);
+    past_ = {u, past_[0], past_[1]};
+    reference_.step(u);
+    const double linear = linear_.dot(reference_.state()) + linearInput_ * u, share = share_.step();
+    sample = radiator_.at(motion_.state().data(), acceleration).flow / area_ - share * linear;
+    if (plausible_.holds(motion_.current(), motion_.displacement(), motion_.velocity()) && std::isfinite(acceleration)
+        && std::isfinite(linear))
+        return true;
+    rest();
+    sample = 0.0;
+    return false;
+}
+
+}  // namespace excursion

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/ExponentialAdams.h"
+#include "Engine/Loudspeaker/Plausible.h"
+#include "Engine/Loudspeaker/Radiator.h"
+#include "Engine/Predistortion/Glide.h"
+#include "Engine/Predistortion/RealTime.h"
+#include "Engine/Predistortion/Reference.h"
+
+#include <array>
+
+namespace excursion {
+
+/// The driver with its effects, sample by sample: from the voltage to the acceleration that is heard, which is that of
+/// the cone and of whatever else an effect makes sound (Emission), less a share of what a linear driver's would be
+/// (Reference). With a share of 1 only the distortion is left. All is heard at once: a lateness that changes is not
+/// played. The steps are as many as the laws ask for and do not adapt; between samples the input is a cubic through the
+/// latest four (ExponentialAdams).
+///
+/// Thread: after construction nothing allocates, locks or throws.
+class Cone {
+public:
+    /// @param sampleRate  Hz, of step()
+    Cone(const Model&, double sampleRate);
+
+    int substeps() const { return substeps_; }  ///< steps a sample
+    void rest();                                ///< at rest from now on
+    void reset();                               ///< and the share is at its target
+
+    /// @param share  how much of the linear driver's output is taken away, 0 to 1; followed smoothly
+    void setLinearShareRemoved(double share);
+
+    /// @param sample  V (or N); becomes m/s^2
+    /// @returns false when the motion is not finite or beyond any loudspeaker: then the cone is at rest and the sample
+    /// 0
+    bool step(double& sample);
+
+    double displacement() const { return motion_.displacement(); }  ///< m
+    double current() const { return motion_.current(); }            ///< A
+
+private:
+    bool corrected_;  ///< the laws are so fast that they are asked twice a step; see ExponentialAdams
+    int substeps_;
+    ExponentialAdams motion_;
+    Plausible plausible_;
+    Reference reference_;
+    Radiator radiator_;
+    double area_;             ///< m^2 that the sound is referred to
+    Eigen::VectorXd linear_;  ///< what of the reference's state is heard, m/s^2
+    double linearInput_;      ///< and of the input
+    Glide share_;
+    std::array<double, 3> past_ {};  ///< u(n-1), u(n-2), u(n-3)
+};
+
+}  // namespace excursion

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Predistortion/Linearizer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr double followTime = 0.2;  // s, until a cone that is told where to go is there
+constexpr int mostCorrections = 3;
+
+}  // namespace
+
+Linearizer::Linearizer(const Model& model, double sampleRate)
+    : wish_ {Reference(model, sampleRate), Inverse(model, sampleRate)},
+      cone_(wish_),
+      settling_(static_cast<int>(followTime * sampleRate))
+{
+}
+
+void Linearizer::reset()
+{
+    for (auto* pair : {&wish_, &cone_}) {
+        pair->reference.reset();
+        pair->inverse.reset();
+        pair->made = 0.0;
+    }
+    follows_ = false;
+    alike_ = 0;
+    wanted_ = 0.0;
+}
+
+void Linearizer::Pair::step(double u) { made = inverse.step(reference.step(u)); }
+
+/// Secant steps; the first one takes the inverse for linear in the voltage, with the force factor as it is at this
+/// place.
+void Linearizer::Pair::moveTo(double voltage)
+{
+    double byInput = inverse.ease();
+    const double close = 1e-6 * std::abs(voltage);
+    for (int k = 0; k < mostCorrections && std::abs(voltage - made) > close; ++k) {
+        const double difference = (voltage - made) / byInput, before = made;
+        made = inverse.again(reference.correct(difference));
+        if (const double slope = (made - before) / difference; slope > 0.2 * byInput && slope < 5.0 * byInput)
+            byInput = slope;
+    }
+}
+
+double Linearizer::step(double u, double amount, double limit)
+{
+    alike_ = amount < 1.0 ? 0 : alike_ + 1;
+    if (amount < 1.0 && !follows_) {
+        cone_ = wish_;
+        follows_ = true;
+    } else if (follows_ && alike_ > settling_) {
+        wish_ = cone_;
+        follows_ = false;
+    }
+    wish_.step(u);
+    wanted_ = u + amount * (wish_.made - u);
+    const double out = std::clamp(wanted_, -limit, limit);
+    if (follows_) {
+        cone_.step(u);
+        cone_.moveTo(out);
+    } else if (out != wanted_) {
+        wish_.moveTo(out);
+    }
+    return out;
+}
+
+}  // namespace excursion

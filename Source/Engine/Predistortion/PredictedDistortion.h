@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Predistortion/RealTime.h"
+
+#include <vector>
+
+namespace excursion {
+
+/// What a loudspeaker is expected to add on the lines that a multisine leaves out, without and with linearization.
+struct PredictedDistortion {
+    std::vector<double> frequency;         ///< Hz, centres of third-octaves, wider where lines are sparse
+    std::vector<double> before, after;     ///< dB: distortion in that band over the signal in it
+    double beforeDb = 0.0, afterDb = 0.0;  ///< all of them together
+    double displacement = 0.0;             ///< m, peak without linearization
+};
+
+/// Plays an odd random-phase multisine, pink from a third of the resonance to 8 kHz (at most 0.17 of the sample rate),
+/// to the model and to the linearized model, and sums what appears on the silent lines of the cone's acceleration.
+/// @param volts  peak of the multisine, V
+/// Throws Error, see requireRunnable; (usage) when volts is not positive.
+PredictedDistortion predictDistortion(const Model&, const PredistortionControls&, double volts,
+                                      const RealTimeOptions& = {});
+
+}  // namespace excursion

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Predistortion/Predistorter.h"
+
+#include "Engine/Predistortion/Subnormals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace excursion {
+namespace {
+
+constexpr double amountTime = 0.005, nearTime = 0.0005;  // s, see Glide
+constexpr double declickTime = 0.002;                    // s
+constexpr double restTime = 0.05, returnTime = 0.05;     // s, after a fault
+constexpr double nearFrom = 0.6, nearTo = 0.8;           // of the limit of the excursion
+
+double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
+
+double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(std::max(factor, 1e-5)) : 0.0; }
+
+}  // namespace
+
+Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const PredistortionControls& controls)
+    : oversampling_((requireRunnable(model, options), options.oversampling)),
+      protection_(undonePart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
+      linearizer_(undonePart(model), options.sampleRate * options.oversampling),
+      plausible_(model),
+      recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),
+      ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0),
+      amount_(amountTime, options.sampleRate),
+      near_(nearTime, options.sampleRate),
+      effort_(nearTime, options.sampleRate, 1.0),
+      decay_(std::exp(-1.0 / (declickTime * options.sampleRate * options.oversampling)))
+{
+    set(controls);
+    reset();
+}
+
+void Predistorter::reset()
+{
+    oversampling_.reset();
+    protection_.reset();
+    linearizer_.reset();
+    recovery_.reset();
+    amount_.jump();
+    near_.jump(0.0);
+    effort_.jump(1.0);
+    outcome_ = {};
+    heats_ = last_ = left_ = 0.0;
+}
+
+void Predistorter::set(const PredistortionControls& controls)
+{
+    if (controls.areSound())
+        controls_ = controls;
+    turn(on_);
+}
+
+void Predistorter::turn(bool on)
+{
+    if (on && !bends())
+        linearizer_.reset();
+    on_ = on;
+    amount_.aim(on ? controls_.amount : 0.0);
+    protection_.set(controls_, on);
+}
+
+/// One sample of the higher rate.
+void Predistorter::bend(double& sample, double amount)
+{
+    const double asked = sample;
+    outcome_.astray = outcome_.astray || amount < 1.0;
+    double out = linearizer_.step(asked, amount,
+                                  on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity());
+    const auto& motion = linearizer_.cone().motion();
+    const double x = std::abs(motion.x), i = linearizer_.current();
+    if (!(std::abs(out) < plausible_.input() && std::abs(linearizer_.wanted()) < plausible_.input()
+          && plausible_.holds(i, x, motion.v))) {
+        fault();
+        out = 0.0;
+    } else {
+        peak_.displacement = std::max(peak_.displacement, x);
+        outcome_.asked = std::max(outcome_.asked, std::abs(asked));
+        outcome_.astray = outcome_.astray || out != linearizer_.wanted();
+        outcome_.wanted = std::max(outcome_.wanted, std::abs(linearizer_.wanted()));
+        heats_ += ohms_ * i * i;
+    }
+    sample = last_ = out + left_;
+    left_ *= decay_;
+}
+
+void Predistorter::fault()
+{
+    linearizer_.reset();
+    recovery_.fault();
+    left_ = last_;
+    faults_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Predistorter::begin(const double* in, std::size_t n)
+{
+    const FlushSubnormals flush;
+    const auto factor = static_cast<std::size_t>(oversampling_.factor());
+    if (protection_.due()) {
+        outcome_.heat = heats_ / static_cast<double>(Protection::tick * factor);
+        protection_.decide(linearizer_.cone().state(), outcome_);
+        outcome_ = {};
+        heats_ = 0.0;
+        const auto& factors = protection_.factors();
+        least_ = {std::min(least_.displacement, factors.displacement), std::min(least_.voltage, factors.voltage),
+                  std::min(least_.power, factors.power)};
+        const double share = std::clamp((protection_.share() - nearFrom) / (nearTo - nearFrom), 0.0, 1.0);
+        near_.aim(smooth(share));
+        effort_.aim(protection_.effort());
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        const bool sound = std::abs(in[k]) < plausible_.input();  // not for NaN
+        if (!sound)
+            faults_.fetch_add(1, std::memory_order_relaxed);
+        block_[k] = recovery_.step() * protection_.step(in[k], sound);
+    }
+    oversampling_.up(block_.data(), n, between_.data());
+    for (std::size_t k = 0; k < n; ++k) {
+        const double amount = amount_.step(), near = near_.step(), effort = effort_.step();
+        if (bends())
+            for (std::size_t s = 0; s < factor; ++s)
+                bend(between_[k * factor + s], on_ ? effort * (amount + (1.0 - amount) * near) : amount);
+    }
+}
+
+void Predistorter::finish(double* out, std::size_t n)
+{
+    const FlushSubnormals flush;
+    oversampling_.down(between_.data(), n, out);
+    // The filter on the way down may overshoot.
+    const double limit = on_ ? protection_.voltageLimit() : std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < n; ++k) {
+        out[k] = withoutSubnormals(std::clamp(out[k], -limit, limit));
+        peak_.voltage = std::max(peak_.voltage, std::abs(out[k]));
+    }
+}
+
+void Predistorter::process(const double* in, double* out, std::size_t n)
+{
+    while (n > 0) {
+        const std::size_t taken = std::min(n, room());
+        begin(in, taken);
+        finish(out, taken);
+        in += taken;
+        out += taken;
+        n -= taken;
+    }
+    publish();
+}
+
+void Predistorter::publish()
+{
+    displacement_.raise(peak_.displacement);
+    voltage_.raise(peak_.voltage);
+    power_.raise(protection_.heat());
+    displacementReduction_.raise(decibelsDown(least_.displacement));
+    voltageReduction_.raise(decibelsDown(least_.voltage));
+    powerReduction_.raise(decibelsDown(least_.power));
+    least_ = {};
+    peak_ = {};
+}
+
+Predistorter::Meters Predistorter::take()
+{
+    return {displacement_.take(),
+            voltage_.take(),
+            power_.take(),
+            displacementReduction_.take(),
+            voltageReduction_.take(),
+            powerReduction_.take(),
+            faults_.load(std::memory_order_relaxed)};
+}
+
+}  // namespace excursion

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Predistortion/Protection.h"
+
+#include "Engine/Loudspeaker/SmallSignal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace excursion {
+namespace {
+
+// of the resonance: above the first one moves a cone little
+constexpr double firstCorner = 2.5, secondCorner = 12.0;
+// periods of the resonance: a cone left alone has gone farthest long before
+constexpr double swing = 0.75;
+constexpr Eigen::Index coastingPoints = 32;
+// of the limit; the rest is for points between those that are looked at
+constexpr double wishShare = 0.96, planShare = 0.992;
+constexpr double limitTime = 0.008, powerLimitTime = 0.05;  // s, see Glide
+// s, in which a signal follows a limit that falls before it is made to
+constexpr double patience = 0.08;
+constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;  // s
+constexpr double settlingTime = 0.5;                         // s, in which a driver forgets
+constexpr double muteTime = 0.02, muteReleaseTime = 0.05;    // s
+
+double resonance(const Model& model) { return resonanceOf(model.base().parameters); }
+
+double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
+
+Eigen::VectorXd coastingTimes(double f0) { return Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing / f0); }
+
+/// While inputs are known, once a step, then coasting.
+Eigen::VectorXd planTimes(double f0, double rate, int known, int planStep)
+{
+    const int points = known / planStep;
+    Eigen::VectorXd times(points + coastingPoints);
+    for (int k = 0; k < points; ++k)
+        times[k] = planStep * (k + 1.0) / rate;
+    times.tail(coastingPoints) = coastingTimes(f0).tail(coastingPoints).array() + known / rate;
+    return times;
+}
+
+/// The largest sum over the parameters of |d ln|X| / d ln p| where a voltage moves the cone far.
+double worstSensitivity(const Model& model)
+{
+    std::vector<double> frequency;
+    for (int k = 0; k < 24; ++k)
+        frequency.push_back(resonance(model) * 0.1 * std::pow(30.0, k / 23.0));
+    const auto response = respond(model, {Quantity::displacement}, frequency, true).front();
+    const auto parameters = parametersOf(model);
+    double worst = 0.0;
+    for (std::size_t f = 0; f < frequency.size(); ++f) {
+        double sum = 0.0;
+        for (std::size_t p = 0; p < parameters.size(); ++p)
+            sum += std::abs((response.gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(p))
+                             * parameters[p]->value / response.value[f])
+                                .real());
+        worst = std::max(worst, sum);
+    }
+    return worst;
+}
+
+int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
+
+}  // namespace
+
+Protection::Protection(const Model& model, const RealTimeOptions& options, double delay)
+    : rate_(options.sampleRate),
+      committed_(roundedUp(delay - 0.5, planStep)),
+      settled_(ticks::in(settlingTime, rate_)),
+      split_(firstCorner * resonance(model), secondCorner * resonance(model), rate_),
+      wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep),
+             Reference(model, rate_ / wishStep)},
+      coast_(model, wish_.front(), coastingTimes(resonance(model)), 0, 1.0, 0.0),
+      ahead_(
+          model, wish_.front(), planTimes(resonance(model), rate_, roundedUp(committed_ + latency, planStep), planStep),
+          roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_, (committed_ - delay + 0.5) / rate_),
+      uncertainty_(worstSensitivity(model)),
+      sent_(static_cast<std::size_t>(committed_), 0.0),
+      displacement_(limitTime, rate_ / tick),
+      voltage_(limitTime, rate_ / tick),
+      power_(powerLimitTime, rate_ / tick),
+      past_(static_cast<std::size_t>(ticks::in(patience, rate_))),
+      wishHold_ {PeakHold(ticks::in(wishHoldTime, rate_)), PeakHold(ticks::in(wishHoldTime, rate_)),
+                 PeakHold(ticks::in(wishHoldTime, rate_))},
+      reachHold_(ticks::in(wishHoldTime, rate_)),
+      held_ {Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_)},
+      loud_(rate_),
+      cool_(model, rate_),
+      heated_(model.electrical())
+{
+    static_assert(tick % wishStep == 0);
+    std::array<double, window> weight {};
+    double sum = 0.0;
+    for (int k = 0; k < window; ++k)
+        sum += weight[static_cast<std::size_t>(k)] = std::pow(std::sin(std::numbers::pi * (k + 0.5) / window), 4.0);
+    for (int k = 0; k < window; ++k)
+        for (int j = 0; j < tick; ++j)
+            shape_[static_cast<std::size_t>(k + j)] += weight[static_cast<std::size_t>(k)] / sum;
+    const auto steps = ahead_.driven.cols();
+    future_.resize(ahead_.coasting.rows());
+    rest_.resize(ahead_.coasting.rows());
+    drive_.resize(steps);
+    partDrives_.resize(steps, static_cast<Eigen::Index>(bands));
+    parts_.resize(ahead_.coasting.rows(), static_cast<Eigen::Index>(bands));
+    state_.resize(coast_.coasting.cols());
+    coasted_.resize(coast_.coasting.rows());
+    wishes_.resize(coast_.coasting.rows(), static_cast<Eigen::Index>(bands));
+    reset();
+}
+
+void Protection::reset()
+{
+    split_.reset();
+    for (auto& wish : wish_)
+        wish.reset();
+    for (auto& delayed : delayed_)
+        delayed.fill(0.0);
+    std::fill(sent_.begin(), sent_.end(), 0.0);
+    sum_.fill(0.0);
+    oldest_ = sentAt_ = 0;
+    summed_ = place_ = muteFor_ = 0;
+    share_ = reach_ = 0.0;
+    undiminished_ = settled_;
+    for (auto& gain : gain_) {  // as after factors of 1
+        gain.fill(0.0);
+        for (std::size_t k = 0; k < gain.size(); ++k)
+            for (std::size_t later = k + tick; later < gain.size(); later += tick)
+                gain[k] += shape_[later];
+    }
+    for (auto* limit : {&displacement_, &voltage_, &power_})
+        limit->jump();
+    std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
+    for (auto* hold : {&wishHold_[0], &wishHold_[1], &wishHold_[2], &reachHold_})
+        hold->reset();
+    for (auto& held : held_)
+        held.reset();
+    loud_.reset();
+    cool_.reset();
+    mute_ = 1.0;
+    factors_ = {};
+}
+
+void Protection::set(const PredistortionControls& controls, bool on)
+{
+    // What is switched on holds at once, for all that comes from now on.
+    const bool fresh = on && !on_;
+    on_ = on;
+    displacement_.aim(on ? std::exp(uncertainty_ * controls.margin) * reciprocal(controls.displacementLimit) : 0.0);
+    voltage_.aim(on ? reciprocal(controls.voltageLimit) : 0.0);
+    power_.aim(on && heated_ ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin))
+                             : 0.0);
+    if (fresh) {
+        for (auto* limit : {&displacement_, &voltage_, &power_})
+            limit->jump();
+        std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
+        for (auto& wish : wish_)
+            wish.reset();
+    }
+}
+
+/// Of each band, what a cone that moved as the wish asks, and were then left alone, would ask for.
+Protection::Values Protection::forWish()
+{
+    Values need {1.0, 1.0, 1.0};
+    const double limit = displacement_.value();
+    farthest_ = 0.0;
+    if (limit > 0.0 || power_.value() > 0.0) {
+        state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
+        coasted_.noalias() = coast_.coasting * state_;
+        const double farthest = coasted_.cwiseAbs().maxCoeff();
+        reach_ = reachHold_.step(farthest * limit);
+        farthest_ = limit > 0.0 ? std::min(farthest, wishShare / limit) : farthest;
+        if (farthest * limit > wishShare) {
+            for (std::size_t b = 0; b < bands; ++b)
+                wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
+            coasted_.setZero();
+            need = largestWithin(coasted_, wishes_, need, wishShare / limit);
+        }
+        factors_.displacement = wishShare / std::max(wishShare, farthest * limit);
+    }
+    Values factors {};
+    for (std::size_t b = 0; b < bands; ++b)
+        factors[b] = held_[b].step(1.0 - wishHold_[b].step(1.0 - need[b]), displacement_.value() != displacementNow_);
+    return factors;
+}
+
+/// Turns the factors down until a cone that gets them for a tick, and silence then, stays within its limit.
+void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray, Values& factors)
+{
+    const double limit = displacementNow_;
+    share_ = 0.0;
+    if (!(limit > 0.0))
+        return;
+    // As long as nothing is turned down the cone is where the wish was, and what it will do has been looked at there.
+    const bool undiminished = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
+    undiminished_ = undiminished && !astray ? std::min(undiminished_ + 1, settled_) : 0;
+    if (undiminished_ == settled_) {
+        share_ = reach_;
+        return;
+    }
+    drive_.setZero();
+    partDrives_.setZero();
+    for (std::size_t k = 0; k < sent_.size(); ++k)
+        drive_[static_cast<Eigen::Index>(k / planStep)] += sent_[(sentAt_ + k) % sent_.size()] / planStep;
+    for (std::size_t k = 0, from = oldest_; k < latency; ++k, from = from + 1 == latency ? 0 : from + 1) {
+        const auto step = static_cast<Eigen::Index>((sent_.size() + k) / planStep);
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double u = delayed_[b][from] / planStep;
+            drive_[step] += u * gain_[b][k];
+            partDrives_(step, static_cast<Eigen::Index>(b)) += u * shape_[k];
+        }
+    }
+    const Eigen::Map<const Eigen::Vector3d> now(factors.data());
+    rest_.noalias() = ahead_.coasting * cone;
+    rest_.noalias() += ahead_.driven * drive_;
+    drive_.noalias() = partDrives_ * now;
+    future_ = rest_;
+    future_.noalias() += ahead_.driven * drive_;
+    share_ = future_.cwiseAbs().maxCoeff() * limit;
+    if (share_ > planShare) {
+        for (Eigen::Index b = 0; b < parts_.cols(); ++b)  // a product of two matrices would allocate
+            parts_.col(b).noalias() = ahead_.driven * partDrives_.col(b);
+        factors = largestWithin(rest_, parts_, factors, planShare / limit);
+    }
+}
+
+void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Outcome& last)
+{
+    for (auto* limit : {&displacement_, &voltage_, &power_})
+        limit->step();
+    // A limit that falls is first followed by what is to come, then asked of what comes out.
+    past_[pastAt_] = {displacement_.value(), voltage_.value()};
+    pastAt_ = pastAt_ + 1 == past_.size() ? 0 : pastAt_ + 1;
+    displacementNow_ = std::min(displacement_.value(), past_[pastAt_].displacement);
+    const double voltage = std::min(voltage_.value(), past_[pastAt_].voltage);
+    voltageNow_ = voltage > 0.0 ? 1.0 / voltage : std::numeric_limits<double>::infinity();
+    if (muteFor_ > 0) {
+        --muteFor_;
+        mute_ = 0.0;
+    } else {
+        mute_ = std::min(1.0, mute_ + tick / (muteReleaseTime * rate_));
+    }
+
+    factors_ = {};
+    auto factors = forWish();
+    factors_.voltage = loud_.decide(voltage_.value(), voltage_.value() != voltage, last.asked, last.wanted);
+    factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, loud_.peak(), farthest_);
+    for (auto& factor : factors)
+        factor *= factors_.voltage * factors_.power * mute_;
+    plan(cone, last.astray, factors);
+    if (share_ > planShare)
+        factors_.displacement = std::min(factors_.displacement, planShare / share_);
+    for (std::size_t b = 0; b < bands; ++b)
+        for (std::size_t k = 0; k < gain_[b].size(); ++k)
+            gain_[b][k] += factors[b] * shape_[k];
+}
+
+double Protection::step(double u, bool sound)
+{
+    const auto values = split_.split(sound ? u : 0.0);
+    if (!sound)
+        muteFor_ = latency / tick + ticks::in(muteTime, rate_);
+    double left = 0.0, out = 0.0;
+    for (std::size_t b = 0; b < bands; ++b) {
+        sum_[b] += values[b];
+        left += held_[b].value() * values[b];
+        out += gain_[b][static_cast<std::size_t>(place_)] * std::exchange(delayed_[b][oldest_], values[b]);
+    }
+    oldest_ = oldest_ + 1 == latency ? 0 : oldest_ + 1;
+    loud_.add(left);
+    cool_.add(loud_.factor() * left);
+    if (on_ && ++summed_ == wishStep) {
+        for (std::size_t b = 0; b < bands; ++b)
+            wish_[b].step(sum_[b] / wishStep);
+        sum_.fill(0.0);
+        summed_ = 0;
+    }
+    if (!sent_.empty()) {
+        sent_[sentAt_] = out;
+        sentAt_ = sentAt_ + 1 == sent_.size() ? 0 : sentAt_ + 1;
+    }
+    if (++place_ == tick) {
+        place_ = 0;
+        for (auto& gain : gain_) {
+            std::copy(gain.begin() + tick, gain.end(), gain.begin());
+            std::fill(gain.end() - tick, gain.end(), 0.0);
+        }
+    }
+    return out;
+}
+
+}  // namespace excursion

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Predistortion/Recipe.h"
+
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Validity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr auto formatName = "excursion-recipe";
+constexpr int formatVersion = 2;
+
+struct Names {
+    std::string_view name, title;
+};
+constexpr std::array<Names, modes.size()> names {{{"bypass", "Bypass"},
+                                                  {"speaker", "Speaker"},
+                                                  {"distortion", "Distortion alone"},
+                                                  {"linearize", "Linearize"},
+                                                  {"audition", "Audition"}}};
+
+/// Version 1 knew neither a limit of the power nor a margin.
+int versionOf(const JsonField& field)
+{
+    const auto number = field.at("version");
+    const int version = number.value() == 1 ? 1 : formatVersion;
+    if (number.value() != version)
+        number.refuse("1 or 2, the versions that this program reads");
+    field.requireFormat(formatName, version);
+    return version;
+}
+
+}  // namespace
+
+std::string_view name(Mode mode) { return names[static_cast<std::size_t>(mode)].name; }
+std::string_view title(Mode mode) { return names[static_cast<std::size_t>(mode)].title; }
+
+bool Recipe::isValid(std::string* reason) const
+{
+    const auto check = [reason](bool holds, const char* sentence) { return holds || refuse(reason, sentence); };
+    return check(fullScales.holds(fullScale), "the voltage of full scale must lie between 0.01 and 1000 V")
+           && check(amounts.holds(amount), "the amount must lie between 0 and 1")
+           && check(displacements.holds(displacementLimit),
+                    "the limit of the excursion must lie between 0.05 and 4 times what was measured")
+           && check(voltages.holds(voltageLimit), "the limit of the voltage must lie between 0.01 and 1000 V")
+           && check(powers.holds(powerLimit), "the limit of the power must lie between 0.01 and 10000 W")
+           && check(margins.holds(margin), "the margin must lie between 0 and 0.3")
+           && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB");
+}
+
+Model withoutOff(const Model& model, const Recipe& recipe)
+{
+    auto result = model;
+    for (const auto& id : recipe.off)
+        if (result.has(id))
+            result = withoutEffect(result, id);
+    return result;
+}
+
+PredistortionControls controlsOf(const Settings& settings, double measuredDisplacement)
+{
+    PredistortionControls controls;
+    controls.amount = settings.amount;
+    controls.displacementLimit = settings.displacementLimit * measuredDisplacement;
+    controls.voltageLimit = std::min(settings.voltageLimit, settings.fullScale);
+    if (settings.powerLimit < Settings::powers.most)
+        controls.powerLimit = settings.powerLimit;
+    controls.margin = settings.margin;
+    return controls;
+}
+
+PredistortionControls controlsOf(const Recipe& recipe, const Model& model)
+{
+    return controlsOf(static_cast<const Settings&>(recipe), measuredDisplacement(model));
+}
+
+nlohmann::ordered_json toJson(const Recipe& recipe)
+{
+    return {{"format", formatName},
+            {"version", formatVersion},
+            {"title", recipe.title},
+            {"words", recipe.words},
+            {"mode", name(recipe.mode)},
+            {"fullScale", recipe.fullScale},
+            {"amount", recipe.amount},
+            {"displacementLimit", recipe.displacementLimit},
+            {"voltageLimit", recipe.voltageLimit},
+            {"powerLimit", recipe.powerLimit},
+            {"margin", recipe.margin},
+            {"trimDb", recipe.trimDb},
+            {"off", recipe.off}};
+}
+
+Recipe recipeFromJson(const JsonField& field)
+{
+    const int version = versionOf(field);
+    const auto within = [&field](const char* key, const Settings::Range& range) {
+        return field.at(key).numberWithin(range.least, range.most);
+    };
+    Recipe recipe;
+    recipe.title = field.at("title").text();
+    recipe.words = field.at("words").text();
+    std::vector<std::string> known;
+    for (const auto mode : modes)
+        known.emplace_back(name(mode));
+    const auto mode = field.at("mode").oneOf(known);
+    recipe.mode = modes[static_cast<std::size_t>(std::find(known.begin(), known.end(), mode) - known.begin())];
+    recipe.fullScale = within("fullScale", Settings::fullScales);
+    recipe.amount = within("amount", Settings::amounts);
+    recipe.displacementLimit = within("displacementLimit", Settings::displacements);
+    recipe.voltageLimit = within("voltageLimit", Settings::voltages);
+    if (version > 1) {
+        recipe.powerLimit = within("powerLimit", Settings::powers);
+        recipe.margin = within("margin", Settings::margins);
+    }
+    recipe.trimDb = within("trimDb", Settings::trims);
+    known.clear();
+    for (const auto* effect : catalogue())
+        known.push_back(effect->id());
+    for (const auto& item : field.at("off").items())
+        recipe.off.push_back(item.oneOf(known));
+    return recipe;
+}
+
+Recipe readRecipe(const std::filesystem::path& path)
+{
+    const auto document = readJson(path);
+    return recipeFromJson(JsonField(document, "", path.string()));
+}
+
+}  // namespace excursion

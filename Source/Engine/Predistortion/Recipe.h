@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Document/JsonField.h"
+#include "Engine/Predistortion/RealTime.h"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace excursion {
+
+/// What is done to a signal with a model.
+enum class Mode {
+    bypass,      ///< nothing
+    speaker,     ///< the driver plays it, with all its distortion
+    distortion,  ///< of that, what a linear driver would not add
+    linearize,   ///< predistorted, for the real loudspeaker
+    audition     ///< predistorted and then played by the modelled driver: what the loudspeaker will sound like
+};
+inline constexpr std::array modes {Mode::bypass, Mode::speaker, Mode::distortion, Mode::linearize, Mode::audition};
+
+std::string_view name(Mode);   ///< "bypass", as in the files
+std::string_view title(Mode);  ///< "Distortion alone", for a person
+
+/// The numbers of a recipe: no text, so an audio thread may have them.
+struct Settings {
+    Mode mode = Mode::bypass;
+    double fullScale = 10.0;         ///< V at the loudspeaker for a sample of 1.0
+    double amount = 1.0;             ///< of linearization, 0 to 1
+    double displacementLimit = 1.0;  ///< of what the model was measured at; 1: as far as that
+    double voltageLimit = 100.0;     ///< V
+    double powerLimit = 10000.0;     ///< W, of the coil's heat averaged over a second; the most there is: none
+    double margin = 0.0;             ///< of the model's parameters, see PredistortionControls
+    double trimDb = 0.0;             ///< of the output
+
+    struct Range {
+        double least, most;
+        bool holds(double value) const { return value >= least && value <= most; }
+    };
+    static constexpr Range fullScales {0.01, 1000.0}, amounts {0.0, 1.0}, displacements {0.05, 4.0},
+        voltages {0.01, 1000.0}, powers {0.01, 10000.0}, margins {0.0, 0.3}, trims {-60.0, 24.0};
+};
+
+/// All that a person sets: how a model is used, whichever it is. As a document, format "excursion-recipe", version 2
+/// (Docs/Formats.md).
+struct Recipe : Settings {
+    std::string title;
+    std::string words;             ///< what it is for
+    std::vector<std::string> off;  ///< ids of effects that are switched off
+
+    bool isValid(std::string* reason) const;
+};
+
+/// The model without the effects that the recipe switches off.
+Model withoutOff(const Model&, const Recipe&);
+
+/// The controls of a predistorter. What leaves it is never more than full scale, as no converter gives more.
+/// The first is safe on an audio thread.
+PredistortionControls controlsOf(const Settings&, double measuredDisplacement);
+PredistortionControls controlsOf(const Recipe&, const Model&);
+
+nlohmann::ordered_json toJson(const Recipe&);
+/// Throws Error (input): the file, the field, what was found and what is expected.
+Recipe recipeFromJson(const JsonField&);
+Recipe readRecipe(const std::filesystem::path&);
+
+}  // namespace excursion

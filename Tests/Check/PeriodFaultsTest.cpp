@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Check/SoundTake.h"
+#include "Engine/Check/TakeCheck.h"
+#include "Estimate/SyntheticTake.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+using namespace excursion;
+
+TEST_CASE("hum is named with its strength")
+{
+    for (const double mains : {50.03, 59.95}) {
+        auto take = soundTake();
+        auto& samples = samplesOf(take, Quantity::current);
+        const auto& e = *take.excitation;
+        const auto last = static_cast<std::ptrdiff_t>(e.samplesPerRealization()) * e.realizations;
+        const double loud = synthetic::rms({samples.end() - last, samples.end()});
+        for (std::size_t n = 0; n < samples.size(); ++n)
+            for (const int h : {1, 2, 3})
+                samples[n] += loud * 0.03 / h
+                              * std::sin(2.0 * std::numbers::pi * h * mains * static_cast<double>(n) / take.sampleRate
+                                         + h);
+        const auto report = check(take);
+        INFO(fatalSentences(report));
+        const auto* problem = find(report, "hum", Quantity::current);
+        REQUIRE(problem);
+        CHECK(problem->fatal);
+        const double truth = 10.0 * std::log10(0.5 * 0.03 * 0.03 * (1.0 + 1.0 / 4 + 1.0 / 9));
+        CHECK(problem->value == Approx(truth).margin(3.0));
+        CHECK(othersThan(report, "hum") == 0);
+    }
+}
+
+TEST_CASE("clock drift is named in ppm, of one channel or of all")
+{
+    for (const double ppm : {50.0, -20.0, 5.0}) {
+        const auto sound = soundTake();
+        auto one = sound;
+        const auto drifting = ppm == 5.0 ? Quantity::current : Quantity::displacement;
+        samplesOf(one, drifting) = synthetic::delayed(samplesOf(one, drifting), 0.0, ppm * 1e-6);
+        const auto reportOfOne = check(one);
+        INFO(ppm << " ppm: " << fatalSentences(reportOfOne));
+        const auto* problem = find(reportOfOne, "clock-drift", drifting);
+        REQUIRE(problem);
+        CHECK(problem->fatal);
+        CHECK(problem->value == Approx(ppm).epsilon(0.1));
+        CHECK(othersThan(reportOfOne, "clock-drift") == 0);
+
+        auto all = sound;
+        for (auto& channel : all.channels)
+            channel.samples = synthetic::delayed(channel.samples, 0.0, ppm * 1e-6);
+        const auto reportOfAll = check(all);
+        INFO(fatalSentences(reportOfAll));
+        problem = find(reportOfAll, "clock-drift", std::nullopt);
+        REQUIRE(problem);
+        CHECK(problem->value == Approx(ppm).epsilon(0.05));
+        CHECK(othersThan(reportOfAll, "clock-drift") == 0);
+    }
+}
+
+TEST_CASE("lost samples are a dropout")
+{
+    const auto sound = soundTake();
+    const auto& e = *sound.excitation;
+    const auto inside = static_cast<std::ptrdiff_t>(e.samplesPerRealization() * 4 + e.period * 2 + e.period / 2);
+
+    auto lost = sound;  // 64 samples never arrive, on all channels; the record is padded at its end
+    for (auto& channel : lost.channels) {
+        channel.samples.erase(channel.samples.begin() + inside, channel.samples.begin() + inside + 64);
+        channel.samples.resize(sound.length(), 0.0);
+    }
+    CHECK(find(check(lost), "dropout", std::nullopt));
+
+    auto filled = sound;  // one channel holds its last value for 200 samples
+    auto& samples = samplesOf(filled, Quantity::current);
+    std::fill(samples.begin() + inside, samples.begin() + inside + 200, samples[static_cast<std::size_t>(inside)]);
+    CHECK(find(check(filled), "dropout", Quantity::current));
+
+    auto cut = sound;
+    for (auto& channel : cut.channels)
+        channel.samples.resize(static_cast<std::size_t>(e.totalSamples() - 1000));
+    const auto report = check(cut);
+    REQUIRE(find(report, "dropout", std::nullopt));
+    CHECK(find(report, "dropout", std::nullopt)->value == 1000.0);
+}
+
+TEST_CASE("a gain that jumps is told from samples that are lost and from a loudspeaker that changes")
+{
+    const auto sound = soundTake();
+    const auto& e = *sound.excitation;
+    const auto from = static_cast<std::size_t>(e.samplesPerRealization() * 4 + (e.settlePeriods + 1) * e.period);
+    const auto until = static_cast<std::size_t>(e.samplesPerRealization() * 5);
+    const auto jump = [&](Measurement& take, Quantity quantity, double factor) {
+        auto& samples = samplesOf(take, quantity);
+        for (auto n = from; n < until; ++n)
+            samples[n] *= factor;
+    };
+
+    auto one = sound;
+    jump(one, Quantity::current, 0.9);
+    const auto report = check(one);
+    const auto* problem = find(report, "gain-jump", Quantity::current);
+    REQUIRE(problem);
+    CHECK(problem->value == Approx(20.0 * std::log10(0.9)).epsilon(0.02));
+    CHECK(problem->fatal);
+    INFO(fatalSentences(report));
+    CHECK(othersThan(report, "gain-jump") == 0);
+
+    auto all = sound;  // what a coil does that has grown warm
+    for (const auto quantity : {Quantity::current, Quantity::displacement, Quantity::pressure})
+        jump(all, quantity, 0.9);
+    const auto changed = check(all);
+    INFO(fatalSentences(changed));
+    CHECK(changed.fitForUse());
+}
+
+TEST_CASE("a transient in the first used period is not settled")
+{
+    auto take = soundTake();
+    const auto& e = *take.excitation;
+    auto& samples = samplesOf(take, Quantity::displacement);
+    const double rms = synthetic::rms(samples);
+    for (long r = 0; r < e.realizations * 2; ++r)
+        for (long n = 0; n < e.period; ++n)
+            samples[static_cast<std::size_t>(r * e.samplesPerRealization() + e.settlePeriods * e.period + n)] +=
+                rms * std::exp(-static_cast<double>(n) / 2000.0);
+    const auto report = check(take);
+    const auto* problem = find(report, "not-settled", Quantity::displacement);
+    REQUIRE(problem);
+    CHECK(problem->fatal);
+    CHECK_FALSE(find(report, "not-settled", Quantity::current));
+}

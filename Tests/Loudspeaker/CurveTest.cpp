@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Curve.h"
+#include "Engine/Loudspeaker/Model.h"
+#include "Loudspeaker/EffectBench.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+using namespace excursion;
+
+namespace {
+
+/// Coefficients with a one at degree k of n.
+std::vector<double> unit(int n, int k)
+{
+    std::vector<double> c(static_cast<std::size_t>(n), 0.0);
+    c[static_cast<std::size_t>(k) - 1] = 1.0;
+    return c;
+}
+
+curve::ValueAndSlope<double> evaluate(int n, const std::vector<double>& c, double q, double range)
+{
+    std::vector<double> b(static_cast<std::size_t>(n) + 1);
+    curve::prepare(n, c.data(), b.data());
+    return curve::at(n, b.data(), q, range);
+}
+
+constexpr double range = 3.7e-3;
+
+}  // namespace
+
+TEST_CASE("A law's basis is zero at rest", "[curve]")
+{
+    for (int n = 1; n <= curve::maximumDegree; ++n)
+        for (int k = 1; k <= n; ++k)
+            CHECK(curve::valueAt(n, unit(n, k).data(), 0.0, range) == 0.0);
+}
+
+TEST_CASE("A law's basis is the cosine form of the Chebyshev polynomials, less their value at rest", "[curve]")
+{
+    for (int k = 1; k <= curve::maximumDegree; ++k) {
+        double worst = 0.0;
+        for (double s = -1.0; s <= 1.0; s += 1.0 / 64.0) {
+            const double truth = std::cos(k * std::acos(s)) - std::cos(0.5 * k * std::numbers::pi);
+            worst = std::max(worst, std::abs(curve::valueAt(k, unit(k, k).data(), s * range, range) - truth));
+        }
+        CHECK(worst < 1e-9);  // the monomials of degree 18 cancel to about seven digits fewer than a double has
+    }
+}
+
+TEST_CASE("A law's slope is the derivative of the Chebyshev polynomials", "[curve]")
+{
+    for (int k = 1; k <= curve::maximumDegree; ++k) {
+        double worst = 0.0;
+        for (double angle = 0.05; angle < 3.1; angle += 0.05) {
+            const double truth = k * std::sin(k * angle) / std::sin(angle) / range;
+            const double slope = evaluate(k, unit(k, k), std::cos(angle) * range, range).slope;
+            worst = std::max(worst, std::abs(slope - truth) * range / (k * k));
+        }
+        CHECK(worst < 1e-9);
+    }
+}
+
+TEST_CASE("A law stays at its end value beyond the range that was visited", "[curve]")
+{
+    const std::vector<double> c {0.3, -0.7, 0.2, 0.05};
+    for (const double side : {-1.0, 1.0}) {
+        const auto end = evaluate(4, c, side * range, range);
+        for (const double factor : {1.0001, 1.5, 1e3}) {
+            const auto beyond = evaluate(4, c, side * factor * range, range);
+            CHECK(beyond.value == Approx(end.value).epsilon(1e-14));
+            CHECK(beyond.slope == 0.0);
+        }
+    }
+}
+
+TEST_CASE("The band of a law is that of all its coefficients, also where it is not linear in them", "[curve]")
+{
+    for (const auto* effect : catalogue()) {
+        if (!effect->law())
+            continue;
+        auto model = withEffect(makeModel("electrodynamic"), *effect, someExtent(1.0));
+        auto& component = model.components.back();
+        double share = 0.1;
+        for (auto& p : component.parameters)
+            p.value = (share *= -0.9) * (p.strength ? component.extent.scale : 1.0);
+        const auto first = static_cast<Eigen::Index>(model.base().parameters.size());
+        const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
+        const auto at = [&](std::size_t moved, double by, double q) {
+            std::vector<double> values;
+            for (const auto& p : component.parameters)
+                values.push_back(p.value);
+            values[moved] += by;
+            return effect->lawAt(component.extent, values.data(), q);
+        };
+        for (std::size_t k = 0; k < component.parameters.size(); ++k) {
+            INFO(effect->id() << ", " << component.parameters[k].name);
+            const double deviation = 1e-3
+                                     * std::max(std::abs(component.parameters[k].value), 1e-2 * component.extent.scale);
+            model.covariance = Eigen::MatrixXd::Zero(count, count);
+            model.covariance(first + static_cast<Eigen::Index>(k), first + static_cast<Eigen::Index>(k)) = deviation
+                                                                                                           * deviation;
+            for (const auto& curve : laws(model, 11)) {
+                const double largest = *std::max_element(curve.halfWidth.begin(), curve.halfWidth.end());
+                for (std::size_t n = 0; n < curve.argument.size(); ++n) {
+                    const double step = 1e-3 * deviation, q = curve.argument[n];
+                    const double slope = (at(k, step, q) - at(k, -step, q)) / (2.0 * step);
+                    CHECK(std::abs(curve.halfWidth[n] - 1.96 * std::abs(slope) * deviation) <= 1e-4 * largest);
+                }
+            }
+        }
+    }
+}

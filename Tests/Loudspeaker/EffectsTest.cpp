@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Laws that every effect must obey, whatever it is: the catalogue is the list of what is tested.
+#include "Loudspeaker/EffectBench.h"
+
+#include "Engine/Error.h"
+
+#include <catch2/catch.hpp>
+
+#include <set>
+
+using namespace excursion;
+
+TEST_CASE("Every effect has words, a name of its own and starts of zero strength", "[effects]")
+{
+    std::set<std::string> ids;
+    for (const auto* effect : catalogue()) {
+        INFO(effect->id());
+        CHECK(ids.insert(effect->id()).second);
+        CHECK(&effectNamed(effect->id()) == effect);
+        for (const auto& words : {effect->title(), effect->physics(), effect->symptoms(), effect->remedy()})
+            CHECK(!words.empty());
+        const Extent extent;
+        const auto parameters = effect->parameters(extent);
+        CHECK(std::any_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength; }));
+        for (const auto& start : effect->starts(extent)) {
+            REQUIRE(start.size() == parameters.size());
+            for (std::size_t k = 0; k < start.size(); ++k) {
+                CHECK(start[k] >= parameters[k].lower);
+                CHECK(start[k] <= parameters[k].upper);
+                CHECK((!parameters[k].strength || start[k] == 0.0));
+            }
+        }
+    }
+    CHECK_THROWS_AS(effectNamed("gravity"), Error);
+}
+
+TEST_CASE("Parts of an effect share no parameter and start at zero strength", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        INFO(effect->id());
+        const Extent extent;
+        const auto parameters = effect->parameters(extent);
+        std::size_t next = 0;
+        for (const auto& part : effect->parts(extent)) {
+            CHECK(effect->linear());
+            CHECK(part.first >= next);
+            next = part.first + part.count;
+            REQUIRE(next <= parameters.size());
+            CHECK_FALSE(part.starts.empty());
+            for (const auto& start : part.starts) {
+                REQUIRE(start.size() == part.count);
+                for (std::size_t k = 0; k < part.count; ++k)
+                    CHECK((!parameters[part.first + k].strength || start[k] == 0.0));
+            }
+        }
+    }
+}
+
+TEST_CASE("An effect of zero strength adds nothing", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        INFO(effect->id());
+        Alone alone(*effect);
+        std::vector<double> memory(alone.rest().size(), 0.37);
+        for (const auto& start : effect->starts(alone.extent)) {
+            alone.parameters = start;
+            alone.prepare();
+            for (const auto& [i, x, v] : somePoints(alone.extent)) {
+                const auto sum = alone.at(i, x, v, memory);
+                for (const double part : {sum.inductance, sum.fluxSlope, sum.drop, sum.force, sum.mass})
+                    CHECK(part == 0.0);
+            }
+        }
+    }
+}
+
+TEST_CASE("The coil's flux is a potential: d(inductance)/dx is d(fluxSlope)/di", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        INFO(effect->id());
+        const Alone alone(*effect);
+        const double dx = 1e-4 * alone.extent.displacement, di = 1e-4 * alone.extent.current;
+        for (const auto& [i, x, v] : somePoints(alone.extent)) {
+            const double byPosition = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance)
+                                      / (2.0 * dx);
+            const double byCurrent = (alone.at(i + di, x, v).fluxSlope - alone.at(i - di, x, v).fluxSlope) / (2.0 * di);
+            CHECK(byPosition == Approx(byCurrent).epsilon(1e-5).margin(1e-9));
+        }
+    }
+}
+
+TEST_CASE("The force of the current is the motion voltage's twin plus the slope of the magnetic coenergy", "[effects]")
+{
+    // Power that leaves the circuit through the motion arrives at the cone:
+    //     F(i) - F(0) = i d(drop)/dv + d/dx int_0^i phi di',   phi the flux, d(phi)/dx = fluxSlope.
+    for (const auto* effect : catalogue()) {
+        INFO(effect->id());
+        const Alone alone(*effect);
+        for (const auto& [i, x, v] : somePoints(alone.extent)) {
+            const double dv = 1e-3 * alone.extent.velocity;
+            const double motionVoltage = (alone.at(i, x, v + dv).drop - alone.at(i, x, v - dv).drop) / (2.0 * dv);
+            double coenergySlope = 0.0;  // Simpson's rule, exact for a flux up to third order in i
+            constexpr int steps = 40;
+            for (int n = 0; n <= steps; ++n) {
+                const double weight = n == 0 || n == steps ? 1.0 : n % 2 ? 4.0 : 2.0;
+                coenergySlope += weight * alone.at(i * n / steps, x, v).fluxSlope * i / steps / 3.0;
+            }
+            const double force = alone.at(i, x, v).force - alone.at(0.0, x, v).force;
+            CHECK(force == Approx(i * motionVoltage + coenergySlope).epsilon(1e-8).margin(1e-12));
+        }
+    }
+}
+
+TEST_CASE("The reluctance force is the slope of the coenergy 1/2 i^2 L(x)", "[effects]")
+{
+    const Alone alone(effectNamed("inductance-position"));
+    const double dx = 1e-4 * alone.extent.displacement;
+    for (const auto& [i, x, v] : somePoints(alone.extent)) {
+        const double slope = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance) / (2.0 * dx);
+        CHECK(alone.at(i, x, v).force == Approx(0.5 * i * i * slope).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("Loops that the coil moves against take from terminals and cone what they store and lose", "[effects]")
+{
+    // u i - F v = d/dt (c i^2/2 + sum L_n (h_n^2 - j_n^2)/2) + sum L_n ((dh_n/dt)^2 - (dj_n/dt)^2)/p_n, where the
+    // current stands still; L_n and p_n are asked of the effect: a loop alone is heard as L_n dh_n/dt at rest.
+    Alone alone(effectNamed("inductance-position"));
+    const auto names = alone.effect.parameters(alone.extent);
+    std::vector<std::size_t> loops;
+    for (std::size_t p = 0; p < names.size(); ++p)
+        if (names[p].name.front() == 'g')
+            loops.push_back(p);
+    REQUIRE(loops.size() * 2 == alone.rest().size());
+    std::vector<double> L, rate;
+    for (std::size_t n = 0; n < loops.size(); ++n) {
+        alone.parameters[loops[n]] = 0.2 + 0.3 * static_cast<double>(n);
+        L.push_back(alone.parameters[loops[n]] * alone.extent.scale);
+        auto memory = alone.rest(), moved = alone.rest();
+        memory[2 * n] = 1.0;
+        alone.at(0.0, 0.0, 0.0, memory, &moved);
+        rate.push_back(-moved[2 * n]);
+    }
+    alone.prepare();
+    std::vector<double> memory(alone.rest().size()), moved(memory.size());
+    for (std::size_t k = 0; k < memory.size(); ++k)
+        memory[k] = std::sin(1.0 + 3.0 * static_cast<double>(k));
+    for (const auto& [i, x, v] : somePoints(alone.extent)) {
+        const auto sum = alone.at(i, x, v, memory, &moved);
+        const double dx = 1e-4 * alone.extent.displacement;
+        const double cSlope = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance) / (2.0 * dx);
+        double balance = 0.5 * cSlope * v * i * i;
+        for (std::size_t n = 0; n < loops.size(); ++n) {
+            const double h = memory[2 * n], j = memory[2 * n + 1], hRate = moved[2 * n], jRate = moved[2 * n + 1];
+            balance += L[n] * (h * hRate - j * jRate + (hRate * hRate - jRate * jRate) / rate[n]);
+        }
+        const double given = i * (sum.drop + sum.fluxSlope * v) - sum.force * v;
+        CHECK(given == Approx(balance).epsilon(1e-5).margin(1e-9));
+    }
+}
+
+TEST_CASE("The force factor converts without loss: force times velocity is voltage times current", "[effects]")
+{
+    const Alone alone(effectNamed("force-factor"));
+    for (const auto& [i, x, v] : somePoints(alone.extent)) {
+        const auto sum = alone.at(i, x, v);
+        CHECK(sum.force * v == Approx(sum.drop * i).epsilon(1e-13));
+        CHECK(sum.force != 0.0);
+    }
+}
+
+namespace {
+
+/// (1/i) int_0^i d(phi)/di di', by Gauss's rule of five points in each of eight parts.
+double fluxPerCurrent(const Alone& alone, double i, double x)
+{
+    constexpr double node[] {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
+    constexpr double weight[] {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                               0.2369268850561891};
+    double sum = 0.0;
+    for (int part = 0; part < 8; ++part)
+        for (int n = 0; n < 5; ++n)
+            sum += weight[n] / 16.0 * alone.at(i * (part + 0.5 + 0.5 * node[n]) / 8.0, x, 0.0).inductance;
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("A law is what the effect adds to the base parameter of that name", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        const auto law = effect->law();
+        if (!law)
+            continue;
+        INFO(effect->id());
+        const Alone alone(*effect);
+        CHECK(std::abs(effect->lawAt(alone.extent, alone.parameters.data(), 0.0)) < 1e-14 * alone.extent.scale);
+        for (const auto& [i, x, v] : somePoints(alone.extent)) {
+            const double difference = effect->lawAt(alone.extent, alone.parameters.data(),
+                                                    law->argument == "v"   ? v
+                                                    : law->argument == "i" ? i
+                                                                           : x);
+            const auto sum = alone.at(i, x, v);
+            const double added = law->base == "Bl"   ? sum.drop / v
+                                 : law->base == "Le" ? fluxPerCurrent(alone, i, x)
+                                 : law->base == "K"  ? -sum.force / x
+                                                     : -sum.force / v;
+            CHECK(added == Approx(difference).epsilon(1e-12));
+        }
+    }
+}
+
+TEST_CASE("Jets carry the derivatives that finite differences show, by every parameter and state", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        Alone alone(*effect);
+        const auto P = alone.parameters.size(), M = alone.rest().size();
+        std::vector<double> memory(M);
+        for (std::size_t k = 0; k < M; ++k)
+            memory[k] = 1e-3 * (0.4 + 0.1 * static_cast<double>(k));
+        // Unknowns: the parameters, then i, x, v, then the memory.
+        for (const auto& [i, x, v] : somePoints(alone.extent))
+            for (std::size_t which = 0; which < P + 3 + M; ++which) {
+                INFO(effect->id() << ", unknown " << which);
+                const auto evaluate = [&](double by) {
+                    Alone moved = alone;
+                    std::array<double, 3> motion {i, x, v};
+                    auto state = memory;
+                    (which < P       ? moved.parameters[which]
+                     : which < P + 3 ? motion[which - P]
+                                     : state[which - P - 3]) += by;
+                    moved.prepare();
+                    std::vector<double> result(M);
+                    const auto sum = moved.at(motion[0], motion[1], motion[2], state, &result);
+                    result.insert(result.end(), {sum.inductance, sum.fluxSlope, sum.drop, sum.force, sum.mass});
+                    return result;
+                };
+                const double size = which < P    ? (alone.parameters[which] != 0.0 ? std::abs(alone.parameters[which])
+                                                                                   : 1e-3 * alone.extent.scale)
+                                    : which == P ? alone.extent.current
+                                    : which == P + 1 ? alone.extent.displacement
+                                    : which == P + 2 ? alone.extent.velocity
+                                                     : 1e-3;
+                const double step = 1e-5 * size;
+                const auto above = evaluate(step), below = evaluate(-step), here = evaluate(0.0);
+
+                std::vector<Jet> parameters(alone.parameters.begin(), alone.parameters.end()),
+                    state(memory.begin(), memory.end()), rate(M);
+                Motion<Jet> motion {Jet(i), Jet(x), Jet(v)};
+                Jet& moved = which < P        ? parameters[which]
+                             : which == P     ? motion.i
+                             : which == P + 1 ? motion.x
+                             : which == P + 2 ? motion.v
+                                              : state[which - P - 3];
+                moved.v[5] = 1.0;
+                std::vector<Jet> coefficients(alone.coefficients.size());
+                effect->prepare(alone.extent, parameters.data(), coefficients.data());
+                Balance<Jet> sum;
+                effect->contribute(alone.extent, coefficients.data(), motion, state.data(), rate.data(), sum);
+                rate.insert(rate.end(), {sum.inductance, sum.fluxSlope, sum.drop, sum.force, sum.mass});
+                for (std::size_t k = 0; k < rate.size(); ++k) {
+                    CHECK(rate[k].a == Approx(here[k]).epsilon(1e-12).margin(1e-300));
+                    const double slope = (above[k] - below[k]) / (2.0 * step);
+                    CHECK(rate[k].v[5] == Approx(slope).epsilon(2e-5).margin(1e-7 * std::abs(here[k]) / size + 1e-13));
+                }
+            }
+    }
+}
+
+namespace {
+
+struct Cycle {
+    double absorbed = 0.0;   ///< J that the effect takes in over one cycle of a prescribed motion and current
+    double exchanged = 0.0;  ///< J that go back and forth
+};
+
+/// i = I cos wt, x = X cos(wt + shift), many cycles for the memory, then one that counts. Power taken from the circuit
+/// is i (drop + d(phi)/dt), from the cone -F v.
+Cycle cycle(const Alone& alone, double frequency, double shift)
+{
+    constexpr int steps = 200;
+    // s: the slowest cells of the memory, and a step that the quickest take
+    constexpr double settling = 1.0, fastest = 6e-6;
+    auto memory = alone.rest();
+    const int cycles = memory.empty() ? 1 : 1 + static_cast<int>(std::ceil(settling * frequency));
+    const double w = 2.0 * std::numbers::pi * frequency, h = 1.0 / (frequency * steps);
+    const int inner = static_cast<int>(std::ceil(h / fastest));
+    const double I = 0.8 * alone.extent.current,
+                 X = std::min(0.9 * alone.extent.displacement, 0.9 * alone.extent.velocity / w);
+    std::vector<double> k1(memory.size()), k2 = k1, k3 = k1, k4 = k1, stage = k1;
+    const auto rates = [&](double t, const std::vector<double>& state, std::vector<double>& rate) {
+        return alone.at(I * std::cos(w * t), X * std::cos(w * t + shift), -w * X * std::sin(w * t + shift), state,
+                        &rate);
+    };
+    const auto moved = [&](const std::vector<double>& rate, double by) -> const std::vector<double>& {
+        for (std::size_t k = 0; k < memory.size(); ++k)
+            stage[k] = memory[k] + by * rate[k];
+        return stage;
+    };
+    Cycle result;
+    for (int n = 0; n < cycles * steps; ++n) {
+        const double t = n * h;
+        if (n >= (cycles - 1) * steps) {
+            const auto sum = rates(t, memory, k1);
+            const double i = I * std::cos(w * t), v = -w * X * std::sin(w * t + shift), di = -w * I * std::sin(w * t);
+            const double electrical = i * (sum.drop + sum.inductance * di + sum.fluxSlope * v),
+                         mechanical = -sum.force * v;
+            result.absorbed += h * (electrical + mechanical);
+            result.exchanged += h * (std::abs(electrical) + std::abs(mechanical));
+        }
+        if (memory.empty())
+            continue;
+        for (int s = 0; s < inner; ++s) {
+            const double g = h / inner, u = t + s * g;
+            rates(u, memory, k1);
+            rates(u + 0.5 * g, moved(k1, 0.5 * g), k2);
+            rates(u + 0.5 * g, moved(k2, 0.5 * g), k3);
+            rates(u + g, moved(k3, g), k4);
+            for (std::size_t k = 0; k < memory.size(); ++k)
+                memory[k] += g / 6.0 * (k1[k] + 2.0 * (k2[k] + k3[k]) + k4[k]);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("Laws of position and current store energy and give all of it back over a cycle", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        const auto law = effect->law();
+        if (!law || law->argument == "v")
+            continue;
+        for (const double shift : {0.0, 0.9, -1.6}) {
+            const auto energy = cycle(Alone(*effect), 40.0, shift);
+            INFO(effect->id() << ", shift " << shift);
+            CHECK(energy.exchanged > 0.0);
+            CHECK(std::abs(energy.absorbed) < 1e-10 * energy.exchanged);
+        }
+    }
+}
+
+TEST_CASE("Whatever is no law of position or current takes energy in over a cycle and never gives any", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        const auto law = effect->law();
+        if (law && law->argument != "v")
+            continue;
+        Alone alone(*effect);
+        if (law) {  // a resistance that grows
+            std::fill(alone.parameters.begin(), alone.parameters.end(), 0.0);
+            alone.parameters.front() = 0.3 * alone.extent.scale;
+            alone.prepare();
+        }
+        for (const double frequency : {15.0, 200.0})
+            for (const double shift : {0.0, -1.6}) {
+                INFO(effect->id() << ", " << frequency << " Hz, shift " << shift);
+                const auto energy = cycle(alone, frequency, shift);
+                // resonators take in next to nothing away from where they ring
+                const double least = effect->parts(alone.extent).empty() ? 1e-3 : 0.0;
+                if (effect->felt())
+                    CHECK(energy.absorbed > least * energy.exchanged);
+                else
+                    CHECK(energy.exchanged == 0.0);
+            }
+    }
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Error.h"
+#include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Signal/Fft.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+using namespace excursion;
+
+namespace {
+
+constexpr int N = 1024, settle = 1, periods = 4, realizations = 3;
+constexpr double sampleRate = 8000.0;
+
+/// Odd lines 3 .. last at random phases; the current is the voltage over 4 ohm, two samples later.
+/// @param faint   the realization that is only 0.7 times as loud
+/// @param noise   rms of white noise on the current, in A, and of a tenth of it on the voltage, in V
+Measurement take(int faint, double noise, int last = 401)
+{
+    Measurement result;
+    result.sampleRate = sampleRate;
+    Excitation e;
+    e.period = N;
+    e.settlePeriods = settle;
+    e.periods = periods;
+    e.realizations = realizations;
+    e.levels = {1.0, 3.0};
+    e.grid = "odd";
+    for (int k = 3; k <= last; k += 2)
+        e.lines.push_back(k);
+    e.bandLow = 3 * sampleRate / N;
+    e.bandHigh = last * sampleRate / N;
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> normal;
+    std::vector<std::vector<double>> multisines;
+    for (int r = 0; r < realizations; ++r) {
+        std::vector<std::complex<double>> spectrum(N / 2 + 1, 0.0);
+        for (const int k : e.lines)
+            spectrum[static_cast<std::size_t>(k)] = std::polar((r == faint ? 0.7 : 1.0) * N / 20.0,
+                                                               std::uniform_real_distribution<>(0.0, 6.28)(random));
+        multisines.push_back(inverseFft(spectrum, N));
+    }
+    Channel voltage {Quantity::voltage, "V", 100.0, {}}, current {Quantity::current, "A", 100.0, {}};
+    for (const double level : e.levels)
+        for (const auto& period : multisines)
+            for (int n = 0; n < e.samplesPerRealization(); ++n) {
+                voltage.samples.push_back(level * period[static_cast<std::size_t>(n % N)]
+                                          + 0.1 * noise * normal(random));
+                current.samples.push_back(0.25 * level * period[static_cast<std::size_t>((n + N - 2) % N)]
+                                          + noise * normal(random));
+            }
+    result.channels = {voltage, current};
+    result.excitation = e;
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("A periodic take becomes one averaged period a level and realization", "[record]")
+{
+    const auto measured = take(1, 0.0);
+    const auto record = makeRecord(measured);
+    REQUIRE(record.sections.size() == 2 * realizations);
+    CHECK(record.electrical);
+    CHECK(record.channels == std::vector {Quantity::current});
+    CHECK(record.units == std::vector<std::string> {"A"});
+    CHECK(record.levels == std::vector {1.0, 3.0});
+    CHECK(record.noiseKnown);
+    CHECK(record.bandLow == Approx(3 * sampleRate / N));
+    CHECK(record.bandHigh == Approx(401 * sampleRate / N));
+    for (std::size_t s = 0; s < record.sections.size(); ++s) {
+        const auto& section = record.sections[s];
+        CHECK(section.periodic);
+        CHECK(section.level == static_cast<int>(s) / realizations);
+        CHECK(section.realization == static_cast<int>(s) % realizations);
+        REQUIRE(section.window == N);
+        const auto first = s * (settle + periods) * N + settle * N;
+        double worst = 0.0;
+        for (std::size_t n = 0; n < N; ++n)
+            worst = std::max(worst, std::abs(section.input[n] - measured.channels[0].samples[first + n]));
+        CHECK(worst < 1e-12);
+        const auto truth = fft(std::span(measured.channels[1].samples).subspan(first, N));
+        double difference = 0.0;
+        for (std::size_t k = 0; k < truth.size(); ++k)
+            difference = std::max(difference, std::abs(section.measured[0][k] - truth[k]));
+        CHECK(difference < 1e-10);
+    }
+}
+
+TEST_CASE("Samples that no compared line needs are left out", "[record]")
+{
+    const auto measured = take(1, 1e-4, 61);
+    const auto record = makeRecord(measured);
+    CHECK(record.sampleRate == sampleRate / 2.0);
+    CHECK(record.leadIn == N / 2);
+    CHECK(record.highFrequency == Approx(2.0 * record.bandHigh));
+    // The whole record is what a distortion product at half the sample rate would have asked for.
+    const auto whole = [&] {
+        auto loud = measured;
+        loud.excitation->lines.push_back(401);
+        return makeRecord(loud);
+    }();
+    REQUIRE(whole.sampleRate == sampleRate);
+    const auto &section = record.sections[4], &full = whole.sections[4];
+    REQUIRE(section.window == N / 2);
+    CHECK(record.frequency(section, 61) == Approx(whole.frequency(full, 61)));
+    for (std::size_t n = 0; n < section.window; ++n)
+        // but for the noise that was played above the band
+        CHECK(section.input[n] == Approx(full.input[2 * n]).margin(1e-4));
+    for (std::size_t k = 1; k < 120; ++k) {
+        CHECK(std::abs(2.0 * section.measured[0][k] - full.measured[0][k]) < 1e-10);
+        CHECK(2.0 * section.deviation[0][k] == Approx(full.deviation[0][k]));
+        CHECK(4.0 * section.inputVariance[k] == Approx(full.inputVariance[k]));
+    }
+}
+
+TEST_CASE("A periodic section is driven by its periodic past", "[record]")
+{
+    const auto record = makeRecord(take(1, 0.0));
+    const auto& section = record.sections[4];
+    const auto drive = record.drive(section);
+    REQUIRE(drive.size() == record.leadIn + N);
+    for (std::size_t n = 0; n < N; ++n)
+        REQUIRE(drive[record.leadIn + n] == section.input[n]);
+    for (std::size_t n = 0; n + N < drive.size(); ++n)
+        REQUIRE(drive[n] == drive[n + N]);
+}
+
+TEST_CASE("The noise of a record is the noise that was added", "[record]")
+{
+    constexpr double noise = 0.02;
+    const auto record = makeRecord(take(1, noise));
+    for (const auto& section : record.sections) {
+        // E|DFT of white noise|^2 = N sigma^2, less by the number of periods that are averaged.
+        const double truth = N * noise * noise / periods;
+        double mean = 0.0, meanInput = 0.0;
+        const auto [first, last] = record.lineRange(section);
+        for (auto k = first; k <= last; ++k) {
+            mean += section.deviation[0][k] * section.deviation[0][k] / static_cast<double>(last - first + 1);
+            meanInput += section.inputVariance[k] / static_cast<double>(last - first + 1);
+        }
+        CHECK(mean == Approx(truth).epsilon(0.08));
+        CHECK(meanInput == Approx(0.01 * truth).epsilon(0.08));
+        // Smoothing leaves no line that is believed to be far better than it is.
+        CHECK(*std::min_element(section.deviation[0].begin() + 5, section.deviation[0].end() - 5)
+              > 0.6 * std::sqrt(truth));
+        // Where nothing was played the input is silent, not noisy.
+        const auto U = fft(section.input);
+        double even = 0.0, odd = 0.0;
+        for (std::size_t k = 4; k <= 400; k += 2) {
+            even += std::norm(U[k]);
+            odd += std::norm(U[k + 1]);
+        }
+        CHECK(even < 1e-8 * odd);
+    }
+}
+
+TEST_CASE("The realization that goes least far is held out, at all levels", "[record]")
+{
+    for (const int faint : {0, 1, 2}) {
+        const auto record = makeRecord(take(faint, 0.0));
+        for (const auto& section : record.sections)
+            CHECK(section.validation == (section.realization == faint));
+        CHECK(estimationSections(record).size() == 4);
+        const auto held = validationSections(record);
+        CHECK(held
+              == std::vector<std::size_t> {static_cast<std::size_t>(faint),
+                                           static_cast<std::size_t>(faint + realizations)});
+    }
+    RecordOptions options;
+    options.holdOut = false;
+    const auto record = makeRecord(take(1, 0.0), options);
+    CHECK(std::none_of(record.sections.begin(), record.sections.end(), [](const Section& s) { return s.validation; }));
+    CHECK(estimationSections(record).size() == record.sections.size());
+    CHECK(validationSections(record).size() == record.sections.size());
+}
+
+TEST_CASE("Lines that are not known are found", "[record]")
+{
+    auto measured = take(1, 1e-4);
+    const auto known = makeRecord(measured);
+    measured.excitation->lines.clear();
+    const auto found = makeRecord(measured);
+    CHECK(found.bandLow == known.bandLow);
+    CHECK(found.bandHigh == known.bandHigh);
+    CHECK(found.sections.front().excited == known.sections.front().excited);
+}
+
+TEST_CASE("A record without periods is cut into windows whose last third is held out", "[record]")
+{
+    auto measured = take(1, 0.0);
+    measured.excitation.reset();
+    RecordOptions options;
+    options.windowSeconds = 0.3;
+    options.leadInSeconds = 0.2;
+    const auto record = makeRecord(measured, options);
+    const auto lead = record.leadIn, window = record.sections.front().window;
+    CHECK(lead == 1600);
+    CHECK(window == 2400);
+    CHECK(record.sections.size() == (measured.length() - lead) / window);
+    CHECK(!record.noiseKnown);
+    CHECK(validationSections(record).size() == record.sections.size() - record.sections.size() * 2 / 3);
+    for (std::size_t s = 0; s < record.sections.size(); ++s) {
+        const auto& section = record.sections[s];
+        CHECK(section.validation == (s >= record.sections.size() * 2 / 3));
+        CHECK(record.drive(section) == section.input);
+        REQUIRE(section.input.size() == lead + window);
+        for (std::size_t n = 0; n < section.input.size(); ++n)
+            REQUIRE(section.input[n] == measured.channels[0].samples[s * window + n]);
+        CHECK(section.measured[0] == fft(std::span(measured.channels[1].samples).subspan(lead + s * window, window)));
+        CHECK(std::adjacent_find(section.deviation[0].begin(), section.deviation[0].end(), std::not_equal_to<>())
+              == section.deviation[0].end());
+    }
+}
+
+TEST_CASE("A take that cannot be fitted is refused", "[record]")
+{
+    auto deaf = take(1, 0.0);
+    deaf.channels.resize(1);
+    CHECK_THROWS_AS(makeRecord(deaf), Error);
+    auto brief = take(1, 0.0);
+    brief.excitation.reset();
+    for (auto& channel : brief.channels)
+        channel.samples.resize(300);
+    CHECK_THROWS_AS(makeRecord(brief), Error);
+    RecordOptions options;
+    std::string reason;
+    CHECK(options.isValid(&reason));
+    options.windowSeconds = 0.0;
+    CHECK(!options.isValid(&reason));
+    CHECK(!reason.empty());
+    CHECK_THROWS_AS(makeRecord(take(1, 0.0), options), Error);
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts that swing on the cone, against the independent bench, and found in an impedance.
+#include "Bench/Loudspeaker.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace excursion;
+
+namespace {
+
+bench::Loudspeaker with(std::vector<bench::HungPart> parts)
+{
+    bench::Loudspeaker speaker;
+    speaker.sideResonance = std::move(parts);
+    return speaker;
+}
+
+ResponseTarget impedanceOf(const bench::Loudspeaker& speaker)
+{
+    ResponseTarget target;
+    target.impedance = true;
+    for (double f = 10.0; f < 20000.0; f *= 1.02) {
+        target.frequency.push_back(f);
+        target.value.push_back(1.0 / speaker.small(f).current);
+        target.deviation.push_back(std::abs(target.value.back()));
+    }
+    return target;
+}
+
+}  // namespace
+
+TEST_CASE("Parts on the cone are those of the independent bench", "[effects]")
+{
+    const auto speaker = with({{0.002, 300.0, 8.0}, {0.0005, 900.0, 4.0}});
+    auto model = makeModel("electrodynamic");
+    for (const auto& [name, value] : {std::pair {"Re", speaker.Re},
+                                      {"Le", speaker.Le},
+                                      {"Bl", speaker.Bl},
+                                      {"m", speaker.m},
+                                      {"Rms", speaker.Rms},
+                                      {"K", speaker.K}})
+        model.baseParameter(name).value = value;
+    model = withEffect(model, effectNamed("side-resonance"), Extent {});
+    auto& p = model.components.back().parameters;
+    for (std::size_t k = 0; k < 2; ++k) {
+        p[3 * k].value = speaker.sideResonance[k].mass;
+        p[3 * k + 1].value = speaker.sideResonance[k].frequency;
+        p[3 * k + 2].value = 1.0 / speaker.sideResonance[k].quality;
+    }
+    const auto target = impedanceOf(speaker);
+    const auto response = respond(model, {Quantity::current}, target.frequency).front().value;
+    for (std::size_t k = 0; k < target.frequency.size(); ++k)
+        CHECK(std::abs(response[k] * target.value[k] - 1.0) < 1e-9);
+}
+
+TEST_CASE("As many parts are found in an impedance as there are", "[effects]")
+{
+    for (const auto& parts :
+         {std::vector<bench::HungPart> {{0.0015, 420.0, 8.0}}, {{0.0015, 250.0, 6.0}, {0.001, 800.0, 10.0}}}) {
+        INFO(parts.size() << " parts");
+        const std::vector targets {impedanceOf(with(parts))};
+        auto model = startModel(targets, true, {});
+        REQUIRE(addByResponse(model, effectNamed("side-resonance"), targets).usable());
+        CHECK(isSeen(model, 1));
+        CHECK(responseErrorDb(model, targets.front()) < -70.0);
+        const auto& p = model.components.back().parameters;
+        std::vector<double> found;
+        for (std::size_t k = 0; k < p.size(); k += 3)
+            if (p[k].free && p[k].value > 1e-4 * model.baseParameter("m").value)
+                found.push_back(p[k + 1].value);
+        std::sort(found.begin(), found.end());
+        REQUIRE(found.size() == parts.size());
+        for (std::size_t k = 0; k < found.size(); ++k)
+            CHECK(found[k] == Approx(parts[k].frequency).epsilon(0.01));
+    }
+}

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The air spring that cone and port share, against closed forms and the independent bench.
+#include "Bench/Loudspeaker.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace excursion;
+
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+/// The base's midbass in a box of these parameters: Kb, fB, 1/QP, 1/QL, 1/QA, Kp/Ka; the port is heard in full.
+Model boxed(std::vector<double> parameters, const char* base = "electrodynamic")
+{
+    Extent extent;
+    extent.lowFrequency = 5.0;
+    auto model = withEffect(makeModel(base), effectNamed("vented-box"), extent);
+    parameters.push_back(1.0);
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+        model.components.back().parameters[k].value = parameters[k];
+    return model;
+}
+
+std::vector<double> frequencies()
+{
+    std::vector<double> f;
+    for (double at = 8.0; at < 1500.0; at *= 1.05)
+        f.push_back(at);
+    return f;
+}
+
+}  // namespace
+
+TEST_CASE("A lossless vented box splits the resonance as Small says", "[effects]")
+{
+    // f_L^2 + f_H^2 = f_SC^2 + f_B^2 and f_L f_H = f_S f_B, f_S of the cone without, f_SC with the box but without the
+    // port.
+    auto model = boxed({3000.0, 42.0, 0.0, 0.0, 0.0, 0.0}, "mechanical");
+    model.baseParameter("Rms").value = 0.0;
+    std::vector<double> f;
+    for (const auto& pole : poles(smallSignal(model)))
+        if (pole.imag() > 1.0)
+            f.push_back(pole.imag() / turn);
+    REQUIRE(f.size() == 2);
+    const double m = model.baseParameter("m").value, K = model.baseParameter("K").value;
+    const double fS = std::sqrt(K / m) / turn, fSC2 = (K + 3000.0) / m / (turn * turn);
+    CHECK(f[0] * f[0] + f[1] * f[1] == Approx(fSC2 + 42.0 * 42.0).epsilon(1e-9));
+    CHECK(f[0] * f[1] == Approx(fS * 42.0).epsilon(1e-9));
+}
+
+TEST_CASE("At the tuning the cone stands still and the port sounds; below, they cancel to the fourth order",
+          "[effects]")
+{
+    const auto model = boxed({3000.0, 42.0, 0.0, 0.0, 0.0, 0.0});
+    const auto alone = withoutEffect(model, "vented-box");
+    const auto at = [](const Model& m, Quantity quantity, double f) {
+        return std::abs(respond(m, {quantity}, {f}).front().value.front());
+    };
+    CHECK(at(model, Quantity::displacement, 42.0) < 1e-9 * at(alone, Quantity::displacement, 42.0));
+    // The air's force is all that the motor has to give: Kb |y| = Bl |i|.
+    const double port = 3000.0 * at(model, Quantity::pressure, 42.0)
+                        / (radiationPerArea() / model.microphoneDistance * model.path.parameters[0].value
+                           * std::pow(turn * 42.0, 2));
+    CHECK(port == Approx(model.baseParameter("Bl").value * at(model, Quantity::current, 42.0)).epsilon(1e-6));
+    CHECK(at(model, Quantity::pressure, 2.0) / at(model, Quantity::pressure, 1.0) == Approx(16.0).epsilon(0.02));
+    CHECK(at(alone, Quantity::pressure, 2.0) / at(alone, Quantity::pressure, 1.0) == Approx(4.0).epsilon(0.02));
+}
+
+TEST_CASE("A radiator's spring is heard, and the cone does not feel it", "[effects]")
+{
+    const auto port = boxed({3000.0, 42.0, 0.1, 0.0, 0.0, 0.0}), radiator = boxed({3000.0, 42.0, 0.0, 0.0, 0.0, 0.25});
+    auto damped = radiator;
+    damped.components.back().parameters[2].value = 0.1;
+    const auto a = respond(port, {Quantity::current}, frequencies()).front().value;
+    const auto b = respond(damped, {Quantity::current}, frequencies()).front().value;
+    double worst = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        worst = std::max(worst, std::abs(b[k] / a[k] - 1.0));
+    CHECK(worst < 1e-3);  // its spring yields a little at the lowest frequencies
+    const double notch = 42.0 * std::sqrt(0.25 / 1.25);
+    const auto heard = respond(radiator, {Quantity::pressure}, {0.8 * notch, notch, 1.25 * notch}).front().value;
+    CHECK(std::abs(heard[1]) < 0.02 * std::min(std::abs(heard[0]), std::abs(heard[2])));
+}
+
+TEST_CASE("A box with losses and a radiator is that of the independent bench", "[effects]")
+{
+    const double Kb = 2400.0, fB = 38.0, dP = 0.08, dL = 0.12, dA = 0.03, r = 0.3, wB = turn * fB;
+    const auto model = boxed({Kb, fB, dP, dL, dA, r});
+    bench::Loudspeaker speaker;
+    for (auto [to, name] : {std::pair {&speaker.Re, "Re"},
+                            {&speaker.Le, "Le"},
+                            {&speaker.Bl, "Bl"},
+                            {&speaker.m, "m"},
+                            {&speaker.Rms, "Rms"},
+                            {&speaker.K, "K"}})
+        *to = model.baseParameter(name).value;
+    const double Ka = Kb * (1.0 + r), mass = Ka * (1.0 + r) / (wB * wB);
+    speaker.K -= Kb * r;  // the engine's K is the stiffness at rest with the box in it
+    speaker.ventedBox = bench::VentedBox {Ka, mass, mass * wB * dP, Ka / (wB * dL), Ka * dA / wB, Ka * r};
+    const auto f = frequencies();
+    const auto response = respond(model, {Quantity::current, Quantity::displacement, Quantity::pressure}, f);
+    const double pressure = radiationPerArea() / model.microphoneDistance * model.path.parameters[0].value;
+    for (std::size_t k = 0; k < f.size(); ++k) {
+        INFO(f[k] << " Hz");
+        const auto truth = speaker.small(f[k]);
+        const auto arrival = std::exp(std::complex<double>(0.0, -turn * f[k] * model.path.parameters[1].value));
+        CHECK(std::abs(response[0].value[k] / truth.current - 1.0) < 2e-3);
+        CHECK(std::abs(response[1].value[k] / truth.displacement - 1.0) < 3e-3);
+        // Near the notch, where the radiator's spring yields a little, a difference of large numbers is left.
+        CHECK(std::abs(response[2].value[k] / arrival / pressure - truth.radiated)
+              < 5e-3 * std::abs(truth.radiated) + 5e-3 * std::abs(std::pow(turn * f[k], 2) * truth.displacement));
+    }
+}
