@@ -68,27 +68,54 @@ std::vector<Found> oneMore(const std::vector<Found>& models, const std::vector<c
     return results;
 }
 
-/// The model with as many effects as the responses show together, however little the last of them bring.
+/// Whether every effect that the base does not have is itself: none has been bent to stand for something else.
+bool areThemselves(const Model& model, const Model& base)
+{
+    for (std::size_t k = 1; k < model.components.size(); ++k)
+        if (!base.has(model.components[k].effect->id()) && !isItself(model, k))
+            return false;
+    return true;
+}
+
+struct FoundTogether {
+    Found best;            ///< lowest error
+    Found bestThemselves;  ///< lowest error of those whose effects are themselves
+};
+
+/// The model with as many effects as the responses show together, however little the last of them bring. What is bent
+/// to stand for something else may become itself when that is in, or may hide it: of the sets of one size the best goes
+/// on, and the best without such effects.
 /// @param sets  gets all that is found on the way
-Found withAll(const Model& base, const std::vector<const Effect*>& effects, const std::vector<ResponseTarget>& targets,
-              unsigned threads, Sets& sets, const Progress& progress)
+FoundTogether withAll(const Model& base, const std::vector<const Effect*>& effects,
+                      const std::vector<ResponseTarget>& targets, unsigned threads, Sets& sets,
+                      const Progress& progress)
 {
     constexpr std::size_t kept = 2;  // sets of one size
     std::vector<Found> level {{base, responseErrorDb(base, targets)}};
-    Found best = level.front();
+    FoundTogether found {level.front(), level.front()};
+    const auto keepBetter = [](Found& best, const Found& other) {
+        if (other.errorDb < best.errorDb)
+            best = other;
+    };
     for (std::size_t n = 0; n < effects.size(); ++n) {
         const auto count = static_cast<double>(effects.size()), done = static_cast<double>(n);
         progress.at(done / count, "searching for effects together");
         level = oneMore(level, effects, targets, threads, progress.part(done / count, (done + 1.0) / count));
         if (level.empty())
             break;
-        for (const auto& found : level)
-            sets.emplace(setOf(found.model), found);
+        for (const auto& one : level)
+            sets.emplace(setOf(one.model), one);
+        keepBetter(found.best, level.front());
+        const auto themselves = std::find_if(level.begin(), level.end(),
+                                             [&](const Found& one) { return areThemselves(one.model, base); });
+        if (themselves != level.end()) {
+            keepBetter(found.bestThemselves, *themselves);
+            if (themselves != level.begin())
+                std::rotate(level.begin() + 1, themselves, themselves + 1);
+        }
         level.resize(std::min(level.size(), kept));
-        if (level.front().errorDb < best.errorDb)
-            best = level.front();
     }
-    return best;
+    return found;
 }
 
 /// A model without one of its effects, fitted again.
@@ -172,16 +199,23 @@ std::vector<Step> stepsByResponse(const Model& base, const Spectra& spectra, uns
         if (!base.has(effect->id()) && whyUnseen(*effect, seenIn(spectra)).empty())
             effects.push_back(effect);
     ResponseSearch search {base, targets, {}, threads};
-    auto whole = withAll(base, effects, thinned(targets, coarse), threads, search.sets, progress.part(0.0, 0.7));
-    const auto settle = [&] {
-        refineByResponse(whole.model, targets);
-        whole.errorDb = responseErrorDb(whole.model, targets);
+    const auto found = withAll(base, effects, thinned(targets, coarse), threads, search.sets, progress.part(0.0, 0.7));
+    const auto settle = [&](Found& one) {
+        refineByResponse(one.model, targets);
+        one.errorDb = responseErrorDb(one.model, targets);
+    };
+    const auto needed = [&](Found one) {
+        settle(one);
+        takeOut(one, search, progress);
+        return one;
     };
     progress.at(0.7, "taking out what is not needed");
-    settle();
-    takeOut(whole, search, progress);
+    auto whole = needed(found.best);
+    if (found.bestThemselves.errorDb < whole.errorDb)
+        if (auto other = needed(found.bestThemselves); other.errorDb < whole.errorDb)
+            whole = std::move(other);
     progress.at(0.9, "putting the effects in order");
-    settle();
+    settle(whole);
     std::vector<Step> steps;
     for (auto rest = std::move(whole);;) {
         auto each = withoutEach(rest, search, progress);

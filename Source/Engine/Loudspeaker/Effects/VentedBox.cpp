@@ -81,21 +81,22 @@ public:
         return {start[1], 1.5 * start[1]};
     }
     /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air
-    /// or the radiator is not much lighter than the cone, and the air in the box not much softer than the suspension:
-    /// what is found in real boxes lies well inside. Something lighter is a part that swings by itself. A leak does not
-    /// ring, far below the resonance of cone and box, whose air is stiffer than the suspension, but does not leave it
-    /// without a part: a weaker relaxation is rather one of the suspension, a total one of a liquid in the gap.
+    /// or the radiator is not much lighter than the cone, the less so the higher it is tuned, and the air in the box
+    /// not much softer than the suspension: what is found in real boxes lies well inside. Something lighter is a part
+    /// that swings by itself. A leak does not ring, far below the resonance of cone and box, whose air is stiffer than
+    /// the suspension, but does not leave it without a part: a weaker relaxation is rather one of the suspension, a
+    /// total one of a liquid in the gap.
     bool plausible(const Extent& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
-        constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.16, highestTuning = 4.0;
+        constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.08, highestTuning = 4.0;
         constexpr double leastLeakQuality = 0.4, lowestLeak = 0.5, highestLeak = 0.125;
         constexpr double leastLeakStiffness = 2.0, mostLeakStiffness = 20.0;
         const double K = parameterNamed(base, "K").value, m = parameterNamed(base, "m").value, tuning = own[1].value;
         const double turn = 2.0 * std::numbers::pi,
                      mass = own[0].value * std::pow((1.0 + own[5].value) / (turn * tuning), 2);
         const double losses = own[2].value + own[3].value + own[4].value;
-        if (tuning > e.highFrequency || mass < leastMass * m)
+        if (tuning > e.highFrequency || mass < leastMass * m * tuning / resonanceOf(base))
             return false;
         if (losses < 1.0 / leastQuality)
             return tuning > e.lowFrequency && tuning < highestTuning * resonanceOf(base)
