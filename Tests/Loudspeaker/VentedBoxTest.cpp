@@ -2,6 +2,7 @@
 // The air spring that cone and port share, against closed forms and the independent bench.
 #include "Bench/Loudspeaker.h"
 #include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <catch2/catch.hpp>
@@ -117,4 +118,41 @@ TEST_CASE("A box with losses and a radiator is that of the independent bench", "
         CHECK(std::abs(response[2].value[k] / arrival / pressure - truth.radiated)
               < 5e-3 * std::abs(truth.radiated) + 5e-3 * std::abs(std::pow(turn * f[k], 2) * truth.displacement));
     }
+}
+
+TEST_CASE("The base of a woofer in a box is started as a woofer", "[effects]")
+{
+    bench::Loudspeaker speaker;
+    speaker.Re = 3.98;
+    speaker.Le = 5.12e-4;
+    speaker.Bl = 8.18;
+    speaker.m = 0.0266;
+    speaker.Rms = 1.77;
+    speaker.K = 2110.0;
+    speaker.coneArea = 0.0318;
+    bench::VentedBox box;
+    box.stiffness = 515.0;
+    box.mass = 0.00423;
+    box.resistance = 0.17;
+    speaker.ventedBox = box;
+    const double pressure = radiationPerArea() * speaker.coneArea;  // at 1 m
+    std::vector<ResponseTarget> targets(3);
+    targets[0].quantity = Quantity::current;
+    targets[1].quantity = Quantity::displacement;
+    targets[2].quantity = Quantity::pressure;
+    for (double f = 10.0; f < 5000.0; f *= std::exp2(1.0 / 24.0)) {
+        const auto small = speaker.small(f);
+        const std::complex<double> values[] {small.current, small.displacement, pressure * small.radiated};
+        for (std::size_t k = 0; k < targets.size(); ++k) {
+            targets[k].frequency.push_back(f);
+            targets[k].value.push_back(values[k]);
+            // few realizations on neighbouring lines: the bass is known better than the rest
+            targets[k].deviation.push_back((f < 120.0 ? 0.003 : 0.025) * std::abs(values[k]));
+        }
+    }
+    const auto model = startModel(targets, true, {});
+    CHECK(model.path.parameters[0].value == Approx(speaker.coneArea).epsilon(0.3));
+    CHECK(std::abs(model.path.parameters[1].value) < 3e-4);  // there is no way to the microphone
+    CHECK(model.baseParameter("Bl").value == Approx(speaker.Bl).epsilon(0.2));
+    CHECK(model.baseParameter("Le").value == Approx(speaker.Le).epsilon(0.2));
 }

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <limits>
 #include <numbers>
@@ -79,6 +80,23 @@ Sight sightOf(const std::vector<ResponseTarget>& targets, bool electrical, const
     return sight;
 }
 
+/// The responses as a base is to follow them that lacks most of what is there: all lines alike, as what it leaves is
+/// none of the noise. Where a few are known much better than the rest it would follow what it cannot there. Below a
+/// port the sound of the cone is nearly cancelled, by what the base has not got: relative errors do not count there.
+std::vector<ResponseTarget> evened(std::vector<ResponseTarget> targets)
+{
+    constexpr double share = 0.1, heard = 0.03;  // of the line, and of the loudest one
+    for (auto& target : targets) {
+        double loudest = 0.0;
+        if (target.quantity == Quantity::pressure)
+            for (const auto& value : target.value)
+                loudest = std::max(loudest, std::abs(value));
+        for (std::size_t k = 0; k < target.value.size(); ++k)
+            target.deviation[k] = std::max({target.deviation[k], share * std::abs(target.value[k]), heard * loudest});
+    }
+    return targets;
+}
+
 /// The best of the candidates after a few iterations each.
 class Contest {
 public:
@@ -104,6 +122,38 @@ private:
     double lowest_ = std::numeric_limits<double>::infinity();
 };
 
+/// Gives the model the delay, and the area its sign, with which the phase of its pressure is that of the measured one
+/// at most frequencies: from another delay a fit of responses may not get there beside a port that sounds.
+void matchArrival(Model& model, const ResponseTarget& pressure)
+{
+    constexpr double longest = 0.03, fraction = 0.125;  // s; of the shortest period
+    double &area = model.path.parameters[0].value, &delay = model.path.parameters[1].value;
+    const double turn = 2.0 * std::numbers::pi;
+    const auto response = respond(model, {Quantity::pressure}, pressure.frequency).front();
+    std::vector<std::complex<double>> turned(pressure.frequency.size()), step(turned.size());
+    const double time = fraction / pressure.frequency.back();
+    for (std::size_t k = 0; k < turned.size(); ++k) {
+        const double omega = turn * pressure.frequency[k];
+        const auto ratio = pressure.value[k] / response.value[k] * std::polar(1.0, -omega * delay);
+        turned[k] = ratio / std::abs(ratio);
+        step[k] = std::polar(1.0, omega * time);
+    }
+    double best = 0.0;
+    for (double tau = 0.0; tau < longest; tau += time) {
+        double agreement = 0.0;
+        for (std::size_t k = 0; k < turned.size(); ++k) {
+            agreement += turned[k].real();
+            turned[k] *= step[k];
+        }
+        if (std::abs(agreement) > std::abs(best)) {
+            best = agreement;
+            delay = tau;
+        }
+    }
+    if (best * area < 0.0)
+        area = -area;
+}
+
 /// Gives the model the mass, and the area, with which its motion and pressure are of the size that was measured,
 /// whatever their units.
 void matchSizes(Model& model, const Sight& sight)
@@ -114,6 +164,8 @@ void matchSizes(Model& model, const Sight& sight)
     }
     if (model.path.parameters[0].free)
         model.path.parameters[0].value *= sizeOver(model, *sight.pressure);
+    if (sight.pressure)
+        matchArrival(model, *sight.pressure);
 }
 
 /// From the impedance's own peak; the mass is the one thing it does not show.
@@ -183,7 +235,7 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
     if (dense.empty())
         throw Error(Error::Kind::data, "The take gives no frequency response to start from; excite it in the band of "
                                        "the loudspeaker's resonance.");
-    const auto targets = thinned(dense, startPointsPerOctave);
+    const auto even = evened(dense), targets = thinned(even, startPointsPerOctave);
     const auto sight = sightOf(targets, electrical, driver);
     Model model = makeModel(electrical ? "electrodynamic" : "mechanical");
     model.microphoneDistance = driver.microphoneDistance.value_or(1.0);
@@ -211,7 +263,7 @@ Model startModel(const std::vector<ResponseTarget>& dense, bool electrical, cons
         rescale(best, typicalMass(f0, driver.coneArea));
         matchSizes(best, sight);
     }
-    fitResponse(best, dense, {60, 1e-8});
+    fitResponse(best, even, {60, 1e-8});
     best.name = driver.name;
     return best;
 }
