@@ -91,15 +91,15 @@ private:
     LinearizePage linearize_ {*this};
     const std::array<Page*, 4> pages_ {&measure_, &compare_, &diagnose_, &linearize_};
     std::size_t page_ = 0;
-    std::uint64_t seen_ = 0;            ///< version of the findings that the pages show
-    std::string said_;                  ///< of the session's status
-    std::string standstill_;            ///< of the processor, as it was told
-    std::uint64_t shown_ = 0;           ///< version of the model that the last page shows
-    bool focused_ = false;              ///< has asked for the keyboard
-    int coloured_ = -1;                 ///< version of the look that the window has
+    std::uint64_t seen_ = 0;                    ///< version of the findings that the pages show
+    std::string said_;                          ///< of the session's status
+    std::string standstill_;                    ///< of the processor, as it was told
+    std::uint64_t shown_ = 0;                   ///< version of the model that the last page shows
+    bool focused_ = false;                      ///< has asked for the keyboard
+    int coloured_ = -1;                         ///< version of the look that the window has
     std::shared_ptr<const PreparedTake> take_;  ///< that the history is of
-    std::vector<std::string> rungs_;    ///< effects of the ladder, as the history knows it
-    bool laddering_ = false;            ///< the history itself moves the ladder
+    std::vector<std::string> rungs_;            ///< effects of the ladder, as the history knows it
+    bool laddering_ = false;                    ///< the history itself moves the ladder
 };
 
 }  // namespace excursion::plugin
