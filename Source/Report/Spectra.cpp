@@ -37,10 +37,12 @@ void addOtherErrors(Plot& plot, const Ladder& ladder, std::size_t rung, Quantity
     const auto& channels = ladder.rungs[rung].comparison.channels;
     const auto channel = std::find_if(channels.begin(), channels.end(),
                                       [quantity](const auto& c) { return c.quantity == quantity; });
-    const auto titles = plot.series;
+    std::vector<std::string> titles;
+    for (const auto& series : plot.series)
+        titles.push_back(series.title);
     overlayErrors(plot, ladder, rung, static_cast<std::size_t>(channel - channels.begin()), level);
     for (std::size_t k = 0; k < own; ++k)
-        plot.series[k].title = titles[k].title;
+        plot.series[k].title = titles[k];
     for (auto k = own; k < plot.series.size(); ++k) {
         plot.series[k].hidden = true;
         plot.series[k].facets = {{"overlay the error of", plot.series[k].title}};

@@ -175,13 +175,11 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
     for (const auto label : labels)
         answers.push_back(answerOf(take, label));
 
-    const auto misfit = [&](const std::vector<Answer>& answers, const std::vector<Quantity>& named) {
+    const auto misfit = [&](const std::vector<Answer>& told, const std::vector<Quantity>& named) {
         const Answer *current = nullptr, *motion = nullptr, *pressure = nullptr;
         Quantity kind = Quantity::displacement;
         for (std::size_t k = 0; k < named.size(); ++k) {
-            (named[k] == Quantity::current    ? current
-             : named[k] == Quantity::pressure ? pressure
-                                              : motion) = &answers[k];
+            (named[k] == Quantity::current ? current : named[k] == Quantity::pressure ? pressure : motion) = &told[k];
             if (isMotion(named[k]))
                 kind = named[k];
         }

@@ -88,7 +88,8 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
     const double mass = 0.5 * (inertia.slope.real() + inertia.impedance.imag() / omega);
     const double losses = mechanics.at(omega).impedance.real(), compliance = 1.0 / (omega * omega * mass),
                  Qms = omega * mass / losses;
-    const double area = model.path.parameters[0].value,
+    // negative where a microphone is inverted
+    const double area = std::abs(model.path.parameters[0].value),
                  volume = airDensity * speedOfSound * speedOfSound * area * area * compliance;
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double Re = none, Le = none, Bl = none, Qes = none, Qts = none, eta0 = none, watt = none, volts = none;

@@ -211,7 +211,7 @@ std::vector<Step> stepsByResponse(const Model& base, const Spectra& spectra, uns
     };
     progress.at(0.7, "taking out what is not needed");
     auto whole = needed(found.best);
-    if (found.bestThemselves.errorDb < whole.errorDb)
+    if (setOf(found.bestThemselves.model) != setOf(found.best.model))
         if (auto other = needed(found.bestThemselves); other.errorDb < whole.errorDb)
             whole = std::move(other);
     progress.at(0.9, "putting the effects in order");

@@ -236,7 +236,7 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
     Measurement result;
     result.sampleRate = sampleRate;
     result.driver.name = model.name;
-    result.driver.coneArea = model.path.parameters[0].value;
+    result.driver.coneArea = std::abs(model.path.parameters[0].value);  // negative where a microphone is inverted
     result.driver.microphoneDistance = model.microphoneDistance;
     const auto add = [&result](Quantity quantity, std::vector<double> samples) {
         const double peak = peakOf(samples);

@@ -80,9 +80,9 @@ Sight sightOf(const std::vector<ResponseTarget>& targets, bool electrical, const
     return sight;
 }
 
-/// The responses as a base is to follow them that lacks most of what is there: all lines alike, as what it leaves is
-/// none of the noise. Where a few are known much better than the rest it would follow what it cannot there. Below a
-/// port the sound of the cone is nearly cancelled, by what the base has not got: relative errors do not count there.
+/// The responses as a base is fitted to them. It lacks most of what is there, so what it leaves is not noise, and lines
+/// that are known very well must not outweigh the rest. Below a port's tuning the port nearly cancels the sound of the
+/// cone. The base has no port, so relative errors of the pressure do not count there.
 std::vector<ResponseTarget> evened(std::vector<ResponseTarget> targets)
 {
     constexpr double share = 0.1, heard = 0.03;  // of the line, and of the loudest one
@@ -135,7 +135,8 @@ void matchArrival(Model& model, const ResponseTarget& pressure)
     for (std::size_t k = 0; k < turned.size(); ++k) {
         const double omega = turn * pressure.frequency[k];
         const auto ratio = pressure.value[k] / response.value[k] * std::polar(1.0, -omega * delay);
-        turned[k] = ratio / std::abs(ratio);
+        const double size = std::abs(ratio);
+        turned[k] = size > 0.0 && std::isfinite(size) ? ratio / size : 0.0;
         step[k] = std::polar(1.0, omega * time);
     }
     double best = 0.0;
@@ -150,7 +151,7 @@ void matchArrival(Model& model, const ResponseTarget& pressure)
             delay = tau;
         }
     }
-    if (best * area < 0.0)
+    if (best < 0.0)
         area = -area;
 }
 

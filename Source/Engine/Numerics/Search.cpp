@@ -21,8 +21,8 @@ using Eigen::VectorXd;
 
 constexpr double hopeless = 1e3;  // times the cost: no bend makes up for that
 
-/// The damped least squares of one iteration, by singular values; where none is cut off, by a factor a damping, which
-/// costs a third.
+/// The damped least squares of one iteration: by singular values, or, where none is to be cut off, by one triangular
+/// factor for each damping, at a third of the cost.
 class DampedSystem {
 public:
     /// @param R  of [J, error]

@@ -7,7 +7,7 @@ namespace excursion {
 
 /// Why a search ended. The order is that of the three groups that converged() and usable() tell apart.
 enum class Termination {
-    // It failed: what it returns is its start, or nothing.
+    // It failed: what it returns is its start, nothing, or how far it had come.
     notRun,          ///< nobody ran it; the default
     nothingFree,     ///< no parameter may move
     startUndefined,  ///< the model cannot be computed at its start

@@ -17,14 +17,14 @@ class Viewer {
         this.live = element("div", {class: "live"}, this.key.element, this.key.where, this.picture.svg);
         frame.querySelector("h4").append(element("span", {class: "tools"}, this.tool("in", "zoom in", () => this.zoom(step)),
             this.tool("out", "zoom out", () => this.zoom(1 / step)), this.tool("whole", "show the whole", () => this.showWhole()),
-            this.tool("large", "larger or smaller", () => frame.classList.toggle("large"))));
+            this.tool("large", "larger or smaller", () => { frame.classList.toggle("large"); this.draw(true); })));
         frame.append(this.live);
         frame.classList.add("alive");
         const on = (type, act) => this.picture.svg.addEventListener(type, act, {passive: false});
         on("pointerdown", event => this.press(event));
         on("pointermove", event => this.move(event));
         on("pointerup", event => this.release(event));
-        on("pointercancel", event => this.fingers.delete(event.pointerId));
+        on("pointercancel", event => { this.fingers.delete(event.pointerId); this.start = null; this.key.clear(); });
         on("pointerleave", event => { if (event.pointerType === "mouse" && !this.start) this.key.clear(); });
         on("dblclick", () => this.showWhole());
         on("wheel", event => this.wheel(event));
@@ -40,10 +40,14 @@ class Viewer {
 
     draw(anew = false) {
         const width = Math.round(this.live.clientWidth);
-        if (width < 40 || (!anew && width === this.width)) return;
+        if (width < 40) {  // not shown: drawn when it is
+            this.width = 0;
+            return;
+        }
+        if (!anew && width === this.width) return;
         this.width = width;
-        const height = this.frame.classList.contains("large") ? Math.min(width * 0.55, window.innerHeight * 0.75)
-                                                              : Math.min(Math.max(width * this.plot.height / this.plot.width, 210), 340);
+        const usual = Math.min(Math.max(width * this.plot.height / this.plot.width, 210), 340);
+        const height = this.frame.classList.contains("large") ? Math.max(usual, Math.min(width * 0.55, window.innerHeight * 0.75)) : usual;
         this.picture.draw(width, Math.round(height));
         this.key.clear();
     }
@@ -64,12 +68,15 @@ class Viewer {
             const whole = new Scale(...picture.whole[letter], picture.plot[letter].log, 0, 1);
             const [from, to] = view[letter].map(value => Math.min(Math.max(whole.at(value), 0), 1));
             if (to - from > 1e-6)
-                picture.view[letter] = from <= 0 && to >= 1 ? picture.whole[letter] : [whole.valueAt(from), whole.valueAt(to)];
+                picture.view[letter] = from <= 1e-9 && to >= 1 - 1e-9 ? picture.whole[letter] : [whole.valueAt(from), whole.valueAt(to)];
         }
         this.refresh();
     }
 
-    showWhole() { this.show(this.picture.whole); }
+    showWhole() {
+        this.picture.view = {...this.picture.whole};
+        this.refresh();
+    }
 
     /** @param px, py  what stays where it is; without them the middle */
     zoom(factor, px, py) {

@@ -13,7 +13,7 @@ namespace {
 /// g the share of its limit that an element carries. After a turn an element follows like a spring of F_c/(n r_k) and
 /// slips when the cone has gone a few r_k. The reaches lie evenly on a logarithmic axis, over `spread` octaves around
 /// `reach`; several elements approach the distributed slip of Iwan's model (1966). |v| is rounded within a thousandth
-/// of the visited velocity (a hundredth moves the motion by -78 dB),
+/// of the visited velocity (within a hundredth the motion would be wrong by -78 dB, which quiet takes show),
 ///     |v| = V s^2 (3 - 3 s + s^2),  s = |v|/V < 1,
 /// where it has two continuous derivatives and vanishes at rest, so that a cone that stands still forgets nothing.
 class Friction final : public EffectOf<Friction> {

@@ -81,7 +81,7 @@ public:
         return {start[1], 1.5 * start[1]};
     }
     /// A port rings, at a frequency that was measured and no more than two octaves above the cone's resonance. Its air
-    /// or the radiator is not much lighter than the cone, the less so the higher it is tuned, and the air in the box
+    /// or the radiator is not much lighter than the cone, heavier the higher it is tuned, and the air in the box is
     /// not much softer than the suspension: what is found in real boxes lies well inside. Something lighter is a part
     /// that swings by itself. A leak does not ring, far below the resonance of cone and box, whose air is stiffer than
     /// the suspension, but does not leave it without a part: a weaker relaxation is rather one of the suspension, a
@@ -91,7 +91,7 @@ public:
     {
         constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.08, highestTuning = 4.0;
         constexpr double leastLeakQuality = 0.4, lowestLeak = 0.5, highestLeak = 0.125;
-        constexpr double leastLeakStiffness = 2.0, mostLeakStiffness = 20.0;
+        constexpr double leastLeakStiffness = 2.0, mostLeakStiffness = 100.0;
         const double K = parameterNamed(base, "K").value, m = parameterNamed(base, "m").value, tuning = own[1].value;
         const double turn = 2.0 * std::numbers::pi,
                      mass = own[0].value * std::pow((1.0 + own[5].value) / (turn * tuning), 2);
