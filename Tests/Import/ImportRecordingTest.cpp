@@ -85,7 +85,7 @@ Likeness against(const std::vector<double>& y, const std::vector<double>& truth,
 
 }  // namespace
 
-TEST_CASE("A recording with offset, drift, another rate and 16 bits becomes the take that was played", "[import]")
+TEST_CASE("A recording with offset, drift, another rate and 16 bits becomes the take that was played", "[import][slow]")
 {
     const auto& played = smallPlay();
     const Scratch scratch;
@@ -437,7 +437,7 @@ void randomRecordings(std::uint64_t from, std::uint64_t to, const std::vector<co
 
 }  // namespace
 
-TEST_CASE("Random faults: a few", "[import]") { randomRecordings(1, 6, {&smallPlay()}, false); }
+TEST_CASE("Random faults: a few", "[import][slow]") { randomRecordings(1, 6, {&smallPlay()}, false); }
 
 TEST_CASE("Random faults: sixty, on plans of several lengths", "[.recordings]")
 {

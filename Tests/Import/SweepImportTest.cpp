@@ -117,7 +117,7 @@ TEST_CASE("A recording of sweeps is laid beside them to a small part of a sample
     }
 }
 
-TEST_CASE("Sweeps are found in what a loudspeaker makes of them, too", "[import]")
+TEST_CASE("Sweeps are found in what a loudspeaker makes of them, too", "[import][slow]")
 {
     const auto& of = twoLevels();
     auto r = sweepRecorder({1, 3});
@@ -154,7 +154,7 @@ TEST_CASE("A recording that ends early keeps the sweeps that it has whole", "[im
     CHECK(static_cast<long>(found.take.length()) == found.sweep->totalSamples(48000.0));
 }
 
-TEST_CASE("What is not the answer to a plan's sweeps is refused", "[import]")
+TEST_CASE("What is not the answer to a plan's sweeps is refused", "[import][slow]")
 {
     const auto of = playedSweeps(shortSweeps({1.5}));
     auto r = sweepRecorder({0, 1});
