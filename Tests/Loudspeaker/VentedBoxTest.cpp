@@ -188,3 +188,19 @@ TEST_CASE("A microphone may be upside down, whether the mass is known or not", "
             CHECK(responseErrorDb(model, targets.back()) < -40.0);
         }
 }
+
+TEST_CASE("A microphone may be far away where the take tells so", "[effects]")
+{
+    constexpr double distance = 14.0, delay = distance / 343.0;
+    auto targets = shownBy(woofer(), {Quantity::current, Quantity::displacement, Quantity::pressure});
+    for (std::size_t k = 0; k < targets[2].frequency.size(); ++k) {
+        const auto arrival = std::polar(1.0 / distance, -turn * targets[2].frequency[k] * delay);
+        targets[2].value[k] *= arrival;
+        targets[2].deviation[k] *= std::abs(arrival);
+    }
+    DriverInfo driver;
+    driver.microphoneDistance = distance;
+    const auto model = startModel(targets, true, driver);
+    CHECK(model.path.parameters[1].value == Approx(delay).epsilon(1e-3));
+    CHECK(responseErrorDb(model, targets[2]) < -40.0);
+}

@@ -126,9 +126,9 @@ private:
 /// at most frequencies: from another delay a fit of responses may not get there beside a port that sounds.
 void matchArrival(Model& model, const ResponseTarget& pressure)
 {
-    constexpr double longest = 0.03, fraction = 0.125;  // s; of the shortest period
+    constexpr double usual = 0.03, fraction = 0.125;  // s; of the shortest period
     double &area = model.path.parameters[0].value, &delay = model.path.parameters[1].value;
-    const double turn = 2.0 * std::numbers::pi;
+    const double longest = std::max(usual, 2.0 * delay), turn = 2.0 * std::numbers::pi;
     const auto response = respond(model, {Quantity::pressure}, pressure.frequency).front();
     std::vector<std::complex<double>> turned(pressure.frequency.size()), step(turned.size());
     const double time = fraction / pressure.frequency.back();

@@ -67,8 +67,9 @@ public:
         std::vector<std::vector<double>> starts;
         for (const double octaves : {0.5, 1.5})  // a leak
             starts.push_back({0.0, std::exp2(octaves) * e.lowFrequency, 1.0, someLoss, 0.0, 0.0, 0.0});
+        const auto leaks = starts.size();
         for (double f = 1.5 * e.lowFrequency;
-             f < 100.0 * e.lowFrequency && (starts.size() < 3 || f < 0.1 * e.highFrequency); f *= 1.5)
+             f < 100.0 * e.lowFrequency && (starts.size() == leaks || f < 0.1 * e.highFrequency); f *= 1.5)
             starts.push_back({0.0, f, someLoss, someLoss, 0.0, 0.0, 0.0});
         return starts;
     }
