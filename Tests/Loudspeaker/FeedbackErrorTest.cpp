@@ -170,3 +170,36 @@ TEST_CASE("Less what the laws add, a take shows the responses of its linear part
         CHECK(responseErrorDb(model, after[c]) < responseErrorDb(model, before[c]) - 15.0);
     }
 }
+
+TEST_CASE("Played, a model leaves what its simulation leaves, with the columns of fed laws", "[fed]")
+{
+    const auto start = ready({{"stiffness", 0.3}});
+    const auto model = bent(start.model, start.record, "stiffness");
+    const auto active = freeParameters(model);
+    const auto motions = settledMotions(model, start.record, start.sections, 2);
+    OutputErrorOptions run;
+    run.substeps = 2;
+    const auto played = sumOfFinite(playedError(model, start.record, start.sections, motions, active, run));
+    const auto fed = sumOfFinite(feedbackError(model, start.record, start.sections, motions, active, run));
+    run.gradient = false;
+    const auto simulated = sumOfFinite(outputError(model, start.record, start.sections, {}, run));
+    CHECK(played.cost == Approx(simulated.cost).epsilon(1e-12));
+    CHECK(played.cost != Approx(fed.cost).epsilon(0.01));
+    CHECK((played.N - fed.N).norm() < 1e-12 * fed.N.norm());
+    run.played = true;
+    CHECK(sumOfFinite(quickError(model, start.record, start.sections, active, run)).cost
+          == Approx(simulated.cost).epsilon(1e-12));
+}
+
+TEST_CASE("Near the noise a simulation tells more than laws that are fed noise", "[fed]")
+{
+    auto found = withEffect(start.model, effectNamed("friction"), visitedExtent(start.model, start.record));
+    for (auto& p : found.components.back().parameters)
+        if (p.strength)
+            p.value = 0.3;
+    REQUIRE(fit(found, start.record, start.sections).usable());
+    OutputErrorOptions run;
+    run.substeps = 2;
+    CHECK(isBetterPlayed(found, start.record, start.sections, run));
+    CHECK(!isBetterPlayed(start.model, start.record, start.sections, run));  // without laws both are the same
+}

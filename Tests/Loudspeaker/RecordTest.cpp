@@ -161,6 +161,28 @@ TEST_CASE("The noise of a record is the noise that was added", "[record]")
     }
 }
 
+TEST_CASE("What was played drifts, what was not is as quiet as the noise", "[record]")
+{
+    constexpr double noise = 1e-4, drift = 0.01;  // of the current, a period
+    auto drifting = take(1, noise);
+    auto& current = drifting.channels[1].samples;
+    for (std::size_t n = 0; n < current.size(); ++n)
+        current[n] *= 1.0 + drift * static_cast<double>(n / N % (settle + periods));
+    const auto record = makeRecord(drifting);
+    const double truth = std::sqrt(N * noise * noise / periods);
+    for (const auto& section : record.sections) {
+        std::vector<char> played(section.deviation[0].size(), 0);
+        for (const int k : section.excited)
+            played[static_cast<std::size_t>(k)] = 1;
+        const auto [first, last] = record.lineRange(section);
+        for (auto k = first; k <= last; ++k)
+            if (played[k])
+                CHECK(section.deviation[0][k] > 20.0 * truth);
+            else
+                CHECK(section.deviation[0][k] < 2.0 * truth);
+    }
+}
+
 TEST_CASE("The realization that goes least far is held out, at all levels", "[record]")
 {
     for (const int faint : {0, 1, 2}) {

@@ -230,11 +230,11 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     diagnosis.error = errorByChannel(before);
     diagnosis.remainder = remainderOf(before);
 
-    ScoreOptions test;
-    test.substeps = quick.substeps;
-    test.threads = options.fit.threads;
-    const auto scores = score(model, record, test, progress.part(0.1, 0.3));
     const auto sections = trialSections(record, 2);
+    ScoreOptions test;
+    test.threads = options.fit.threads;
+    chooseResiduals(quick, test, model, record, sections);
+    const auto scores = score(model, record, test, progress.part(0.1, 0.3));
     const Excess excess(before);
     // Falls are shares of what is left beside what is noise for sure.
     const double sure = before.noiseKnown && !isNoise(before) ? sureNoise : 0.0;

@@ -21,6 +21,7 @@ Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> s
     sums.power.resize(record.channels.size());
     OutputErrorOptions run;
     run.substeps = options.substeps;
+    run.played = options.played;
     run.threads = options.threads;
     const auto held = validationSections(record);
     for (const auto n : held)

@@ -15,6 +15,7 @@ inline constexpr double nearNoise = 4.0, atNoise = 1.3;
 
 struct ScoreOptions {
     int substeps = 1;
+    bool played = false;  ///< residuals of a simulation in place of those of fed laws
     unsigned threads = 2;
     int degree = 6;  ///< of the laws that are tried
     /// a model that tells the shapes of linear effects; those that it does not have are not tried. None: they are

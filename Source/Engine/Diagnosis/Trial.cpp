@@ -28,6 +28,7 @@ OutputErrorOptions withoutGradient(const FitOptions& options)
 {
     OutputErrorOptions run;
     run.gradient = false;
+    run.played = options.fedGradient;
     run.substeps = options.substeps;
     run.threads = options.threads;
     return run;
@@ -48,12 +49,35 @@ Model newestScaled(Model model, double factor)
 
 }  // namespace
 
+void chooseResiduals(FitOptions& fit, ScoreOptions& score, const Model& model, const Record& record,
+                     const std::vector<std::size_t>& sections)
+{
+    fit.substeps = score.substeps = substepsFor(model, record, fit.simulationTolerance);
+    fit.fedGradient = score.played = isBetterPlayed(model, record, sections, withoutGradient(fit));
+}
+
+FitSummary quickFit(Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                    const FitOptions& options, const Progress& progress)
+{
+    auto fed = options;
+    fed.fed = true;
+    fed.fedGradient = false;
+    if (!options.fedGradient)
+        return fit(model, record, sections, fed, progress);
+    if (auto found = model;
+        fit(found, record, sections, fed, progress.part(0.0, 0.2)).usable()
+        && quickCost(found, record, sections, options) < quickCost(model, record, sections, options))
+        model = std::move(found);
+    auto played = options;
+    played.fed = false;
+    return fit(model, record, sections, played, progress.part(0.2, 1.0));
+}
+
 FitSummary fitFed(Model& model, const Record& record, const std::vector<std::size_t>& sections, FitOptions options,
                   const Progress& progress)
 {
     auto found = model;
-    options.fed = true;
-    const auto summary = fit(found, record, sections, options, progress);
+    const auto summary = quickFit(found, record, sections, options, progress);
     options.fed = false;
     if (hasPeriods(record)
         && !(summary.usable()
@@ -144,8 +168,6 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
 {
     if (!hasPeriods(record))
         return false;
-    FitOptions fed = options;
-    fed.fed = true;
     constexpr double worthIt = 0.95;
     const auto still = withoutLaws(model, record, options.threads);
     bool found = false;
@@ -154,7 +176,7 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
         if (!component.effect->linear() || component.effect->parts(component.extent).empty())
             continue;
         auto anew = model;
-        if (fitByResponse(anew, k, still).usable() && fit(anew, record, sections, fed).usable()
+        if (fitByResponse(anew, k, still).usable() && quickFit(anew, record, sections, options).usable()
             && quickCost(anew, record, sections, options) < worthIt * quickCost(model, record, sections, options)) {
             model = std::move(anew);
             found = true;
@@ -187,11 +209,13 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         chosen.substeps = substepsFor(model, record, options.simulationTolerance);
     const auto sections = estimationSections(record);
     ScoreOptions score;
-    score.substeps = chosen.substeps;
     score.threads = chosen.threads;
     FitOptions quick = chosen;
     quick.search = {8, 1e-3};
+    chooseResiduals(quick, score, model, record, sections);
     auto summary = fitFed(model, record, sections, quick, progress.part(0.0, 0.3));
+    if (!quick.fedGradient)
+        chooseResiduals(quick, score, model, record, sections);
     constexpr int mostRaises = 3;
     for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
         summary = fitFed(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
@@ -199,9 +223,10 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && (summary.costPerResidual > atNoise || !summary.onlyNoise))
             findPartsAnew(model, record, sections, quick);
         quick.search = {15, 1e-4};
-        summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
+        if (!quick.fedGradient)
+            summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
         // While more is missing a simulation tells little more than laws that are fed.
-        if (record.noiseKnown && summary.costPerResidual > nearNoise)
+        if (record.noiseKnown && summary.costPerResidual > nearNoise && !quick.fedGradient)
             return summary;
     }
     return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));

@@ -16,8 +16,17 @@ FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, bool toTheE
 /// Sections for a quick fit: of each level up to `realizations` of those not held out.
 std::vector<std::size_t> trialSections(const Record&, int realizations);
 
-/// A fit with laws that are fed; where what it finds runs away when it is simulated, a fit that simulates in its place.
+/// A fit with laws that are fed. With FitOptions::fedGradient it goes on from there, or from where the model was,
+/// whichever leaves less, to what a simulation leaves.
+FitSummary quickFit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
+                    const Progress& = {});
+
+/// A quick fit; where what it finds runs away when it is simulated, a fit that simulates in its place.
 FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& sections, FitOptions, const Progress& = {});
+
+/// Makes trials on these sections judge by what a simulation leaves where that is less than what fed laws leave: near
+/// the noise, when the motion that laws are fed carries more of it than the model is wrong.
+void chooseResiduals(FitOptions&, ScoreOptions&, const Model&, const Record&, const std::vector<std::size_t>& sections);
 
 /// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it
 /// so far.

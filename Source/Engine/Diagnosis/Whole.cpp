@@ -17,70 +17,104 @@ namespace {
 
 constexpr double hardlyNeeded = 0.2;  // dB more that are left: what costs no more than that is not needed
 
+double decibels(double ratio) { return 10.0 * std::log10(ratio); }
+
 /// An effect that a model has.
 struct Tried {
     Vote vote;
     Model leaner;  ///< without it, fitted again; no components where that was not tried
     /// by which the mean squared residual grows without it; as if beyond measure where not tried
     double times = std::numeric_limits<double>::infinity();
-    /// by which the error's power over the noise grows in the worst channel
-    double powerTimes = std::numeric_limits<double>::infinity();
+    bool staysNoise = false;  ///< every channel's error without it
 };
 
 /// The search for a whole: what all its steps share.
 class Search {
 public:
     Search(const Model& base, const Record& record, const FitOptions& options)
-        : base_(base), record_(record), sections_(trialSections(record, 2)), quick_(options)
+        : base_(base), record_(record), sections_(trialSections(record, 2)), options_(options)
     {
         test_.threads = options.threads;
-        quick_.fed = true;
-        quick_.search = {12, 1e-3};
-        brief_ = quick_;
-        brief_.search = {5, 1e-2};
-        glance_ = quick_;
-        glance_.search = {1, 1e-1};
     }
+
+    /// Judges by what a simulation leaves of this model from here on, where that is less than what fed laws leave.
+    void chooseResiduals(const Model& model) { excursion::chooseResiduals(options_, test_, model, record_, sections_); }
 
     const ScoreOptions& test() const { return test_; }
-    FitSummary fit(Model& model, const Progress& progress) const
-    {
-        return excursion::fit(model, record_, sections_, quick_, progress);
-    }
+    FitSummary fit(Model& model, const Progress& progress) const { return fit(model, {12, 1e-3}, progress); }
 
-    /// What a model leaves.
+    /// What a model leaves of a channel.
+    struct Channel {
+        double chi = 0.0;    ///< mean squared residual in units of the noise
+        double power = 0.0;  ///< of the error over that of the noise; infinite where the noise is not known
+
+        bool isNoise() const { return power <= ErrorPower::most; }
+    };
+    /// What a model leaves; no channels where a law's memory runs away.
     struct Left {
-        /// mean squared residual in units of the noise; infinite where a law's memory runs away
-        double chi = std::numeric_limits<double>::infinity();
-        double power =
-            std::numeric_limits<double>::infinity();  ///< largest error power of a channel over that of its noise
+        double chi = std::numeric_limits<double>::infinity();  ///< of all channels
+        std::vector<Channel> channels;
 
-        bool areNoise() const { return power <= ErrorPower::most; }
+        bool areNoise() const
+        {
+            return !channels.empty()
+                   && std::all_of(channels.begin(), channels.end(), [](const Channel& c) { return c.isNoise(); });
+        }
         bool isNoise() const { return areNoise() && chi < atNoise; }
     };
     Left left(const Model& model) const
     {
         OutputErrorOptions plain;
         plain.gradient = false;
-        plain.threads = quick_.threads;
+        plain.played = test_.played;
+        plain.substeps = test_.substeps;
+        plain.threads = options_.threads;
         const auto fits = quickError(model, record_, sections_, {}, plain);
         const auto sum = sumOf(fits);
-        return sum ? Left {sum->cost / std::max(1.0, sum->rows),
-                           record_.noiseKnown ? worstPower(fits) : std::numeric_limits<double>::infinity()}
-                   : Left {};
+        Left left;
+        if (!sum)
+            return left;
+        left.chi = sum->cost / std::max(1.0, sum->rows);
+        for (std::size_t c = 0; c < record_.channels.size(); ++c) {
+            double cost = 0.0, rows = 0.0;
+            ErrorPower power;
+            for (const auto& fit : fits) {
+                cost += fit.channels[c].cost;
+                rows += fit.channels[c].rows;
+                power.add(fit.power[c]);
+            }
+            left.channels.push_back({cost / std::max(1.0, rows),
+                                     record_.noiseKnown ? power.overNoise() : std::numeric_limits<double>::infinity()});
+        }
+        return left;
     }
 
-    /// By how many dB more a model leaves than another, beside what is noise for sure.
+    /// By how many dB more a model leaves than another, in the channel that tells most: of the mean over all lines,
+    /// beside what is noise for sure, or of the power, which may stand in a few lines, over that of the noise.
     double lost(const Left& more, const Left& less) const
     {
-        const double sure = record_.noiseKnown && !less.areNoise() ? sureNoise : 0.0;
-        const double least = (record_.noiseKnown ? 1.0 : 0.0) - sure;
-        return 10.0 * std::log10(std::max(more.chi - sure, least) / std::max({less.chi - sure, least, 1e-300}));
+        if (more.channels.empty() || less.channels.empty())
+            return more.channels.empty() == less.channels.empty() ? 0.0
+                   : more.channels.empty()                        ? std::numeric_limits<double>::infinity()
+                                                                  : -std::numeric_limits<double>::infinity();
+        double most = -std::numeric_limits<double>::infinity();
+        for (std::size_t c = 0; c < less.channels.size(); ++c) {
+            const double sure = record_.noiseKnown && !less.channels[c].isNoise() ? sureNoise : 0.0;
+            const double least = record_.noiseKnown ? 0.5 * (1.0 - sure) : 0.0;
+            most = std::max(most, decibels(std::max(more.channels[c].chi - sure, least)
+                                           / std::max({less.channels[c].chi - sure, least, 1e-300})));
+            if (record_.noiseKnown)
+                most = std::max(
+                    most, decibels(std::max(more.channels[c].power, 1.0) / std::max(less.channels[c].power, 1.0)));
+        }
+        return most;
     }
 
     /// Every effect of a model but those of the base. By derivatives it says little of an effect that has become a
     /// large part of the linear model, so one that seems to be needed little is really taken out.
-    std::map<std::string, Tried> tryWithout(const Model& model) const
+    /// @param thorough  what seems to be missed is fitted with a simulation's own slopes before that is believed: where
+    ///                  laws rule the motion those of fed laws lead no further than near the least error
+    std::map<std::string, Tried> tryWithout(const Model& model, bool thorough) const
     {
         std::map<std::string, Tried> tried;
         const auto now = left(model);
@@ -91,18 +125,19 @@ public:
             if (vote.standsAlone())
                 continue;
             auto leaner = withoutEffect(model, effect);
-            if (!excursion::fit(leaner, record_, sections_, glance_).usable())
+            if (!fit(leaner, glance).usable())
                 continue;
             auto then = left(leaner);
             if (lost(then, now) < sorelyMissed) {
-                if (!excursion::fit(leaner, record_, sections_, brief_).usable())
+                if (!fit(leaner, brief).usable())
                     continue;
                 then = left(leaner);
+                if (thorough && test_.played && lost(then, now) > hardlyNeeded && fitExactly(leaner).usable())
+                    then = left(leaner);
             }
-            if (const double more = lost(then, now); more > vote.uniqueDb)
-                one.vote = {more, effectNamed(effect).linear() ? 0.0 : vote.inconsistency};
+            one.vote = {lost(then, now), effectNamed(effect).linear() ? 0.0 : vote.inconsistency};
             one.times = then.chi / now.chi;
-            one.powerTimes = then.power / std::max(now.power, 1.0);
+            one.staysNoise = then.areNoise();
             one.leaner = std::move(leaner);
         }
         return tried;
@@ -111,23 +146,26 @@ public:
     /// Takes the effects out of which the others do not lose what `keeps` asks for, one at a time. What was found of
     /// them all where none was taken out, else nothing.
     template <class Keeps>
-    std::optional<std::map<std::string, Tried>> takeOut(Model& model, const Keeps& keeps) const
+    std::optional<std::map<std::string, Tried>> takeOut(Model& model, bool thorough, const Keeps& keeps) const
     {
         bool any = false;
-        auto every = tryWithout(model);
-        for (auto& [effect, tried] : every) {
+        auto every = tryWithout(model, thorough);
+        std::vector<std::pair<const std::string, Tried>*> order;  // the least needed first
+        for (auto& one : every)
+            order.push_back(&one);
+        std::stable_sort(order.begin(), order.end(),
+                         [](auto* a, auto* b) { return a->second.vote.uniqueDb < b->second.vote.uniqueDb; });
+        for (auto* one : order) {
+            auto& [effect, tried] = *one;
             if (keeps(tried))
                 continue;
             auto leaner = any || tried.leaner.components.empty() ? withoutEffect(model, effect)
                                                                  : std::move(tried.leaner);
             if (any) {  // another one has gone, whose work it may do now
-                if (!excursion::fit(leaner, record_, sections_, brief_).usable())
+                if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
                     continue;
                 const auto then = left(leaner), now = left(model);
-                if (keeps(Tried {{lost(then, now), tried.vote.inconsistency},
-                                 {},
-                                 then.chi / now.chi,
-                                 then.power / std::max(now.power, 1.0)}))
+                if (keeps(Tried {{lost(then, now), tried.vote.inconsistency}, {}, then.chi / now.chi, then.areNoise()}))
                     continue;
             }
             model = std::move(leaner);
@@ -138,14 +176,33 @@ public:
         return every;
     }
 
-    void findPartsAnew(Model& model) const { excursion::findPartsAnew(model, record_, sections_, brief_); }
+    void findPartsAnew(Model& model) const { excursion::findPartsAnew(model, record_, sections_, within(brief)); }
 
 private:
+    FitOptions within(const LeastSquaresOptions& search) const
+    {
+        auto options = options_;
+        options.search = search;
+        return options;
+    }
+    /// Of models that are played anyhow: with the simulation's own slopes.
+    FitSummary fitExactly(Model& model) const
+    {
+        auto options = within(brief);
+        options.fedGradient = false;
+        return excursion::fit(model, record_, sections_, options, {});
+    }
+    FitSummary fit(Model& model, const LeastSquaresOptions& search, const Progress& progress = {}) const
+    {
+        return quickFit(model, record_, sections_, within(search), progress);
+    }
+
     const Model& base_;
     const Record& record_;
     std::vector<std::size_t> sections_;
     ScoreOptions test_;
-    FitOptions quick_, brief_, glance_;
+    FitOptions options_;
+    static constexpr LeastSquaresOptions brief {5, 1e-2}, glance {1, 1e-1};
     static constexpr double sorelyMissed = 15.0;  // dB more that are left: no fit would make that good
 };
 
@@ -177,7 +234,7 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
 Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
 {
     Whole whole {base, {}, {}};
-    const Search search(base, record, options);
+    Search search(base, record, options);
     constexpr int rounds = 4;
     constexpr double worthARound = 1.0;  // dB
     auto now = search.left(whole.model);
@@ -190,8 +247,10 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable())
             break;
+        search.chooseResiduals(fuller);
+        now = search.left(whole.model);
         search.findPartsAnew(fuller);
-        search.takeOut(fuller, [](const Tried& tried) { return tried.vote.uniqueDb > hardlyNeeded; });
+        search.takeOut(fuller, false, [](const Tried& tried) { return tried.vote.uniqueDb > hardlyNeeded; });
         const auto then = search.left(fuller);
         if (!(search.lost(now, then) > worthARound))
             break;
@@ -202,14 +261,15 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     if (!whole.fit.usable())
         return whole;
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
+    search.chooseResiduals(whole.model);
     const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
-    auto tried = search.takeOut(whole.model, [&](const Tried& one) {
+    auto tried = search.takeOut(whole.model, true, [&](const Tried& one) {
         return unknownLeft ? one.vote.standsAlone()
-                           : whole.fit.costPerResidual * one.times > atNoise || one.powerTimes > ErrorPower::most;
+                           : one.vote.backs() || whole.fit.costPerResidual * one.times > atNoise || !one.staysNoise;
     });
     if (!tried) {
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
-        tried = search.tryWithout(whole.model);
+        tried = search.tryWithout(whole.model, false);
     }
     for (const auto& [effect, one] : *tried)
         whole.votes[effect] = one.vote;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -41,7 +42,7 @@ public:
             fit.channels.push_back(std::move(normal));
             fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted));
             if (options.spectra)
-                fit.predicted.push_back(std::move(predicted));
+                fit.predicted.push_back(played ? played->predicted[c] : std::move(predicted));
         }
         return fit;
     }
@@ -213,14 +214,44 @@ Record withoutLaws(const Model& model, const Record& record, unsigned threads)
     return result;
 }
 
+std::vector<SectionFit> playedError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                    const ShownMotions& motions, const std::vector<Eigen::Index>& active,
+                                    const OutputErrorOptions& options, const Progress& progress)
+{
+    auto simulated = options;
+    simulated.gradient = false;
+    simulated.spectra = simulated.spectra || options.gradient;
+    auto played = outputError(model, record, sections, active, simulated, progress);
+    const bool finite = std::all_of(played.begin(), played.end(), [](const SectionFit& fit) { return fit.finite; });
+    return options.gradient && finite
+               ? feedbackError(model, record, sections, motions, active, options, progress, &played)
+               : played;
+}
+
+bool isBetterPlayed(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                    const OutputErrorOptions& options)
+{
+    if (!hasPeriods(record))
+        return false;
+    const auto costOf = [&](bool played) {
+        auto run = options;
+        run.gradient = false;
+        run.played = played;
+        const auto sum = sumOf(quickError(model, record, sections, {}, run));
+        return sum ? sum->cost : std::numeric_limits<double>::infinity();
+    };
+    return costOf(true) < costOf(false);
+}
+
 std::vector<SectionFit> quickError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                                    const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
                                    const Progress& progress)
 {
-    return hasPeriods(record)
-               ? feedbackError(model, record, sections, settledMotions(model, record, sections, options.threads),
-                               active, options, progress)
-               : outputError(model, record, sections, active, options, progress);
+    if (!hasPeriods(record) || (options.played && !(options.gradient && !active.empty())))
+        return outputError(model, record, sections, active, options, progress);
+    const auto motions = settledMotions(model, record, sections, options.threads);
+    return options.played ? playedError(model, record, sections, motions, active, options, progress)
+                          : feedbackError(model, record, sections, motions, active, options, progress);
 }
 
 }  // namespace excursion

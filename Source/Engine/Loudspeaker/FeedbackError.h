@@ -27,8 +27,18 @@ std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::ve
                                       const OutputErrorOptions& options, const Progress& = {},
                                       const std::vector<SectionFit>* played = nullptr);
 
-/// What is quickest told of a model: with laws that are fed the settled motion where the record has periods, else by
-/// simulation.
+/// outputError() of a record with periods, with the slopes of laws that are fed where slopes are asked for: at a tenth
+/// of the price.
+std::vector<SectionFit> playedError(const Model&, const Record&, const std::vector<std::size_t>& sections,
+                                    const ShownMotions& motions, const std::vector<Eigen::Index>& active,
+                                    const OutputErrorOptions&, const Progress& = {});
+
+/// Whether a simulation leaves less than laws that are fed: the noise of the motion that they are fed is larger then
+/// than what is wrong with the model. Never so of a record without periods.
+bool isBetterPlayed(const Model&, const Record&, const std::vector<std::size_t>& sections, const OutputErrorOptions&);
+
+/// What is quickest told of a model. Where the record has periods: with laws that are fed the settled motion, or
+/// playedError() where the options say so; else by simulation.
 std::vector<SectionFit> quickError(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                    const std::vector<Eigen::Index>& active, const OutputErrorOptions&,
                                    const Progress& = {});

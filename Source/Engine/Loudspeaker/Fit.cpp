@@ -80,11 +80,6 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
     return kept;
 }
 
-bool areFinite(const std::vector<SectionFit>& fits)
-{
-    return std::all_of(fits.begin(), fits.end(), [](const SectionFit& fit) { return fit.finite; });
-}
-
 /// The search of the model's parameters for the least error.
 FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const FitOptions& options,
                   const Progress& progress)
@@ -302,15 +297,9 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     auto summary = search(
         model,
         [&](const std::vector<Eigen::Index>& active, bool gradient) {
-            run.gradient = gradient && !slopesFed;
-            run.spectra = gradient && slopesFed;
-            auto played = outputError(model, record, sections, active, run, progress);
-            if (!run.spectra || !areFinite(played))
-                return played;
-            auto slopes = run;
-            slopes.gradient = true;
-            slopes.spectra = false;
-            return feedbackError(model, record, sections, motions, active, slopes, progress, &played);
+            run.gradient = gradient;
+            return slopesFed ? playedError(model, record, sections, motions, active, run, progress)
+                             : outputError(model, record, sections, active, run, progress);
         },
         record.noiseKnown, options, progress);
     summary.substeps = run.substeps;

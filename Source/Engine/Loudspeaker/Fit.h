@@ -18,7 +18,8 @@ struct FitOptions {
     unsigned threads = 2;
     /// sensitivities as finely as the simulation: slower steps, fewer of them where some directions hardly count
     bool exactGradient = false;
-    /// sensitivities of fed laws around an exact simulation: steps at a tenth of the price, a few more of them
+    /// sensitivities of fed laws around an exact simulation (playedError()): steps at a tenth of the price, a few more
+    /// of them
     bool fedGradient = false;
     bool fed = false;  ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast
                        ///< and nearly as good, for starts and trials; a take without periods is simulated all the same

@@ -28,6 +28,8 @@ struct OutputErrorOptions {
     int substeps = 1;      ///< of the simulation, at least; raised to the fewest with which it is stable
     /// of the sensitivities: they may be coarser, as they only steer the search; 0: the fewest
     int gradientSubsteps = 0;
+    /// of quickError(): residuals of the simulation, slopes of laws that are fed
+    bool played = false;
     unsigned threads = 2;
 };
 

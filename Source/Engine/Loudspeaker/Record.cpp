@@ -32,18 +32,29 @@ double power(const Spectrum& spectrum)
     return sum;
 }
 
-/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. A line that sticks out
-/// (hum) keeps its own level.
-std::vector<double> smoothVariance(const std::vector<double>& raw)
+/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. Played lines share it
+/// among themselves, the others, too: what drifts in the course of the take, as a coil that warms, scatters what was
+/// played and hardly anything else. A line that sticks out (hum) keeps its own level.
+std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited)
 {
-    std::vector<double> total(raw.size() + 1, 0.0);
-    std::partial_sum(raw.begin(), raw.end(), total.begin() + 1);
+    std::vector<char> played(raw.size(), 0);
+    for (const int k : excited)
+        if (static_cast<std::size_t>(k) < played.size())
+            played[static_cast<std::size_t>(k)] = 1;
     std::vector<double> result(raw.size());
-    for (std::size_t k = 0; k < raw.size(); ++k) {
-        const std::size_t reach = std::max<std::size_t>(12, k / 16);
-        const std::size_t from = k > reach ? k - reach : 0, to = std::min(raw.size(), k + reach + 1);
-        const double mean = (total[to] - total[from]) / static_cast<double>(to - from);
-        result[k] = std::max(mean, raw[k] / 6.0);
+    for (const char kind : {0, 1}) {
+        std::vector<double> total(raw.size() + 1, 0.0), count(raw.size() + 1, 0.0);
+        for (std::size_t k = 0; k < raw.size(); ++k) {
+            total[k + 1] = total[k] + (played[k] == kind ? raw[k] : 0.0);
+            count[k + 1] = count[k] + (played[k] == kind ? 1.0 : 0.0);
+        }
+        for (std::size_t k = 0; k < raw.size(); ++k) {
+            if (played[k] != kind)
+                continue;
+            const std::size_t reach = std::max<std::size_t>(12, k / 16);
+            const std::size_t from = k > reach ? k - reach : 0, to = std::min(raw.size(), k + reach + 1);
+            result[k] = std::max((total[to] - total[from]) / (count[to] - count[from]), raw[k] / 6.0);
+        }
     }
     return result;
 }
@@ -167,11 +178,11 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
         const auto scatter = periodNoise(take, take.input(), level).variance;
-        const auto inputVariance = scatter.empty() ? scatter : smoothVariance(scatter);
+        const auto inputVariance = scatter.empty() ? scatter : smoothVariance(scatter, e.lines);
         std::vector<std::vector<double>> variance;
         for (const auto quantity : record.channels) {
             auto noise = periodNoise(take, *take.find(quantity), level).variance;
-            variance.push_back(noise.empty() ? noise : smoothVariance(noise));
+            variance.push_back(noise.empty() ? noise : smoothVariance(noise, e.lines));
         }
         for (int realization = 0; realization < e.realizations; ++realization) {
             Section section;
