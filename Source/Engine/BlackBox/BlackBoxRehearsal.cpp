@@ -2,6 +2,7 @@
 #include "Engine/BlackBox/BlackBoxRehearsal.h"
 
 #include "Engine/Error.h"
+#include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
@@ -28,7 +29,24 @@ double variance(const std::vector<double>& values)
     return std::max(square / n - sum * sum / (n * n), 0.0);
 }
 
-std::string decibels(double value)
+/// Of a period, in bands of a third of an octave; in units that are the same for signals of one length.
+std::vector<double> bandPowers(const std::vector<double>& period, double rate, const std::vector<double>& centres)
+{
+    const auto lines = fft(period);
+    std::vector<double> powers;
+    for (const double centre : centres) {
+        const double perHz = static_cast<double>(period.size()) / rate;
+        const auto from = static_cast<std::size_t>(std::ceil(centre * std::exp2(-1.0 / 6.0) * perHz)),
+                   to = static_cast<std::size_t>(std::ceil(centre * std::exp2(1.0 / 6.0) * perHz));
+        double sum = 0.0;
+        for (std::size_t k = std::max<std::size_t>(from, 1); k < std::min(to, lines.size()); ++k)
+            sum += std::norm(lines[k]);
+        powers.push_back(sum);
+    }
+    return powers;
+}
+
+std::string inPlain(double value)
 {
     std::array<char, 32> text {};
     std::snprintf(text.data(), text.size(), "%.1f dB", value);
@@ -38,7 +56,7 @@ std::string decibels(double value)
 }  // namespace
 
 BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest& rest,
-                           const BlackBoxRehearsalOptions& options)
+                           const BlackBoxRehearsalOptions& options, const Progress& progress)
 {
     const double rate = box.linear.sampleRate;
     int period = 4096;
@@ -75,9 +93,11 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
     BlackBoxRehearsal best;
     best.beforeDb = decibelsOf(variance(bent) / signal);
     best.afterDb = std::numeric_limits<double>::infinity();
+    std::vector<double> leftOver;  // of the best
     const double gain = std::sqrt(signal / variance(input));
     for (const int preview : {16, 32, 64, 128}) {
         for (double depth = 20.0; depth <= 80.0; depth += 10.0) {
+            progress.at(std::min(0.95, (std::log2(preview / 16.0) + (depth - 20.0) / 70.0) / 3.0), "rehearsing");
             const double cost = std::pow(gain * std::pow(10.0, -depth / 20.0), 2);
             const auto control = previewControl(box.linear, box.E, box.F, cost, preview);
             if (!control)
@@ -95,10 +115,12 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
                 trial.correction = std::max(trial.correction, std::abs(sample.correction));
             }
             trial.afterDb = decibelsOf(variance(left) / signal);
-            if (std::isfinite(trial.afterDb) && trial.correction <= box.stimulus.peak && trial.afterDb < best.afterDb)
+            if (std::isfinite(trial.afterDb) && trial.correction <= box.stimulus.peak && trial.afterDb < best.afterDb) {
                 best = trial;
+                leftOver = left;
+            }
             if (best.gainDb() >= enough)
-                return best;
+                break;
         }
         // A longer look ahead costs time and latency, and is tried for what it may bring.
         if (best.gainDb() >= plenty || 2 * preview > options.mostPreview)
@@ -106,10 +128,19 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
     }
     if (!(best.gainDb() >= worthwhile))
         throw Error(Error::Kind::data,
-                    "This model cannot be turned around: of its distortion of " + decibels(best.beforeDb)
+                    "This model cannot be turned around: of its distortion of " + inPlain(best.beforeDb)
                         + " at the level of its fit "
-                        + (std::isfinite(best.afterDb) ? decibels(best.afterDb) + " would be left."
+                        + (std::isfinite(best.afterDb) ? inPlain(best.afterDb) + " would be left."
                                                        : "no correction was found that keeps it in bounds."));
+    const auto& bands = box.stimulus.frequency;
+    const auto whole = bandPowers(straight, rate, bands), before = bandPowers(bent, rate, bands),
+               after = bandPowers(leftOver, rate, bands);
+    for (std::size_t k = 0; k < bands.size(); ++k)
+        if (whole[k] > 0.0) {
+            best.frequency.push_back(bands[k]);
+            best.before.push_back(decibelsOf(before[k] / whole[k]));
+            best.after.push_back(decibelsOf(after[k] / whole[k]));
+        }
     return best;
 }
 
