@@ -170,7 +170,7 @@ TEST_CASE("A model without physics is turned around by the plugin, with the gain
         setMode(processor, Mode::linearize);
         processor.setModel(box);
         processor.prepareToPlay(rate, 512);
-        const auto volts = noise(box->played.box.stimulus, 0.8, rate, 105);
+        const auto volts = noise(box->played.box.stimulus, 0.6, rate, 105);
         for (const int channel : {0, 1}) {
             processor.reset();
             const auto bent = through(processor, volts, 512, channel);
@@ -179,12 +179,14 @@ TEST_CASE("A model without physics is turned around by the plugin, with the gain
             const Eigen::VectorXd straight = simulate(plain, vectorOf(volts));
             const double before = distortionDb(simulated(*box, volts), straight, 16384),
                          after = distortionDb(simulated(*box, bent), straight, 16384);
-            INFO("from " << before << " to " << after << " dB");
-            // Of a smaller signal: the model's own distortion is less, and so is what is left of it.
-            CHECK(before - after > std::min(25.0, box->played.rehearsal->gainDb() - 6.0));
+            const auto meters = processor.take();
+            INFO("from " << before << " to " << after << " dB, turned down by " << meters.displacementReduction << ", "
+                         << meters.region);
+            CHECK(meters.displacementReduction == 0.0);
+            CHECK(before - after > box->played.rehearsal->gainDb() - 1.0);
         }
     }
-    CHECK(turned >= 3);
+    CHECK(turned == 5);
 }
 
 TEST_CASE("The plugin's audition has less distortion than its speaker, at rates that are not the model's",
@@ -273,7 +275,7 @@ TEST_CASE("A host hears of the latency of the model that plays", "[plugin][black
     REQUIRE(processor.box());
     CHECK(processor.box()->played.box.name == "pnlss");
     CHECK(host.told == 1);
-    CHECK(processor.getLatencySamples() > driver);
+    CHECK(processor.getLatencySamples() != driver);
     processor.setModel(processor.model());
     CHECK(processor.getLatencySamples() == driver);
     CHECK(host.told == 2);
@@ -408,10 +410,10 @@ TEST_CASE("Where a model without physics cannot run the signal goes through, unt
     processor.prepareToPlay(200000.0, 512);  // 17 times the model's
     CHECK(processor.standstill().find("as it is") != std::string::npos);
     const auto volts = noise(stimulus, 0.5, 192000.0, 5, 1);
-    CHECK((through(processor, volts) == volts));
+    CHECK(errorDb(vectorOf(through(processor, volts)), vectorOf(volts)) < -250.0);
     processor.setModel(processor.model());
     CHECK(processor.standstill().empty());
-    CHECK((through(processor, volts) != volts));
+    CHECK(errorDb(vectorOf(through(processor, volts)), vectorOf(volts)) > -40.0);
     CHECK_THROWS_AS(processor.setModel(box), Error);  // as another plays, it stays
     CHECK(processor.box() == nullptr);
     CHECK(processor.standstill().empty());

@@ -67,33 +67,33 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
     BlackBox plain = box;
     plain.R.setZero();
 
-    // y and y_r, one after another: the second is the box without q, which nothing bends.
-    const auto played = [&](const BlackBox& which) {
+    // y, or y_r, which is that of the box without q, after the first `from` samples; what is played is as long as
+    // wanted.
+    const auto played = [&](const BlackBox& which, const std::vector<double>& volts, int from) {
         BlackBoxStep step(which, region);
         std::vector<double> x(step.states(), 0.0), z(step.seen() + 1, 0.0), q(step.combinations(), 0.0), out;
         if (&which == &box) {
             std::copy(rest.x.begin(), rest.x.end(), x.begin());
             std::copy(rest.q.begin(), rest.q.end(), q.begin());
         }
-        for (int t = -lead; t < period; ++t) {
-            const double u = input[static_cast<std::size_t>((t + lead) % period)];
+        for (int t = 0; t < from + period; ++t) {
+            const double u = volts[static_cast<std::size_t>(t) % volts.size()];
             step.see(x.data(), u, z.data());
             step.combinationsAt(z.data(), u, nullptr, q.data());
             const double y = step.advance(x.data(), u, q.data());
-            if (t >= 0)
+            if (t >= from)
                 out.push_back(y);
         }
         return out;
     };
-    auto bent = played(box);
-    const auto straight = played(plain);
+    auto bent = played(box, input, lead);
+    const auto straight = played(plain, input, lead);
     const double signal = variance(straight);
     for (std::size_t t = 0; t < bent.size(); ++t)
         bent[t] -= straight[t];
     BlackBoxRehearsal best;
     best.beforeDb = decibelsOf(variance(bent) / signal);
     best.afterDb = std::numeric_limits<double>::infinity();
-    std::vector<double> leftOver;  // of the best
     const double gain = std::sqrt(signal / variance(input));
     for (const int preview : {16, 32, 64, 128}) {
         for (double depth = 20.0; depth <= 80.0; depth += 10.0) {
@@ -115,16 +115,31 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
                 trial.correction = std::max(trial.correction, std::abs(sample.correction));
             }
             trial.afterDb = decibelsOf(variance(left) / signal);
-            if (std::isfinite(trial.afterDb) && trial.correction <= box.stimulus.peak && trial.afterDb < best.afterDb) {
+            if (std::isfinite(trial.afterDb) && trial.correction <= box.stimulus.peak && trial.afterDb < best.afterDb)
                 best = trial;
-                leftOver = left;
-            }
             if (best.gainDb() >= enough)
                 break;
         }
         // A longer look ahead costs time and latency, and is tried for what it may bring.
         if (best.gainDb() >= plenty || 2 * preview > options.mostPreview)
             break;
+    }
+    // What is told is measured: the box plays what was corrected, long enough for the mean of what bends it to settle,
+    // which the linearizer counts to none of its own.
+    std::vector<double> leftOver;
+    if (best.gainDb() >= worthwhile) {
+        constexpr int settled = 4;
+        BlackBoxLinearizer linearizer(box, region, rest, best.design);
+        std::vector<double> corrected;
+        for (int t = 0; t < (settled + 1) * period + linearizer.latency(); ++t) {
+            const auto sample = linearizer.step(input[static_cast<std::size_t>(t % period)]);
+            if (t >= linearizer.latency())
+                corrected.push_back(sample.input + sample.correction);
+        }
+        leftOver = played(box, corrected, settled * period);
+        for (std::size_t t = 0; t < leftOver.size(); ++t)
+            leftOver[t] -= straight[t];
+        best.afterDb = decibelsOf(variance(leftOver) / signal);
     }
     if (!(best.gainDb() >= worthwhile))
         throw Error(Error::Kind::data,
