@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/BlackBox/BlackBoxRehearsal.h"
 
+#include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
-#include <array>
-#include <cstdio>
 #include <limits>
 
 namespace excursion {
 namespace {
 
 constexpr double worthwhile = 3.0;              // dB
+constexpr double nothing = -120.0;              // dB
 constexpr double plenty = 40.0, enough = 45.0;  // dB; no model is right to more of its distortion
 
 /// Power without the mean.
@@ -44,13 +44,6 @@ std::vector<double> bandPowers(const std::vector<double>& period, double rate, c
         powers.push_back(sum);
     }
     return powers;
-}
-
-std::string inPlain(double value)
-{
-    std::array<char, 32> text {};
-    std::snprintf(text.data(), text.size(), "%.1f dB", value);
-    return text.data();
 }
 
 }  // namespace
@@ -94,6 +87,9 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
     BlackBoxRehearsal best;
     best.beforeDb = decibelsOf(variance(bent) / signal);
     best.afterDb = std::numeric_limits<double>::infinity();
+    if (best.beforeDb < nothing)
+        throw Error(Error::Kind::data, "This model has no distortion to speak of at the level of its fit: there is "
+                                       "nothing to correct.");
     const double gain = std::sqrt(signal / variance(input));
     for (const int preview : {16, 32, 64, 128}) {
         for (double depth = 20.0; depth <= 80.0; depth += 10.0) {
@@ -143,15 +139,16 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
     }
     if (!(best.gainDb() >= worthwhile))
         throw Error(Error::Kind::data,
-                    "This model cannot be turned around: of its distortion of " + inPlain(best.beforeDb)
+                    "This model cannot be turned around: of its distortion of " + plainText(best.beforeDb, 1) + " dB"
                         + " at the level of its fit "
-                        + (std::isfinite(best.afterDb) ? inPlain(best.afterDb) + " would be left."
+                        + (std::isfinite(best.afterDb) ? plainText(best.afterDb, 1) + " dB" + " would be left."
                                                        : "no correction was found that keeps it in bounds."));
     const auto& bands = box.stimulus.frequency;
     const auto whole = bandPowers(straight, rate, bands), before = bandPowers(bent, rate, bands),
-               after = bandPowers(leftOver, rate, bands);
+               after = bandPowers(leftOver, rate, bands), heard = bandPowers(input, rate, bands);
+    const double perPower = 0.5 * period * static_cast<double>(period);
     for (std::size_t k = 0; k < bands.size(); ++k)
-        if (whole[k] > 0.0) {
+        if (heard[k] > 0.1 * box.stimulus.power[k] * perPower) {  // else no line is in it
             best.frequency.push_back(bands[k]);
             best.before.push_back(decibelsOf(before[k] / whole[k]));
             best.after.push_back(decibelsOf(after[k] / whole[k]));
