@@ -124,7 +124,7 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
     // which the linearizer counts to none of its own.
     std::vector<double> leftOver;
     if (best.gainDb() >= worthwhile) {
-        constexpr int settled = 4;
+        constexpr int settled = 8;
         BlackBoxLinearizer linearizer(box, region, rest, best.design);
         std::vector<double> corrected;
         for (int t = 0; t < (settled + 1) * period + linearizer.latency(); ++t) {

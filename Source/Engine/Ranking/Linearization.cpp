@@ -20,7 +20,7 @@
 namespace excursion {
 namespace {
 
-constexpr double worthTelling = 3.0;  // dB
+constexpr double worthTelling = 3.0, noDistortion = -120.0;  // dB
 constexpr int stimulusPeriod = 16384, stimulusPeriods = 5;
 constexpr std::uint64_t stimulusSeed = 3;
 
@@ -120,8 +120,8 @@ RankedLinearization linearizationOf(const RankedModel& model, const std::string&
         if (!model.stable)
             throw Error(Error::Kind::data, "It is not stable.");
         const nlohmann::json document(model.document);
-        const JsonField field(document, "", "the model of " + model.name);
-        if (document.is_null())
+        const JsonField field(document, "", model.name);
+        if (document.is_null() || field.at("format").value() == "excursion-state-space")
             throw Error(Error::Kind::data, "It is linear: there is nothing to correct.");
         told = isModelDocument(field) ? ofBox(field, sampleRate, progress) : ofDriver(field, output, sampleRate);
     } catch (const Error& error) {
@@ -132,6 +132,10 @@ RankedLinearization linearizationOf(const RankedModel& model, const std::string&
     }
     if (!told.trouble.empty())
         return told;
+    if (told.beforeDb < noDistortion) {
+        told.trouble = "It makes no distortion to speak of: there is nothing to correct.";
+        return told;
+    }
     const double error = std::isnan(model.validationDb) ? model.estimationDb : model.validationDb;
     const double unexplained = std::max(powerOf(error) - (noiseDb ? powerOf(*noiseDb) : 0.0), 0.0);
     told.leftDb = decibelsOf(powerOf(told.modelDb) + unexplained);
