@@ -19,6 +19,10 @@ LinearizePage::LinearizePage(Window& window)
 {
     name_.setFont(juce::Font(19.0f));
     forecastWords_.setFont(juce::Font(14.0f));
+    facts_.setFont(juce::Font(14.0f));
+    facts_.setBorderSize({1, 0, 1, 0});
+    facts_.setJustificationType(juce::Justification::topLeft);
+    facts_.setTitle("What the model is");
     name_.setBorderSize({1, 0, 1, 0});
     distortion_.getProperties().set("empty", "The distortion to be expected is being computed.");
     drivers_.setTextWhenNothingSelected("Factory drivers");
@@ -68,7 +72,7 @@ LinearizePage::LinearizePage(Window& window)
         switches_.push_back(std::make_unique<OnOffButton>(*effect, &window.history()));
         add({&switches_.back()->button()});
     }
-    add({&excursion_, &voltage_, &power_, &laws_, &distortion_, &forecastWords_});
+    add({&excursion_, &voltage_, &power_, &facts_, &laws_, &distortion_, &forecastWords_});
     power_.setVisible(false);
     showModel(processor_.anyModel());
 }
@@ -84,6 +88,7 @@ void LinearizePage::showModel(const AnyModel& model)
         dials_[k].first->setVisible(shown);
         dials_[k].second->slider().setVisible(shown);
     }
+    facts_.setVisible(box_ != nullptr);
     excursion_.setHead(box_ ? "Region" : "Excursion");
     if (box_)
         showBox(box_->played);
@@ -114,6 +119,16 @@ void LinearizePage::showBox(const PlayedBox& played)
     for (auto& one : switches_)
         one->button().setVisible(false);
     asked_ = {};
+    const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "";
+    facts_.setText("A " + words(box.kind) + ": " + words(box.output) + " from " + words(box.input) + " at "
+                       + words(nominal(box.linear.sampleRate, "Hz")) + ".\nFitted with "
+                       + words(engineering(box.stimulus.rms, unit, 3)) + " rms, "
+                       + words(engineering(box.stimulus.lowest(), "Hz", 2)) + " to "
+                       + words(engineering(box.stimulus.highest(), "Hz", 2))
+                       + "; beyond that level the signal is turned "
+                       + "down where it is linearized.\nAs the speaker, its " + words(box.output)
+                       + " is heard, as loud as the signal was under the fit.",
+                   juce::dontSendNotification);
     Plot response;
     response.title = "Linear part, where it was fitted";
     response.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
@@ -290,6 +305,8 @@ void LinearizePage::resized()
         meter->setBounds(left.removeFromTop(30));
         left.removeFromTop(4);
     }
+    left.removeFromTop(8);
+    facts_.setBounds(left.removeFromTop(juce::jmin(140, left.getHeight())));
     forecastWords_.setBounds(area.removeFromBottom(24));
     distortion_.setBounds(area.removeFromBottom(area.getHeight() * 9 / 20));
     laws_.setBounds(area);

@@ -37,7 +37,7 @@ private:
     void showForecast();
 
     Processor& processor_;
-    juce::Label name_, forecastWords_;
+    juce::Label name_, forecastWords_, facts_;
     juce::ComboBox drivers_, recipes_;
     juce::TextButton load_ {"Load a model..."};
     ChoiceBox mode_;

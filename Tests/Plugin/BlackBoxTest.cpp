@@ -170,7 +170,7 @@ TEST_CASE("A model without physics is turned around by the plugin, with the gain
         setMode(processor, Mode::linearize);
         processor.setModel(box);
         processor.prepareToPlay(rate, 512);
-        const auto volts = noise(box->played.box.stimulus, 0.6, rate, 105);
+        const auto volts = noise(box->played.box.stimulus, 0.6, rate, 105, 8);
         for (const int channel : {0, 1}) {
             processor.reset();
             const auto bent = through(processor, volts, 512, channel);
@@ -183,7 +183,8 @@ TEST_CASE("A model without physics is turned around by the plugin, with the gain
             INFO("from " << before << " to " << after << " dB, turned down by " << meters.displacementReduction << ", "
                          << meters.region);
             CHECK(meters.displacementReduction == 0.0);
-            CHECK(before - after > box->played.rehearsal->gainDb() - 1.0);
+            // A quieter signal is bent less, and then there is less to gain.
+            CHECK(before - after > box->played.rehearsal->gainDb() - 3.0);
         }
     }
     CHECK(turned == 5);
