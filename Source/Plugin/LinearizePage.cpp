@@ -120,15 +120,15 @@ void LinearizePage::showBox(const PlayedBox& played)
         one->button().setVisible(false);
     asked_ = {};
     const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "";
-    facts_.setText("A " + words(box.kind) + ": " + words(box.output) + " from " + words(box.input) + " at "
-                       + words(nominal(box.linear.sampleRate, "Hz")) + ".\nFitted with "
-                       + words(engineering(box.stimulus.rms, unit, 3)) + " rms, "
-                       + words(engineering(box.stimulus.lowest(), "Hz", 2)) + " to "
-                       + words(engineering(box.stimulus.highest(), "Hz", 2))
-                       + "; beyond that level the signal is turned "
-                       + "down where it is linearized.\nAs the speaker, its " + words(box.output)
-                       + " is heard, as loud as the signal was under the fit.",
-                   juce::dontSendNotification);
+    facts_.setText(
+        words(box.kind).substring(0, 1).toUpperCase() + words(box.kind).substring(1) + ": " + words(box.output)
+            + " from " + words(box.input) + " at " + words(nominal(box.linear.sampleRate, "Hz")) + ".\nFitted with "
+            + words(engineering(box.stimulus.rms, unit, 3)) + " rms, "
+            + words(engineering(box.stimulus.lowest(), "Hz", 2)) + " to "
+            + words(engineering(box.stimulus.highest(), "Hz", 2)) + "; beyond that level the signal is turned "
+            + "down where it is linearized.\nAs the speaker, its " + words(box.output)
+            + " is heard, as loud as the signal was under the fit.",
+        juce::dontSendNotification);
     Plot response;
     response.title = "Linear part, where it was fitted";
     response.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
@@ -302,6 +302,8 @@ void LinearizePage::resized()
     }
     left.removeFromTop(8);
     for (auto* meter : {&excursion_, &voltage_, &power_}) {
+        if (box_ && meter == &power_)
+            break;  // a coil's
         meter->setBounds(left.removeFromTop(30));
         left.removeFromTop(4);
     }

@@ -5,6 +5,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
 
+#include <cctype>
 #include <cmath>
 
 namespace excursion {
@@ -25,8 +26,9 @@ double levelled(const BlackBox& box)
 
 std::string whatItIs(const BlackBox& box)
 {
-    return "A " + box.kind + " (" + box.output + " from " + box.input + ") at "
-           + engineering(box.linear.sampleRate, "Hz", 4);
+    auto kind = box.kind;
+    kind.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(kind.front())));
+    return kind + " (" + box.output + " from " + box.input + ") at " + nominal(box.linear.sampleRate, "Hz");
 }
 
 }  // namespace
