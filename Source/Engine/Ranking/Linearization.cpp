@@ -21,6 +21,7 @@ namespace excursion {
 namespace {
 
 constexpr double worthTelling = 3.0, noDistortion = -120.0;  // dB
+constexpr double belowNoise = 0.1;                           // of the noise: what the take could not show
 constexpr int stimulusPeriod = 16384, stimulusPeriods = 5;
 constexpr std::uint64_t stimulusSeed = 3;
 
@@ -137,7 +138,8 @@ RankedLinearization linearizationOf(const RankedModel& model, const std::string&
         return told;
     }
     const double error = std::isnan(model.validationDb) ? model.estimationDb : model.validationDb;
-    const double unexplained = std::max(powerOf(error) - (noiseDb ? powerOf(*noiseDb) : 0.0), 0.0);
+    const double noise = noiseDb ? powerOf(*noiseDb) : 0.0,
+                 unexplained = std::max(powerOf(error) - noise, belowNoise * noise);
     told.leftDb = decibelsOf(powerOf(told.modelDb) + unexplained);
     if (!(told.beforeDb - told.leftDb >= worthTelling))
         told.trouble = "Of its distortion of " + plainText(told.beforeDb, 1) + " dB " + plainText(told.leftDb, 1)
