@@ -25,6 +25,15 @@ bool holdsModel(const juce::File& file)
                && document.value("format", "") != "excursion-plan");
 }
 
+/// A field keeps the colour that its text was put in with, which may have been before the window had a look.
+void recolourTexts(juce::Component& part)
+{
+    if (auto* field = dynamic_cast<juce::TextEditor*>(&part))
+        field->applyColourToAllText(look::palette().text);
+    for (auto* child : part.getChildren())
+        recolourTexts(*child);
+}
+
 }  // namespace
 
 Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
@@ -172,6 +181,7 @@ void Editor::recolour()
     look_->use(preferences_.theme);
     coloured_ = look_->version();
     sendLookAndFeelChange();
+    recolourTexts(body_);
     for (auto* page : pages_)
         page->recolour();
     if (auto* window = findParentComponentOfClass<juce::ResizableWindow>())
