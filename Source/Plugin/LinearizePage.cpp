@@ -161,11 +161,14 @@ void LinearizePage::showDistortion(const std::vector<double>& frequency, const s
     Plot plot;
     plot.title = title;
     plot.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
+    const double least = *std::min_element(after.begin(), after.end()),
+                 most = std::max(*std::max_element(before.begin(), before.end()),
+                                 *std::max_element(after.begin(), after.end()));
     plot.y = {"over the signal",
               "dB",
               false,
-              std::max(-180.0, 20.0 * std::floor(*std::min_element(after.begin(), after.end()) / 20.0)),
-              0.0,
+              std::max(-180.0, 20.0 * std::floor(least / 20.0)),
+              std::max(0.0, 20.0 * std::ceil(most / 20.0)),
               {}};
     plot.series = {{"as it is", Role::before, frequency, before, {}, {}, Series::Shape::line, 0},
                    {"linearized", Role::after, frequency, after, {}, {}, Series::Shape::line, 0}};
