@@ -142,6 +142,8 @@ def test_classes_of_models_are_ranked(stiff):
     assert set(table.index) == {"linear", "driver"} and table.index[0] == ranking.best
     assert table["validationDb"].is_monotonic_increasing
     assert ranking.noise_db == pytest.approx(-73, abs=2)
+    assert ranking.linearizes_best is None  # neither knows what bends
+    assert set(ranking.linearization().index) == {"linear", "driver"}
 
 
 def test_an_impedance_is_enough_for_a_linear_model(tmp_path):

@@ -3,8 +3,8 @@
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 
-#include "Engine/BlackBox/BlackBoxFile.h"
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
+#include "Engine/BlackBox/ModelDocument.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
@@ -204,8 +204,8 @@ void run(const PredistortArguments& options, Terminal& terminal)
     requireFilePlace(options.out);
     const auto document = readJson(options.model);
     const JsonField field(document, "", options.model);
-    if (isBlackBox(field))
-        return runBlackBox(options, blackBoxFromJson(field), terminal);
+    if (isModelDocument(field))
+        return runBlackBox(options, blackBoxOf(modelDocumentFrom(field)), terminal);
     const auto model = modelFromJson(field);
     const auto wav = readPlayable(options.input, options.out);
     if (options.powerLimit && !model.electrical())

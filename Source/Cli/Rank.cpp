@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -23,6 +24,17 @@ struct RankArguments {
     std::string take, output, keep;
     RankOptions options;
 };
+
+Json json(const RankedLinearization& told)
+{
+    if (!told.trouble.empty())
+        return {{"trouble", told.trouble}};
+    return {{"beforeDb", numberOrNull(told.beforeDb)},
+            {"modelDb", numberOrNull(told.modelDb)},
+            {"leftDb", numberOrNull(told.leftDb)},
+            {"load", told.load},
+            {"latency", told.latency}};
+}
 
 Json json(const RankedModel& model)
 {
@@ -38,6 +50,7 @@ Json json(const RankedModel& model)
     object["load"] = model.load;
     object["fitSeconds"] = model.fitSeconds;
     object["stable"] = model.stable;
+    object["linearization"] = json(model.linearization);
     return object;
 }
 
@@ -58,6 +71,30 @@ void keep(const Ranking& ranking, const std::string& folder, Json& document, Ter
     if (!ranking.best.empty())
         document["best"] = ranking.best;
     terminal.say("Kept in " + folder + ": " + (kept.empty() ? "nothing" : joined(kept)) + ".");
+}
+
+/// What it is worth to turn each class around, least distortion left first, and why the others are not.
+void sayLinearizations(const Ranking& ranking, Terminal& terminal)
+{
+    std::vector<const RankedModel*> worthIt;
+    for (const auto& m : ranking.models)
+        if (m.trouble.empty() && m.linearization.trouble.empty())
+            worthIt.push_back(&m);
+    std::stable_sort(worthIt.begin(), worthIt.end(),
+                     [](const auto* a, const auto* b) { return a->linearization.leftDb < b->linearization.leftDb; });
+    std::vector<std::vector<std::string>> rows;
+    for (const auto* m : worthIt) {
+        const auto& told = m->linearization;
+        rows.push_back({m->name, fixed(told.beforeDb, 1), fixed(told.modelDb, 1), fixed(told.leftDb, 1),
+                        fixed(100.0 * told.load, 2) + " %", fixed(1e3 * told.latency, 1) + " ms"});
+    }
+    if (!rows.empty())
+        terminal.table({"turned around", "distortion dB", "left on the model", "left on the take", "load", "latency"},
+                       rows);
+    for (const auto& m : ranking.models)
+        if (m.trouble.empty() && !m.linearization.trouble.empty())
+            terminal.say(m.name + " is not turned around. " + m.linearization.trouble);
+    terminal.say(ranking.straightSentence);
 }
 
 void run(const RankArguments& arguments, Terminal& terminal)
@@ -86,6 +123,7 @@ void run(const RankArguments& arguments, Terminal& terminal)
         if (!m.trouble.empty())
             terminal.say(m.name + ": " + m.trouble);
     terminal.say(ranking.sentence);
+    sayLinearizations(ranking, terminal);
     Json document {{"format", "excursion-ranking"},
                    {"version", 1},
                    {"take", arguments.take},
@@ -93,6 +131,8 @@ void run(const RankArguments& arguments, Terminal& terminal)
                    {"output", name(ranking.output)}};
     document["noiseDb"] = ranking.noiseDb ? Json(*ranking.noiseDb) : Json();
     document["sentence"] = ranking.sentence;
+    document["linearizesBest"] = ranking.straightest.empty() ? Json() : Json(ranking.straightest);
+    document["linearizationSentence"] = ranking.straightSentence;
     document["models"] = Json::array();
     for (const auto& m : ranking.models)
         document["models"].push_back(json(m));
@@ -106,11 +146,9 @@ void run(const RankArguments& arguments, Terminal& terminal)
 void addRank(CLI::App& app, Terminal& terminal)
 {
     auto o = std::make_shared<RankArguments>();
-    auto* verb =
-        app.add_subcommand(
-               "rank",
-               "Fit all classes of models to one take, and show them side by side: error, parameters, load, stability")
-            ->group(step::fit);
+    auto* verb = app.add_subcommand("rank", "Fit all classes of models to one take, and show them side by side: error, "
+                                            "parameters, load, stability, and what it is worth to turn them around")
+                     ->group(step::fit);
     std::vector<std::string> names;
     std::string told = "Classes:\n";
     for (const auto& known : modelClasses()) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
-#include "Cli/PlayDocument.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 #include "Engine/Import/ReadTake.h"
 
+#include "Engine/BlackBox/ModelDocument.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/TextFile.h"
 #include "Engine/Error.h"
@@ -103,7 +103,7 @@ void sayTake(const SimulateArguments& options, const Measurement& take, Terminal
 }
 
 /// A model that knows no physics: its one output for its one input, at the rate that it was identified at.
-void runDocument(const SimulateArguments& options, const PlayedDocument& model, Terminal& terminal)
+void runDocument(const SimulateArguments& options, const ModelDocument& model, Terminal& terminal)
 {
     const auto input = quantityNamed(model.input), output = quantityNamed(model.output);
     if (!input || !output || (*input != Quantity::voltage && *input != Quantity::force))
@@ -116,8 +116,8 @@ void runDocument(const SimulateArguments& options, const PlayedDocument& model, 
                                            + significant(given.sampleRate, 8) + " Hz; resample it, or identify the "
                                            + "model at that rate.");
     const auto& u = given.channel.samples;
-    const Eigen::MatrixXd y = model.play(
-        Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())));
+    const Eigen::MatrixXd y = simulate(
+        model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())));
     if (!y.allFinite())
         throw Error(Error::Kind::numerical, "The model runs away with this input.");
     SweepTake result;
@@ -165,9 +165,11 @@ void run(const SimulateArguments& options, Terminal& terminal)
     if (!options.simulation.isValid(&reason))
         throw Error(Error::Kind::usage, "The simulation cannot run: " + reason + ".");
     requireFolderPlace(options.out);
-    if (const auto document = playedDocument(options.model))
-        return runDocument(options, *document, terminal);
-    const auto model = readModel(options.model);
+    const auto source = readJson(options.model);
+    const JsonField field(source, "", options.model);
+    if (isModelDocument(field))
+        return runDocument(options, modelDocumentFrom(field), terminal);
+    const auto model = modelFromJson(field);
     const auto given = played(options, model.electrical());
     SimulationSummary summary;
     auto take = simulate(model, given.channel.samples, given.sampleRate, options.simulation, &summary,

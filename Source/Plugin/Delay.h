@@ -13,7 +13,7 @@ namespace excursion::plugin {
 /// Only its construction allocates.
 class Delay {
 public:
-    explicit Delay(int samples) : ring_(static_cast<std::size_t>(samples)) {}  ///< at least 1
+    explicit Delay(int samples) : ring_(static_cast<std::size_t>(samples)) {}
 
     void reset() { std::fill(ring_.begin(), ring_.end(), 0.0); }
 
@@ -22,6 +22,8 @@ public:
         for (std::size_t k = 0; k < n; ++k) {
             if (!std::isfinite(samples[k]))
                 samples[k] = 0.0;
+            if (ring_.empty())
+                continue;
             std::swap(samples[k], ring_[at_]);
             at_ = at_ + 1 == ring_.size() ? 0 : at_ + 1;
         }

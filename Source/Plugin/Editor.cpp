@@ -25,6 +25,15 @@ bool holdsModel(const juce::File& file)
                && document.value("format", "") != "excursion-plan");
 }
 
+/// A field keeps the colour that its text was put in with, which may have been before the window had a look.
+void recolourTexts(juce::Component& part)
+{
+    if (auto* field = dynamic_cast<juce::TextEditor*>(&part))
+        field->applyColourToAllText(look::palette().text);
+    for (auto* child : part.getChildren())
+        recolourTexts(*child);
+}
+
 }  // namespace
 
 Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
@@ -59,6 +68,10 @@ Editor::Editor(Processor& processor, juce::AudioDeviceManager* devices)
     view_.setTitle("View: scale, theme, keys");
     cancel_.onClick = [this] {
         owner_.session().cancel();
+        if (owner_.rehearsing().status().busy) {
+            owner_.rehearsing().cancel();
+            tell("Cancelled.", false);
+        }
         if (auto* measuring = measure_.measuring())
             measuring->cancel();
     };
@@ -168,6 +181,7 @@ void Editor::recolour()
     look_->use(preferences_.theme);
     coloured_ = look_->version();
     sendLookAndFeelChange();
+    recolourTexts(body_);
     for (auto* page : pages_)
         page->recolour();
     if (auto* window = findParentComponentOfClass<juce::ResizableWindow>())
@@ -278,25 +292,62 @@ void Editor::noteLadder(const std::shared_ptr<const Findings>& findings)
         history_.did("Take back " + words(before.back()), again(before.back()), back);
 }
 
+/// That another model plays is a step of the history.
+void Editor::noteModel(const AnyModel& before, const AnyModel& now)
+{
+    const auto put = [this](const AnyModel& which) {
+        return [this, which] {
+            try {
+                owner_.setModel(which);
+            } catch (const Error& error) {
+                tell(words(error.what()), true);
+            }
+        };
+    };
+    history_.did("Load a model", put(before), put(now));
+}
+
 void Editor::use(const Model& model, const juce::String& from)
 {
     try {
-        const auto before = owner_.model();
+        const auto before = owner_.anyModel();
         owner_.setModel(model);
-        const auto put = [this](const Model& which) {
-            return [this, which] {
-                try {
-                    owner_.setModel(which);
-                } catch (const Error& error) {
-                    tell(words(error.what()), true);
-                }
-            };
-        };
-        history_.did("Load a model", put(before), put(model));
+        replaced_.reset();
+        noteModel(before, model);
         tell("The model is from " + from + ".", false);
     } catch (const Error& error) {
         tell(words(error.what()), true);
     }
+}
+
+void Editor::useFile(const juce::File& file)
+{
+    const auto path = file.getFullPathName().toStdString();
+    try {
+        const auto text = file.loadFileAsString().toStdString();
+        if (!holdsBox(text)) {
+            use(readModel(path), file.getFileName());
+            return;
+        }
+        replaced_ = owner_.anyModel();
+        owner_.rehearsing().load(nlohmann::ordered_json::parse(text), file.getFileName().toStdString());
+        tell("Rehearsing what it is worth to turn " + file.getFileName() + " around.", false);
+    } catch (const Error& error) {
+        tell(words(error.what()), true);
+    }
+}
+
+/// What came of a model without physics that was loaded.
+void Editor::noteRehearsal()
+{
+    const auto status = owner_.rehearsing().status();
+    if (status.version == rehearsed_)
+        return;
+    rehearsed_ = status.version;
+    if (!status.trouble && replaced_)
+        noteModel(*replaced_, owner_.anyModel());
+    replaced_.reset();
+    tell(words(status.words), status.trouble);
 }
 
 void Editor::load(const juce::File& file)
@@ -306,12 +357,8 @@ void Editor::load(const juce::File& file)
         go(PageName::measure);
         return;
     }
-    try {
-        use(readModel(file.getFullPathName().toStdString()), file.getFileName());
-        go(PageName::linearize);
-    } catch (const Error& error) {
-        tell(words(error.what()), true);
-    }
+    useFile(file);
+    go(PageName::linearize);
 }
 
 void Editor::filesDropped(const juce::StringArray& files, int, int) { load(juce::File(files[0])); }
@@ -326,9 +373,10 @@ void Editor::show(const std::shared_ptr<const Findings>& findings)
 void Editor::update()
 {
     const auto status = owner_.session().status();
-    fraction_ = status.fraction;
-    progress_.setVisible(status.busy);
-    cancel_.setVisible(status.busy);
+    const auto rehearsal = owner_.rehearsing().status();
+    fraction_ = status.busy ? status.fraction : rehearsal.fraction;
+    progress_.setVisible(status.busy || rehearsal.busy);
+    cancel_.setVisible(status.busy || rehearsal.busy);
     if (status.words != said_) {
         said_ = status.words;
         tell(words(said_), status.trouble);
@@ -347,8 +395,9 @@ void Editor::update()
     // A host may have restored another state.
     if (const auto version = owner_.modelVersion(); version != shown_) {
         shown_ = version;
-        linearize_.showModel(owner_.model());
+        linearize_.showModel(owner_.anyModel());
     }
+    noteRehearsal();
     // Keys go to the app's window from the start; within a host they are the host's until a person clicks or tabs here.
     if (!focused_ && juce::JUCEApplicationBase::isStandaloneApp() && isShowing()) {
         focused_ = true;

@@ -55,6 +55,7 @@ public:
     History& history() override { return history_; }
     void go(PageName) override;
     void use(const Model&, const juce::String& from) override;
+    void useFile(const juce::File&) override;
     void tell(const juce::String&, bool trouble) override;
 
     void paint(juce::Graphics&) override;
@@ -70,6 +71,8 @@ private:
     void keep();
     void layOut(juce::Rectangle<int>);
     void showView();
+    void noteModel(const AnyModel& before, const AnyModel& now);
+    void noteRehearsal();
     void noteLadder(const std::shared_ptr<const Findings>&);
 
     juce::SharedResourcePointer<look::Look> look_;
@@ -94,6 +97,8 @@ private:
     std::uint64_t seen_ = 0;                    ///< version of the findings that the pages show
     std::string said_;                          ///< of the session's status
     std::string standstill_;                    ///< of the processor, as it was told
+    std::uint64_t rehearsed_ = 0;               ///< version of the rehearsal that was told
+    std::optional<AnyModel> replaced_;          ///< what played when the model that is rehearsed was asked for
     std::uint64_t shown_ = 0;                   ///< version of the model that the last page shows
     bool focused_ = false;                      ///< has asked for the keyboard
     int coloured_ = -1;                         ///< version of the look that the window has

@@ -4,7 +4,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
-#include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Linear/Response.h"
 #include "Plots/Plots.h"
 
 #include <nlohmann/json.hpp>
@@ -19,6 +19,10 @@ LinearizePage::LinearizePage(Window& window)
 {
     name_.setFont(juce::Font(19.0f));
     forecastWords_.setFont(juce::Font(14.0f));
+    facts_.setFont(juce::Font(14.0f));
+    facts_.setBorderSize({1, 0, 1, 0});
+    facts_.setJustificationType(juce::Justification::topLeft);
+    facts_.setTitle("What the model is");
     name_.setBorderSize({1, 0, 1, 0});
     distortion_.getProperties().set("empty", "The distortion to be expected is being computed.");
     drivers_.setTextWhenNothingSelected("Factory drivers");
@@ -68,12 +72,32 @@ LinearizePage::LinearizePage(Window& window)
         switches_.push_back(std::make_unique<OnOffButton>(*effect, &window.history()));
         add({&switches_.back()->button()});
     }
-    add({&excursion_, &voltage_, &power_, &laws_, &distortion_, &forecastWords_});
+    add({&excursion_, &voltage_, &power_, &facts_, &laws_, &distortion_, &forecastWords_});
     power_.setVisible(false);
-    showModel(processor_.model());
+    showModel(processor_.anyModel());
 }
 
-void LinearizePage::showModel(const Model& model)
+void LinearizePage::showModel(const AnyModel& model)
+{
+    const auto* box = std::get_if<LoadedBoxPointer>(&model);
+    box_ = box != nullptr ? *box : nullptr;
+    const auto numbers = processor_.parameters().numbers();
+    for (std::size_t k = 0; k < dials_.size(); ++k) {
+        const auto& id = numbers[k]->paramID;
+        const bool shown = !box_ || (id != "displacementLimit" && id != "powerLimit" && id != "margin");
+        dials_[k].first->setVisible(shown);
+        dials_[k].second->slider().setVisible(shown);
+    }
+    facts_.setVisible(box_ != nullptr);
+    excursion_.setHead(box_ ? "Region" : "Excursion");
+    if (box_)
+        showBox(box_->played);
+    else
+        showDriver(std::get<Model>(model));
+    resized();
+}
+
+void LinearizePage::showDriver(const Model& model)
 {
     name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name),
                   juce::dontSendNotification);
@@ -81,10 +105,74 @@ void LinearizePage::showModel(const Model& model)
     for (auto& plot : plots)
         plot.key = false;
     laws_.show(std::move(plots));
+    distortion_.getProperties().set("empty", "The distortion to be expected is being computed.");
     // A switch of an effect that the model has not would do nothing.
     for (std::size_t k = 0; k < switches_.size(); ++k)
         switches_[k]->button().setVisible(model.has(catalogue()[k]->id()));
-    resized();
+}
+
+void LinearizePage::showBox(const PlayedBox& played)
+{
+    const auto& box = played.box;
+    name_.setText(box.name.empty() ? juce::String("A model without a name") : words(box.name),
+                  juce::dontSendNotification);
+    for (auto& one : switches_)
+        one->button().setVisible(false);
+    asked_ = {};
+    const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "";
+    facts_.setText(
+        words(box.kind).substring(0, 1).toUpperCase() + words(box.kind).substring(1) + ": " + words(box.output)
+            + " from " + words(box.input) + " at " + words(nominal(box.linear.sampleRate, "Hz")) + ".\nFitted with "
+            + words(engineering(box.stimulus.rms, unit, 3)) + " rms, "
+            + words(engineering(box.stimulus.lowest(), "Hz", 2)) + " to "
+            + words(engineering(box.stimulus.highest(), "Hz", 2)) + "; beyond that level the signal is turned "
+            + "down where it is linearized.\nAs the speaker, its " + words(box.output)
+            + " is heard, as loud as the signal was under the fit.",
+        juce::dontSendNotification);
+    Plot response;
+    response.title = "Linear part, where it was fitted";
+    response.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
+    response.y = {box.output + " over " + box.input, "dB", false, 0.0, 0.0, {}};
+    response.key = false;
+    std::vector<double> frequency, level;
+    const double to = std::min(box.stimulus.highest(), 0.49 * box.linear.sampleRate);
+    for (double f = box.stimulus.lowest(); f <= to; f *= std::exp2(1.0 / 24.0))
+        frequency.push_back(f);
+    for (const auto& gain : respond(box.linear, frequency))
+        level.push_back(20.0 * std::log10(std::abs(gain(0, 0))));
+    response.series = {{"linear part", Role::model, frequency, level, {}, {}, Series::Shape::line, 0}};
+    laws_.show({response});
+    if (!played.rehearsal) {
+        distortion_.getProperties().set("empty", words(played.refusal));
+        distortion_.show({});
+        forecastWords_.setText("It plays; linearizing it would not help.", juce::dontSendNotification);
+        return;
+    }
+    const auto& gain = *played.rehearsal;
+    showDistortion(gain.frequency, gain.before, gain.after, "Rehearsed distortion, as loud as it was fitted");
+    forecastWords_.setText("Distortion " + words(decibels(gain.beforeDb)) + ", linearized "
+                               + words(decibels(gain.afterDb)) + ": a gain of " + words(decibels(gain.gainDb())),
+                           juce::dontSendNotification);
+}
+
+void LinearizePage::showDistortion(const std::vector<double>& frequency, const std::vector<double>& before,
+                                   const std::vector<double>& after, const std::string& title)
+{
+    Plot plot;
+    plot.title = title;
+    plot.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
+    const double least = *std::min_element(after.begin(), after.end()),
+                 most = std::max(*std::max_element(before.begin(), before.end()),
+                                 *std::max_element(after.begin(), after.end()));
+    plot.y = {"over the signal",
+              "dB",
+              false,
+              std::max(-180.0, 20.0 * std::floor(least / 20.0)),
+              std::max(0.0, 20.0 * std::ceil(most / 20.0)),
+              {}};
+    plot.series = {{"as it is", Role::before, frequency, before, {}, {}, Series::Shape::line, 0},
+                   {"linearized", Role::after, frequency, after, {}, {}, Series::Shape::line, 0}};
+    distortion_.show(std::move(plot));
 }
 
 void LinearizePage::choose()
@@ -94,12 +182,7 @@ void LinearizePage::choose()
                           [this](const juce::FileChooser& chosen) {
                               if (chosen.getResult() == juce::File())
                                   return;
-                              try {
-                                  window_.use(readModel(chosen.getResult().getFullPathName().toStdString()),
-                                              chosen.getResult().getFileName());
-                              } catch (const Error& error) {
-                                  window_.tell(words(error.what()), true);
-                              }
+                              window_.useFile(chosen.getResult());
                           });
 }
 
@@ -107,6 +190,10 @@ void LinearizePage::choose()
 void LinearizePage::showForecast()
 {
     const auto recipe = processor_.parameters().recipe();
+    if (box_) {
+        forecast_.take();  // of a driver before
+        return;
+    }
     if (auto question = std::pair {processor_.modelVersion(), toJson(recipe).dump()}; question != asked_) {
         asked_ = std::move(question);
         const auto model = withoutOff(processor_.model(), recipe);
@@ -115,18 +202,7 @@ void LinearizePage::showForecast()
     const auto answer = forecast_.take();
     if (!answer)
         return;
-    Plot plot;
-    plot.title = "Predicted distortion at 0 dBFS";
-    plot.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
-    plot.y = {"over the signal",
-              "dB",
-              false,
-              std::max(-180.0, 20.0 * std::floor(*std::min_element(answer->after.begin(), answer->after.end()) / 20.0)),
-              0.0,
-              {}};
-    plot.series = {{"as it is", Role::before, answer->frequency, answer->before, {}, {}, Series::Shape::line, 0},
-                   {"linearized", Role::after, answer->frequency, answer->after, {}, {}, Series::Shape::line, 0}};
-    distortion_.show(std::move(plot));
+    showDistortion(answer->frequency, answer->before, answer->after, "Predicted distortion at 0 dBFS");
     forecastWords_.setText("Distortion " + words(decibels(answer->beforeDb)) + ", linearized "
                                + words(decibels(answer->afterDb)) + ", at "
                                + words(engineering(answer->displacement, "m", 2)) + " peak excursion",
@@ -154,6 +230,9 @@ void LinearizePage::showMeters()
     const auto limits = processor_.parameters().controls(range).linearization;
     if (!processor_.standstill().empty())
         excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
+    else if (box_)
+        excursion_.show(meters.region, whole(100.0 * meters.region) + " % of where it was fitted",
+                        meters.displacementReduction);
     else
         excursion_.show(
             reach,
@@ -162,7 +241,7 @@ void LinearizePage::showMeters()
             meters.displacementReduction);
     voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V",
                   meters.voltageReduction);
-    power_.setVisible(std::isfinite(limits.powerLimit));
+    power_.setVisible(!box_ && std::isfinite(limits.powerLimit));
     power_.show(meters.power / limits.powerLimit, juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W",
                 meters.powerReduction);
     if (meters.faults > faults_)
@@ -200,7 +279,8 @@ void LinearizePage::resized()
     const auto titled = [width = left.getWidth() / 2](const juce::ToggleButton& one) {
         return juce::Font(14.0f).getStringWidth(one.getButtonText()) + 28 <= width;
     };
-    int lines = static_cast<int>(dials_.size());
+    int lines = static_cast<int>(
+        std::count_if(dials_.begin(), dials_.end(), [](const auto& dial) { return dial.first->isVisible(); }));
     for (std::size_t k = 0; k < shown.size(); ++lines)
         k += k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]) ? 2 : 1;
     const int rest = 28 + 3 * 8 + 3 * 30 + 3 * 4,
@@ -208,6 +288,8 @@ void LinearizePage::resized()
     mode_.box().setBounds(left.removeFromTop(28));
     left.removeFromTop(8);
     for (auto& dial : dials_) {
+        if (!dial.first->isVisible())
+            continue;
         auto line = left.removeFromTop(row);
         dial.first->setBounds(line.removeFromLeft(130));
         dial.second->slider().setBounds(line);
@@ -223,9 +305,13 @@ void LinearizePage::resized()
     }
     left.removeFromTop(8);
     for (auto* meter : {&excursion_, &voltage_, &power_}) {
+        if (box_ && meter == &power_)
+            break;  // a coil's
         meter->setBounds(left.removeFromTop(30));
         left.removeFromTop(4);
     }
+    left.removeFromTop(8);
+    facts_.setBounds(left.removeFromTop(juce::jmin(140, left.getHeight())));
     forecastWords_.setBounds(area.removeFromBottom(24));
     distortion_.setBounds(area.removeFromBottom(area.getHeight() * 9 / 20));
     laws_.setBounds(area);

@@ -16,23 +16,28 @@
 namespace excursion::plugin {
 
 /// What is done to the signal with the model: mode, limits, effects as switches, the laws, the meters of the
-/// protection, and the distortion that is to be expected with and without linearization.
+/// protection, and the distortion that is to be expected with and without linearization. Of a model without physics,
+/// the response of its linear part in place of laws, and no limits that only a cone and a coil have.
 class LinearizePage : public Page {
 public:
     explicit LinearizePage(Window&);
 
-    void showModel(const Model&);
+    void showModel(const AnyModel&);
     void tick() override;
     void resized() override;
 
 private:
+    void showDriver(const Model&);
+    void showBox(const PlayedBox&);
+    void showDistortion(const std::vector<double>& frequency, const std::vector<double>& before,
+                        const std::vector<double>& after, const std::string& title);
     void choose();
     void follow();
     void showMeters();
     void showForecast();
 
     Processor& processor_;
-    juce::Label name_, forecastWords_;
+    juce::Label name_, forecastWords_, facts_;
     juce::ComboBox drivers_, recipes_;
     juce::TextButton load_ {"Load a model..."};
     ChoiceBox mode_;
@@ -42,6 +47,7 @@ private:
     PlotGrid laws_ {"Laws of the model"};
     PlotView distortion_;
     Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
+    LoadedBoxPointer box_;  ///< null: a driver is shown
     Forecast forecast_;
     /// version of the model, and the recipe, that the forecast is of
     std::pair<std::uint64_t, std::string> asked_;

@@ -13,6 +13,13 @@ constexpr int second = 20;        // calls
 
 }  // namespace
 
+void Meter::setHead(const juce::String& title)
+{
+    title_ = title;
+    setTitle(title);
+    repaint();
+}
+
 void Meter::show(double share, const juce::String& words, double reduction)
 {
     share_ = std::max(std::clamp(share, 0.0, 1.0), 0.92 * share_);

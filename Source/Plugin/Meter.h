@@ -11,6 +11,8 @@ class Meter : public juce::Component {
 public:
     explicit Meter(const juce::String& title) : title_(title) { setTitle(title); }
 
+    void setHead(const juce::String& title);
+
     /// @param share      of the limit, 1: as far as allowed
     /// @param words      the value with its unit
     /// @param reduction  dB by which the limit has turned the signal down; told, for a second, where it can be heard

@@ -22,6 +22,8 @@ public:
     virtual void go(PageName) = 0;
     /// loads it into the processor; tells when it can't be run
     virtual void use(const Model&, const juce::String& from) = 0;
+    /// the same with the model in a file, of a driver or without physics; the latter is rehearsed first
+    virtual void useFile(const juce::File&) = 0;
     virtual void tell(const juce::String&, bool trouble) = 0;  ///< in the status line
 };
 

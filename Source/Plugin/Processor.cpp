@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Processor.h"
 
+#include "Engine/BlackBox/BlackBoxEngine.h"
 #include "Engine/Error.h"
 #include "Plugin/Editor.h"
 
 #include <chrono>
+#include <limits>
 
 namespace excursion::plugin {
 namespace {
@@ -15,16 +17,6 @@ Model firstModel()
 {
     const auto& drivers = factoryDrivers();
     return modelFromText(drivers[drivers.size() / 2].text, "factory driver");
-}
-
-/// One chain a channel.
-std::vector<std::unique_ptr<Chain>> chains(const Model& model, const RealTimeOptions& options,
-                                           const ChainControls& controls, int channels)
-{
-    std::vector<std::unique_ptr<Chain>> result;
-    for (int k = 0; k < channels; ++k)
-        result.push_back(std::make_unique<Chain>(model, options, controls));
-    return result;
 }
 
 /// Without the effects that are switched off; whole where it cannot be run without them.
@@ -48,7 +40,8 @@ Processor::Processor()
       parameters_(*this),
       model_(firstModel()),
       measuredDisplacement_(measuredDisplacement(model_)),
-      worker_([this](const std::stop_token& stop) { work(stop); })
+      worker_([this](const std::stop_token& stop) { work(stop); }),
+      rehearsing_([this](const LoadedBoxPointer& box) { put(box); })
 {
     setLatencySamples(Chain(model_, options(), {}).latency());  // the same at every rate
 }
@@ -67,21 +60,42 @@ RealTimeOptions Processor::options() const
     return asked.isValid(nullptr) ? asked : RealTimeOptions {48000.0, oversampling};
 }
 
-/// With the mutex held: new chains for the model, and the switches as they are.
-void Processor::build(const Model& model)
+/// With the mutex held: one chain a channel, with the switches as they are.
+std::vector<std::unique_ptr<Chain>> Processor::chains(const AnyModel& model, std::size_t channels)
 {
     switches_ = parameters_.switches();
-    const auto running = withoutOff(model, parameters_.recipe());
-    const double measured = measuredDisplacement(running);
-    auto fresh = chains(running, options(), parameters_.controls(measured), static_cast<int>(channels_.size()));
+    std::vector<std::unique_ptr<Chain>> result;
+    double measured = std::numeric_limits<double>::infinity();
+    if (const auto* box = std::get_if<LoadedBoxPointer>(&model)) {
+        const double rate = options().sampleRate;
+        const auto controls = parameters_.controls(measured);
+        for (std::size_t k = 0; k < channels; ++k)
+            result.push_back(std::make_unique<Chain>(
+                std::make_unique<BlackBoxEngine>((*box)->played, rate, controls.linearization), rate, controls));
+    } else {
+        const auto running = asSwitched(std::get<Model>(model), parameters_.recipe(), options());
+        measured = measuredDisplacement(running);
+        for (std::size_t k = 0; k < channels; ++k)
+            result.push_back(std::make_unique<Chain>(running, options(), parameters_.controls(measured)));
+    }
     measuredDisplacement_.store(measured, std::memory_order_relaxed);
-    for (std::size_t k = 0; k < fresh.size(); ++k) {
+    return result;
+}
+
+/// With the mutex held: offers new chains for the model.
+/// @returns their latency
+int Processor::build(const AnyModel& model)
+{
+    auto fresh = chains(model, std::max<std::size_t>(channels_.size(), 1));
+    const int latency = fresh.front()->latency();
+    for (std::size_t k = 0; k < channels_.size(); ++k) {
         // Warm: its memory has been touched before the audio thread gets it.
         std::array<double, 256> silence {};
         fresh[k]->process(silence.data(), silence.data(), silence.size());
         fresh[k]->reset();
-        channels_[k]->offer(std::move(fresh[k]));
+        channels_[k]->offer(std::move(fresh[k]), latency);
     }
+    return latency;
 }
 
 void Processor::work(const std::stop_token& stop)
@@ -92,7 +106,10 @@ void Processor::work(const std::stop_token& stop)
             channel->collect();
         if (!channels_.empty() && parameters_.switches() != switches_) {
             try {
-                build(model_);
+                if (box_)
+                    switches_ = parameters_.switches();  // it has no effects
+                else
+                    build(model_);
             } catch (const Error&) {
                 // Without some effect the model cannot be run: what plays goes on.
             }
@@ -101,14 +118,46 @@ void Processor::work(const std::stop_token& stop)
     }
 }
 
-void Processor::setModel(const Model& model)
+void Processor::setModel(const AnyModel& model)
+{
+    rehearsing_.cancel();
+    put(model);
+}
+
+void Processor::put(const AnyModel& model)
+{
+    int latency = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto* box = std::get_if<LoadedBoxPointer>(&model);
+        if (box == nullptr) {
+            requireRunnable(std::get<Model>(model), options());
+            requireRunnable(withoutOff(std::get<Model>(model), parameters_.recipe()), options());
+        }
+        latency = build(model);
+        box_ = box != nullptr ? *box : nullptr;
+        if (box == nullptr)
+            model_ = std::get<Model>(model);
+        if (!delays_.empty()) {
+            // From a standstill: the model before could not be run at this rate, this one may.
+            const juce::ScopedLock still(getCallbackLock());
+            latency = start();
+        }
+        modelVersion_.fetch_add(1, std::memory_order_release);
+    }
+    setLatencySamples(latency);
+}
+
+AnyModel Processor::anyModel() const
 {
     const std::lock_guard lock(mutex_);
-    requireRunnable(model, options());
-    requireRunnable(withoutOff(model, parameters_.recipe()), options());
-    build(model);
-    model_ = model;
-    modelVersion_.fetch_add(1, std::memory_order_release);
+    return box_ ? AnyModel(box_) : AnyModel(model_);
+}
+
+LoadedBoxPointer Processor::box() const
+{
+    const std::lock_guard lock(mutex_);
+    return box_;
 }
 
 Model Processor::model() const
@@ -125,31 +174,40 @@ std::string Processor::standstill() const
 
 void Processor::prepareToPlay(double sampleRate, int)
 {
-    const std::lock_guard lock(mutex_);
-    sampleRate_ = sampleRate;
+    int latency = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        sampleRate_ = sampleRate;
+        latency = start();
+    }
+    setLatencySamples(latency);
+}
+
+/// With the mutex held, while no audio runs: chains that play at once, or delays.
+/// @returns the latency
+int Processor::start()
+{
     channels_.clear();
     delays_.clear();
     standstill_.clear();
-    const int count = getMainBusNumOutputChannels();
+    const auto count = static_cast<std::size_t>(getMainBusNumOutputChannels());
     try {
-        if (std::string reason; !RealTimeOptions {sampleRate, oversampling}.isValid(&reason))
+        if (std::string reason; !RealTimeOptions {sampleRate_, oversampling}.isValid(&reason))
             throw Error(Error::Kind::usage, reason + ".");
-        switches_ = parameters_.switches();
-        const auto running = asSwitched(model_, parameters_.recipe(), options());
-        const double measured = measuredDisplacement(running);
-        auto first = chains(running, options(), parameters_.controls(measured), count);
-        measuredDisplacement_.store(measured, std::memory_order_relaxed);
-        for (auto& chain : first) {
-            channels_.push_back(
-                std::make_unique<Crossfade<Chain>>(static_cast<int>(fadeTime * sampleRate),
-                                                   getLatencySamples() + static_cast<int>(warmTime * sampleRate)));
-            channels_.back()->start(std::move(chain));
+        auto first = chains(box_ ? AnyModel(box_) : AnyModel(model_), std::max<std::size_t>(count, 1));
+        const int latency = first.front()->latency();
+        for (std::size_t k = 0; k < count; ++k) {
+            channels_.push_back(std::make_unique<Crossfade<Chain>>(static_cast<int>(fadeTime * sampleRate_),
+                                                                   static_cast<int>(warmTime * sampleRate_)));
+            channels_.back()->start(std::move(first[k]));
         }
+        return latency;
     } catch (const std::exception& error) {
         // No host expects an exception here.
         standstill_ = std::string("The signal goes through as it is: ") + error.what();
         channels_.clear();
-        delays_.assign(static_cast<std::size_t>(count), Delay(getLatencySamples()));
+        delays_.assign(count, Delay(getLatencySamples()));
+        return getLatencySamples();
     }
 }
 
@@ -196,6 +254,7 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
         }
         if (auto* chain = channel != nullptr ? channel->current() : nullptr) {
             const auto meters = chain->take();
+            region_.raise(meters.region);
             displacement_.raise(std::max(meters.predistorter.displacement, meters.speaker.displacement));
             voltage_.raise(meters.predistorter.voltage);
             power_.raise(meters.predistorter.power);
@@ -212,26 +271,23 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
 
 Processor::Meters Processor::take()
 {
-    return {displacement_.take(),
-            voltage_.take(),
-            power_.take(),
-            displacementReduction_.take(),
-            voltageReduction_.take(),
-            powerReduction_.take(),
-            faults_.load(std::memory_order_relaxed)};
+    return {displacement_.take(),     voltage_.take(),        power_.take(),  displacementReduction_.take(),
+            voltageReduction_.take(), powerReduction_.take(), region_.take(), faults_.load(std::memory_order_relaxed)};
 }
 
 void Processor::getStateInformation(juce::MemoryBlock& block)
 {
-    const auto bytes = bytesOf({parameters_.recipe(), model(), parameters_.between()});
+    const auto bytes = bytesOf({parameters_.recipe(), anyModel(), parameters_.between()});
     block.replaceAll(bytes.data(), bytes.size());
 }
 
 void Processor::setStateInformation(const void* data, int size)
 {
     try {
-        const auto state = stateFrom({static_cast<const char*>(data), static_cast<std::size_t>(std::max(size, 0))});
-        requireRunnable(withoutOff(state.model, state.recipe), {48000.0, oversampling});
+        const auto state = stateFrom({static_cast<const char*>(data), static_cast<std::size_t>(std::max(size, 0))},
+                                     box());
+        if (const auto* driver = std::get_if<Model>(&state.model))
+            requireRunnable(withoutOff(*driver, state.recipe), {48000.0, oversampling});
         parameters_.set(state.recipe, state.between);
         setModel(state.model);
     } catch (const Error&) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Predistortion/Chain.h"
 #include "Engine/Predistortion/Crossfade.h"
 #include "Engine/Predistortion/Peak.h"
 #include "Plugin/Delay.h"
 #include "Plugin/Juce.h"
 #include "Plugin/Parameters.h"
+#include "Plugin/Rehearsing.h"
 #include "Plugin/Session.h"
 #include "Plugin/State.h"
 
@@ -21,7 +23,9 @@ namespace excursion::plugin {
 
 /// The plugin without its window. One Chain a channel plays; a thread of its own builds new chains when the model or
 /// the switches of the effects change, and frees the old ones. The audio thread sees parameters (atomics) and the
-/// hand-over, nothing else. At a rate at which no chain can run the signal goes through as it is, as late as ever.
+/// hand-over, nothing else. A driver and a model without physics are loaded, played and handed over in the same way;
+/// their latencies differ, and the host is told. At a rate at which no chain can run the signal goes through as it is,
+/// as late as ever.
 class Processor : public juce::AudioProcessor {
 public:
     static constexpr int oversampling = 2;
@@ -38,8 +42,14 @@ public:
     Session& session() { return session_; }
 
     /// Any thread but the audio thread. Throws Error for a model that cannot be run; then the one before stays.
-    void setModel(const Model&);
-    Model model() const;
+    void setModel(const AnyModel&);
+    AnyModel anyModel() const;
+    Model model() const;           ///< the driver that was loaded last, while a model without physics plays as well
+    LoadedBoxPointer box() const;  ///< the model without physics that plays; null while a driver does
+
+    /// Makes a model without physics ready on another thread, and then plays it. What it is worth is told by the
+    /// status, in dB, before anything is bent with it.
+    Rehearsing& rehearsing() { return rehearsing_; }
     /// counts the models, from 1
     std::uint64_t modelVersion() const { return modelVersion_.load(std::memory_order_acquire); }
 
@@ -51,7 +61,8 @@ public:
         double displacement = 0.0;  ///< m, of the predistorter's plan or of the modelled speaker
         double voltage = 0.0, power = 0.0;
         double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;  ///< dB
-        int faults = 0;  ///< of the chains that play now
+        double region = 0.0;  ///< of a model without physics: 1 is as far out as its fit has been
+        int faults = 0;       ///< of the chains that play now
     };
     Meters take();
 
@@ -82,13 +93,17 @@ public:
 private:
     template <class Sample>
     void play(juce::AudioBuffer<Sample>&, bool bypassed);
-    void build(const Model&);
+    void put(const AnyModel&);
+    int build(const AnyModel&);
+    std::vector<std::unique_ptr<Chain>> chains(const AnyModel&, std::size_t channels);
+    int start();
     void work(const std::stop_token&);
     RealTimeOptions options() const;
 
     Parameters parameters_;
     mutable std::mutex mutex_;  ///< of what follows; never locked on the audio thread
     Model model_;
+    LoadedBoxPointer box_;  ///< null: the driver plays
     std::atomic<std::uint64_t> modelVersion_ {1};
     double sampleRate_ = 0.0;  ///< 0: not prepared
     std::atomic<double> measuredDisplacement_ {0.0};
@@ -98,11 +113,12 @@ private:
     /// in place of the channels, where no chain can run
     std::vector<Delay> delays_;
     std::array<double, 256> block_ {};
-    Peak displacement_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
+    Peak displacement_, region_, voltage_, power_, displacementReduction_, voltageReduction_, powerReduction_;
     std::atomic<int> faults_ {0};
     std::condition_variable_any wake_;
     std::jthread worker_;
     Session session_;
+    Rehearsing rehearsing_;
 };
 
 }  // namespace excursion::plugin

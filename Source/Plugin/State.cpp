@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/State.h"
 
+#include "Engine/BlackBox/ModelDocument.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ModelFile.h"
@@ -24,6 +25,22 @@ nlohmann::json parsed(std::string_view text, const std::string& where)
     return document;
 }
 
+nlohmann::ordered_json toJson(const AnyModel& model)
+{
+    if (const auto* box = std::get_if<LoadedBoxPointer>(&model))
+        return (*box)->document;
+    return excursion::toJson(std::get<Model>(model));
+}
+
+/// @param bytes  the whole state: the document of a model without physics is kept as it was written
+AnyModel anyModelFrom(const JsonField& field, std::string_view bytes, const LoadedBoxPointer& known)
+{
+    if (!isModelDocument(field))
+        return modelFromJson(field);
+    const auto document = nlohmann::ordered_json::parse(bytes).at("model");
+    return known && known->document == document ? known : loadedBox(document, field.source());
+}
+
 double resonance(const Model& model) { return model.baseParameter("K").value / model.baseParameter("m").value; }
 
 }  // namespace
@@ -32,20 +49,20 @@ std::string bytesOf(const State& state)
 {
     nlohmann::ordered_json document {{"format", formatName},
                                      {"version", formatVersion},
-                                     {"recipe", toJson(state.recipe)},
+                                     {"recipe", excursion::toJson(state.recipe)},
                                      {"model", toJson(state.model)}};
     if (!state.between.empty())
         document["between"] = state.between;
     return jsonText(document);
 }
 
-State stateFrom(std::string_view bytes)
+State stateFrom(std::string_view bytes, const LoadedBoxPointer& known)
 {
     const std::string where = "the plugin's state";
     const auto document = parsed(bytes, where);
     const JsonField field(document, "", where);
     field.requireFormat(formatName, formatVersion);
-    State state {recipeFromJson(field.at("recipe")), modelFromJson(field.at("model")), {}};
+    State state {recipeFromJson(field.at("recipe")), anyModelFrom(field.at("model"), bytes, known), {}};
     if (field.has("between")) {
         const auto between = field.at("between");
         for (const auto& id : between.keys())

@@ -6,6 +6,7 @@
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
 #include "Plots/HarmonicPlots.h"
 #include "Plots/ModelPlots.h"
+#include "Report/ClassesReport.h"
 #include "Report/Page.h"
 
 #include <nlohmann/json.hpp>
@@ -15,12 +16,6 @@
 
 namespace excursion {
 namespace {
-
-std::string decibelsIn(const JsonField& object, const char* key)
-{
-    const double value = object.has(key) ? object.at(key).numberOrNaN() : std::numeric_limits<double>::quiet_NaN();
-    return std::isfinite(value) ? fixedText(value, 1) : "\u2013";
-}
 
 void addRoots(Page& page, const StateSpace& model, double alpha)
 {
@@ -170,53 +165,6 @@ void addPnlssFit(Page& page, const JsonField& document)
     }
     if (document.at("model").at("format").text() == "excursion-pnlss")
         addRoots(page, stateSpaceFromJson(document.at("model").at("linear")).model, 1.0);
-}
-
-void addRankingOfClasses(Page& page, const JsonField& document)
-{
-    page.headline(document.at("sentence").text(), "good");
-    page.paragraph(document.at("output").text() + " explained by " + document.at("input").text()
-                   + (document.has("noiseDb") ? "; noise at " + decibelsIn(document, "noiseDb") + " dB" : ""));
-    Plot plot;
-    plot.title = "Error on records not seen against parameters";
-    plot.x = {"parameters", "", true, 0.0, 0.0, {}};
-    plot.y = {"error", "dB", false, 0.0, 0.0, {}};
-    Series classes {"a class", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
-    double fewest = std::numeric_limits<double>::infinity(), most = 0.0;
-    std::vector<std::vector<Page::Cell>> rows;
-    std::vector<std::string> troubles;
-    for (const auto& model : document.at("models").items()) {
-        const auto name = model.at("class").text();
-        if (model.has("trouble")) {
-            troubles.push_back(name + ": " + model.at("trouble").text());
-            continue;
-        }
-        const double judged = model.has("validationDb") ? model.at("validationDb").number()
-                                                        : model.at("estimationDb").numberOrNaN();
-        const double parameters = model.at("parameters").number();
-        classes.x.insert(classes.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
-        classes.y.insert(classes.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
-        classes.names.insert(classes.names.end(), {name, ""});
-        fewest = std::min(fewest, parameters);
-        most = std::max(most, parameters);
-        rows.push_back({name, Page::figure(fixedText(parameters, 0)), Page::figure(decibelsIn(model, "estimationDb")),
-                        Page::figure(decibelsIn(model, "validationDb")),
-                        Page::figure(fixedText(100.0 * model.at("load").number(), 2) + " %"),
-                        model.at("stable").flag() ? "yes" : "no", model.at("description").text()});
-    }
-    plot.series.push_back(std::move(classes));
-    if (document.has("noiseDb") && !rows.empty()) {
-        const double noise = document.at("noiseDb").number();
-        plot.series.push_back({"noise", Role::noise, {fewest, most}, {noise, noise}, {}, {}, Series::Shape::line, 0});
-    }
-    page.section("Side by side");
-    page.table({"class", "parameters", "estimation dB", "validation dB", "load", "stable", "what it is"}, rows);
-    for (const auto& trouble : troubles)
-        page.note(trouble);
-    if (!rows.empty())
-        page.figures({plot}, 1,
-                     "Errors are those of simulations, relative to the output. The load is the time that one core "
-                     "simulates for.");
 }
 
 void addHarmonicCurves(Page& page, const JsonField& document)

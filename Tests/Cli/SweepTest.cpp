@@ -178,6 +178,8 @@ TEST_CASE("rank keeps the model of each class as its document, which simulate pl
     REQUIRE(ranked.code == 0);
     const auto document = Json::parse(ranked.out);
     CHECK(document.contains("best"));
+    CHECK_FALSE(document.at("linearizationSentence").get<std::string>().empty());
+    CHECK(document.contains("linearizesBest"));
     const std::map<std::string, std::string> formats {{"linear", "excursion-state-space"},
                                                       {"hammerstein", "excursion-parallel-hammerstein"},
                                                       {"narx", "excursion-narx"},
@@ -187,6 +189,11 @@ TEST_CASE("rank keeps the model of each class as its document, which simulate pl
         const auto name = model.at("class").get<std::string>();
         INFO(name);
         REQUIRE_FALSE(model.contains("trouble"));
+        const auto& bent = model.at("linearization");
+        if (bent.contains("trouble"))
+            CHECK_FALSE(bent.at("trouble").get<std::string>().empty());
+        else
+            CHECK(bent.at("leftDb").get<double>() < bent.at("beforeDb").get<double>() - 3.0);
         const auto path = model.at("kept").get<std::string>();
         CHECK(Json::parse(bytesOf(path)).at("format") == formats.at(name));
         if (!model.at("stable").get<bool>())

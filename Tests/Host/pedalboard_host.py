@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The plugin in pedalboard: rates, blocks of 1 to 8192, mono and stereo, parameters, state."""
+"""The plugin in pedalboard: rates, blocks of 1 to 8192, mono and stereo, parameters, models without physics, state."""
 import sys
 
 import numpy as np
 import pedalboard
+from state import cubic, with_model
 
 
 def tone(rate, channels):
@@ -62,6 +63,36 @@ def main(path):
     before, after = harmonics("Speaker"), harmonics("Audition")
     print(f"harmonics of 60 Hz: speaker {before:.1f} dB, linearized {after:.1f} dB")
     assert before > -50 and after < before - 40, "linearization is not heard"
+
+    # A model without physics, which arrives with a session: later than a driver, and the host takes that out as well.
+    def polynomial(mode, volts=4.0):
+        one = load(path)
+        one.mode = mode
+        one.raw_state = with_model(one.raw_state, cubic())
+        one.volts_at_0_dbfs = volts
+        # Its latency depends on the rate, and this host takes out what it was told before it prepares: at 44100 Hz.
+        one.process(np.zeros((2, 4800), np.float32), rate)
+        assert str(one.mode) == mode
+        return one
+
+    noise = np.random.default_rng(5).uniform(-0.5, 0.5, (2, rate)).astype(np.float32)
+    bypassed = polynomial("Bypass")
+    for block in (64, 8192):
+        y = bypassed.process(noise, rate, buffer_size=block)
+        assert y.shape == noise.shape and np.array_equal(y, noise), "a model without physics bypassed"
+
+    def third(mode):
+        one = polynomial(mode)
+        spectrum = np.abs(np.fft.rfft(one.process(u, rate)[0][rate // 2:].astype(float)))
+        return 20 * np.log10(np.linalg.norm(spectrum[[60, 90, 120, 150]]) / spectrum[30])
+
+    before, after = third("Speaker"), third("Audition")
+    print(f"the same of a polynomial model: speaker {before:.1f} dB, linearized {after:.1f} dB")
+    assert before > -50 and after < before - 25, "linearization of a polynomial model is not heard"
+    session = polynomial("Audition")
+    again = load(path)
+    again.raw_state = session.raw_state
+    assert again.raw_state == session.raw_state
 
     # State: the same bytes twice, and again after it has been restored.
     plugin.mode = "Audition"

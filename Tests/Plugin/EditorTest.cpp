@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "BlackBox/EveryClass.h"
 #include "Plugin/Editor.h"
 
 #include "Engine/Loudspeaker/ModelFile.h"
@@ -58,4 +59,39 @@ TEST_CASE("The window opens and closes while audio runs", "[plugin]")
     }
     done = true;
     audio.join();
+}
+
+TEST_CASE("A model without physics is loaded from a file, told what it is worth, and taken back", "[plugin][blackbox]")
+{
+    const auto folder = std::filesystem::temp_directory_path() / "excursion plugin boxes";
+    std::filesystem::create_directories(folder);
+    Processor processor;
+    Editor editor(processor);
+    const auto first = processor.model().name;
+    const auto load = [&](const nlohmann::ordered_json& document) {
+        std::ofstream(folder / "box.json") << document;
+        editor.load(juce::File(folder.string()).getChildFile("box.json"));
+        CHECK(editor.status().contains("box.json"));
+        processor.rehearsing().wait();
+        editor.update();
+    };
+    auto document = everyClass()[2];
+    load(document);
+    REQUIRE(processor.box());
+    CHECK(editor.status().contains("a gain of"));
+    CHECK(editor.history().canUndo());
+    editor.undo();
+    CHECK_FALSE(processor.box());
+    editor.redo();
+    REQUIRE(processor.box());
+    CHECK(processor.box()->document == document);
+    document.erase("stimulus");
+    document["name"] = "another";
+    load(document);
+    CHECK(editor.status().contains("stimulus"));
+    CHECK(processor.box()->played.box.name == "block");
+    editor.undo();
+    CHECK_FALSE(processor.box());
+    CHECK(processor.model().name == first);
+    std::filesystem::remove_all(folder);
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "BlackBox/EveryClass.h"
 #include "Plugin/Processor.h"
 
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -227,6 +228,7 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
     juce::MidiBuffer midi;
     auto kept = stateOf(processor);
     bool finite = true;
+    const auto box = plugin::loadedBox(everyClass().front(), "a test");
     for (int operation = 0; operation < 2000; ++operation) {
         switch (random() % 12) {
         case 0:
@@ -237,7 +239,10 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
         case 2: processor.setStateInformation(kept.getData(), static_cast<int>(kept.getSize())); break;
         case 3: {
             const auto& drivers = plugin::factoryDrivers();
-            processor.setModel(plugin::modelFromText(drivers[random() % drivers.size()].text, "a driver"));
+            if (random() % 2 == 0)
+                processor.setModel(box);
+            else
+                processor.setModel(plugin::modelFromText(drivers[random() % drivers.size()].text, "a driver"));
             break;
         }
         case 4:

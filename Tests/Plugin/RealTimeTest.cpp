@@ -5,6 +5,7 @@
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
+#include "BlackBox/EveryClass.h"
 #include "Predistortion/Detectors.h"
 
 #include "Plugin/Editor.h"
@@ -60,6 +61,44 @@ TEST_CASE("Nothing in processBlock allocates, locks or calls the system", "[plug
         CHECK(counts.locks == 0);
         if (canWatchSystemCalls())
             CHECK_FALSE(callsSystem(work));
+    }
+}
+
+TEST_CASE("Nothing in processBlock allocates, locks or calls the system with models without physics either",
+          "[plugin][blackbox]")
+{
+    Processor processor;
+    juce::AudioBuffer<float> buffers[] {{2, 1}, {2, 64}, {2, 4096}};
+    juce::MidiBuffer midi;
+    std::mt19937 random(3);
+    const auto work = [&] {
+        for (auto& buffer : buffers) {
+            for (int n = 0; n < buffer.getNumSamples(); ++n)
+                buffer.setSample(1, n, static_cast<float>(random()) / 4294967296.0f - 0.5f);
+            processor.processBlock(buffer, midi);
+            buffer.setSample(0, 0, std::numeric_limits<float>::quiet_NaN());
+            processor.processBlock(buffer, midi);
+            processor.processBlockBypassed(buffer, midi);
+        }
+        processor.reset();
+    };
+    for (const auto& document : everyClass()) {
+        const auto box = plugin::loadedBox(document, "a test");
+        for (const double rate : {48000.0, 44100.0})
+            for (const auto mode : modes) {
+                INFO(box->played.box.kind << ", " << rate << " Hz, " << name(mode));
+                processor.setModel(processor.model());
+                processor.prepareToPlay(rate, 64);
+                processor.parameters().mode() = static_cast<int>(mode);
+                processor.setModel(box);  // a hand-over is under way
+                for (int round = 0; round < 2; ++round) {
+                    const auto counts = countIn(work);
+                    CHECK(counts.allocations == 0);
+                    CHECK(counts.locks == 0);
+                    if (canWatchSystemCalls())
+                        CHECK_FALSE(callsSystem(work));
+                }
+            }
     }
 }
 

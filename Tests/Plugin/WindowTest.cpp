@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "BlackBox/EveryClass.h"
 #include "Engine/Error.h"
 #include "Plugin/Walk.h"
 
@@ -12,6 +13,7 @@ using namespace excursion;
 using plugin::Editor;
 using plugin::PageName;
 using plugin::Processor;
+using plugin::words;
 
 namespace {
 
@@ -83,6 +85,26 @@ void checkLabels(plugin::PlotView& view)
     }
 }
 
+/// Everything of the page is seen in full, and nothing covers anything else.
+void checkPage(Editor& editor, PageName name)
+{
+    checkTexts(editor.body());
+    for (auto* view : plugin::all<plugin::PlotView>(editor.body()))
+        checkLabels(*view);
+    auto& page = editor.page(name);
+    CHECK(editor.body().getLocalBounds().contains(page.getBounds()));
+    const auto& children = page.getChildren();
+    for (int a = 0; a < children.size(); ++a) {
+        if (!children[a]->isVisible())
+            continue;
+        INFO(children[a]->getTitle() << " " << children[a]->getBounds().toString());
+        CHECK_FALSE(children[a]->getBounds().isEmpty());
+        CHECK(page.getLocalBounds().contains(children[a]->getBounds()));
+        for (int b = 0; b < a; ++b)
+            CHECK_FALSE((children[b]->isVisible() && children[b]->getBounds().intersects(children[a]->getBounds())));
+    }
+}
+
 }  // namespace
 
 TEST_CASE("Every page can be read at every size: nothing is cut off or covered, and every axis has three labels",
@@ -106,22 +128,40 @@ TEST_CASE("Every page can be read at every size: nothing is cut off or covered, 
                                             + (theme == plugin::look::Theme::dark ? "-dark" : "-light"));
                 if (theme == plugin::look::Theme::dark)
                     continue;  // of the same shape
-                checkTexts(editor.body());
-                for (auto* view : plugin::all<plugin::PlotView>(editor.body()))
-                    checkLabels(*view);
-                auto& page = editor.page(name);
-                CHECK(editor.body().getLocalBounds().contains(page.getBounds()));
-                const auto& children = page.getChildren();
-                for (int a = 0; a < children.size(); ++a) {
-                    if (!children[a]->isVisible())
-                        continue;
-                    INFO(children[a]->getTitle() << " " << children[a]->getBounds().toString());
-                    CHECK_FALSE(children[a]->getBounds().isEmpty());
-                    CHECK(page.getLocalBounds().contains(children[a]->getBounds()));
-                    for (int b = 0; b < a; ++b)
-                        CHECK_FALSE((children[b]->isVisible()
-                                     && children[b]->getBounds().intersects(children[a]->getBounds())));
-                }
+                checkPage(editor, name);
+            }
+        }
+    }
+}
+
+TEST_CASE("A model without physics can be read at every size, whether it can be turned around or not",
+          "[plugin][blackbox]")
+{
+    Processor processor;
+    Editor editor(processor);
+    editor.go(PageName::linearize);
+    auto documents = everyClass();
+    auto refused = everyClass().front();
+    for (auto& term : refused["terms"])
+        for (auto& coefficient : term["E"])
+            coefficient = 0.0;
+    documents.push_back(refused);
+    for (const auto& document : documents) {
+        processor.rehearsing().load(document, "box.json");
+        processor.rehearsing().wait();
+        editor.update();
+        const auto name = words(processor.box()->played.box.name)
+                          + (processor.box()->played.rehearsal ? "" : "-refused");
+        for (const auto theme : {plugin::look::Theme::light, plugin::look::Theme::dark}) {
+            editor.setTheme(theme);
+            for (const auto& [width, height] : sizes) {
+                editor.setSize(width, height);
+                editor.update();
+                INFO(name << " at " << width << " x " << height);
+                if (std::getenv("EXCURSION_ALL_PICTURES") != nullptr || width == 1024)
+                    keepPicture(editor, "sizes/box-" + name + "-" + juce::String(width)
+                                            + (theme == plugin::look::Theme::dark ? "-dark" : "-light"));
+                checkPage(editor, PageName::linearize);
             }
         }
     }

@@ -69,6 +69,27 @@ TEST_CASE("Classes of models are ranked by what they leave of records that they 
     CHECK(named(ranking, "hammerstein").validationDb > *ranking.noiseDb + 15.0);
     CHECK(named(ranking, "block").validationDb < named(ranking, "linear").validationDb - 6.0);
     CHECK(ranking.sentence.find("driver-with-effects") != std::string::npos);
+
+    // The two that are right take most distortion away, the driver more than what knows no physics; what is linear, or
+    // explains too little, takes none, and says so.
+    for (const auto& model : ranking.models) {
+        const auto& told = model.linearization;
+        CAPTURE(model.name, told.trouble, told.beforeDb, told.modelDb, told.leftDb, told.load, told.latency);
+        if (!told.trouble.empty())
+            continue;
+        CHECK(told.gainDb() >= 3.0);
+        CHECK(told.leftDb >= told.modelDb - 1e-9);
+        CHECK(told.load > 0.0);
+        CHECK(told.load < 0.5);
+        CHECK(told.latency > 0.0);
+        CHECK(told.latency < 0.01);
+    }
+    CHECK(named(ranking, "driver-with-effects").linearization.gainDb() > 40.0);
+    CHECK(named(ranking, "pnlss").linearization.gainDb() > 25.0);
+    CHECK(named(ranking, "linear").linearization.trouble == "It is linear: there is nothing to correct.");
+    CHECK_FALSE(named(ranking, "driver").linearization.trouble.empty());
+    CHECK(ranking.straightest == "driver-with-effects");
+    CHECK(ranking.straightSentence.find("\"driver-with-effects\" linearizes best") == 0);
 }
 
 TEST_CASE("A ranking of what cannot be ranked is refused, and a class that does not fit the take is told so")
@@ -81,6 +102,8 @@ TEST_CASE("A ranking of what cannot be ranked is refused, and a class that does 
     CHECK(ranking.models.front().name == "linear");
     CHECK(ranking.models.front().validationDb < *ranking.noiseDb + 3.0);  // nothing is hidden
     CHECK(ranking.models.back().trouble == "The class is one of a current under a voltage.");
+    CHECK(ranking.straightest.empty());
+    CHECK(ranking.straightSentence == "No class of models linearizes this take.");
     options.classes = {"oracle"};
     CHECK_THROWS_AS(rank(take, options), Error);
     options = {};

@@ -67,16 +67,23 @@ inline SampleDocuments sampleDocuments()
                               {"stopped", "the error no longer falls"},
                               {"history", {-20.0, -35.0, -40.0}},
                               {"model", {{"format", "excursion-pnlss"}, {"linear", linear}}}};
-    const nlohmann::json good {{"class", "linear"},     {"description", "order 3"}, {"parameters", 7},
-                               {"estimationDb", -30.0}, {"validationDb", -29.0},    {"load", 0.001},
-                               {"stable", true}};
+    const nlohmann::json good {{"class", "linear"},     {"description", "order 3"},
+                               {"parameters", 7},       {"estimationDb", -30.0},
+                               {"validationDb", -29.0}, {"load", 0.001},
+                               {"stable", true},        {"linearization", {{"trouble", "nothing <to> correct"}}}};
+    auto bent = good;
+    bent["class"] = "pnlss";
+    bent["linearization"] = {
+        {"beforeDb", -25.0}, {"modelDb", -66.0}, {"leftDb", -47.5}, {"load", 0.011}, {"latency", 0.0017}};
     const nlohmann::json ranking {{"format", "excursion-ranking"},
                                   {"version", 1},
                                   {"sentence", "s"},
                                   {"input", "voltage"},
                                   {"output", "current"},
                                   {"noiseDb", -70.0},
-                                  {"models", {good, {{"class", "narx"}, {"trouble", "ran & away"}}}}};
+                                  {"linearizesBest", "pnlss"},
+                                  {"linearizationSentence", "pnlss & co"},
+                                  {"models", {good, bent, {{"class", "narx"}, {"trouble", "ran & away"}}}}};
     const nlohmann::json halves {{"format", "excursion-motor-cone"},
                                  {"version", 1},
                                  {"sentence", "told <it> all"},

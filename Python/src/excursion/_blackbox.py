@@ -156,6 +156,24 @@ class Ranking(Result):
         models = self.document["models"]
         return models[0]["class"] if models and "trouble" not in models[0] else None
 
+    @property
+    def linearizes_best(self) -> str | None:
+        """The class that leaves least distortion on the take; None where no class takes 3 dB away."""
+        return self.document["linearizesBest"]
+
+    def linearization(self) -> pd.DataFrame:
+        """Over the class: ``beforeDb``, the distortion as the model was fitted, ``modelDb`` and ``leftDb``, what
+        predistortion leaves of it on the model and on the take, ``load`` (share of a core), ``latency`` (s);
+        ``trouble`` where the class is not turned around."""
+        return table(
+            [
+                {"class": model["class"], **model["linearization"]}
+                for model in self.document["models"]
+                if "linearization" in model
+            ],
+            "class",
+        )
+
     def table(self) -> pd.DataFrame:
         """Over the class: ``parameters``, ``estimationDb`` and ``validationDb`` of simulations, ``load`` (time over the
         signal's length), ``fitSeconds``, ``stable``, ``description``; ``trouble`` where it could not be fitted."""

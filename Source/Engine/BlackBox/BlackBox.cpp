@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/BlackBox/BlackBox.h"
 
+#include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Validity.h"
@@ -198,7 +199,7 @@ BlackBox blackBoxOf(const ParallelHammerstein& model, const Stimulus& stimulus)
         return box;
     }
     throw Error(Error::Kind::data, "The filters of this model cannot be written with " + std::to_string(mostStates)
-                                       + " states: " + std::to_string(20.0 * std::log10(error)) + " dB are left.");
+                                       + " states: " + plainText(20.0 * std::log10(error), 1) + " dB are left.");
 }
 
 }  // namespace excursion

@@ -8,7 +8,7 @@
 namespace excursion {
 namespace {
 
-constexpr double slowPart = 0.1;  // of the stimulus' lowest frequency
+constexpr double slowPart = 0.05;  // of the stimulus' lowest frequency
 
 }  // namespace
 

@@ -28,8 +28,8 @@ struct BlackBoxDesign {
 /// correction, so an error of the q ahead is fed back and does not pile up. (A fixed-point iteration like the
 /// Picard form of Schetzen's p-th order inverse, with passes in place of orders, but closed by feedback.)
 ///
-/// The mean of q is no distortion: q_r is q below a tenth of the lowest frequency of the stimulus, by two poles, and
-/// moves the linear part along, so no constant voltage is asked for.
+/// The mean of q is no distortion: q_r is q below a twentieth of the lowest frequency of the stimulus, by two poles,
+/// and moves the linear part along, so no constant voltage is asked for.
 ///
 /// Nothing allocates after construction.
 class BlackBoxLinearizer {

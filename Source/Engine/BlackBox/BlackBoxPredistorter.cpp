@@ -26,6 +26,12 @@ RehearsedBox::RehearsedBox(const BlackBox& wanted)
 {
 }
 
+RehearsedBox::RehearsedBox(const BlackBox& known, const Region& where, const Rest& still,
+                           const BlackBoxRehearsal& rehearsed)
+    : box(known), region(where), rest(still), rehearsal(rehearsed)
+{
+}
+
 BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sampleRate,
                                            const BlackBoxControls& controls)
     : limiter_(model.box, model.region, sampleRate),

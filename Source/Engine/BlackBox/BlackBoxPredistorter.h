@@ -18,6 +18,7 @@ namespace excursion {
 /// for any number of channels. Throws Error, see visitedBy(), restOf() and rehearse().
 struct RehearsedBox {
     explicit RehearsedBox(const BlackBox&);
+    RehearsedBox(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&);
 
     BlackBox box;
     Region region;

@@ -2,18 +2,22 @@
 #pragma once
 
 #include "Engine/BlackBox/BlackBoxLinearizer.h"
+#include "Engine/Progress.h"
 
 #include <string>
+#include <vector>
 
 namespace excursion {
 
 /// What turning a black box around is worth, found out before it is used: the model plays what it was fitted under, as
 /// it is and with the correction, and its output is held against that of its linear part.
 struct BlackBoxRehearsal {
-    BlackBoxDesign design;    ///< the best of those tried
-    double beforeDb = 0.0;    ///< power of y - y_r over that of y_r, without means
-    double afterDb = 0.0;     ///< the same with the correction
-    double correction = 0.0;  ///< the largest correction that was needed, in the input's unit
+    BlackBoxDesign design;              ///< the best of those tried
+    double beforeDb = 0.0;              ///< power of y - y_r over that of y_r, without means
+    double afterDb = 0.0;               ///< the same with the correction
+    double correction = 0.0;            ///< the largest correction that was needed, in the input's unit
+    std::vector<double> frequency;      ///< Hz, the bands of the stimulus
+    std::vector<double> before, after;  ///< dB: distortion in that band over the linear part's output in it
     double gainDb() const { return beforeDb - afterDb; }
 };
 
@@ -25,7 +29,8 @@ struct BlackBoxRehearsalOptions {
 /// Tries costs of the correction from 20 to 80 dB below the model's mean gain, with a look ahead of 16 samples and
 /// twice as many again, and takes the first that takes 45 dB away, or what leaves least distortion among those whose
 /// correction is no larger than the peak of the stimulus.
-/// Throws Error (data) where none takes 3 dB away, with a sentence that says so.
-BlackBoxRehearsal rehearse(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsalOptions& = {});
+/// Throws Error (data) where none takes 3 dB away, with a sentence that says so; (cancelled).
+BlackBoxRehearsal rehearse(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsalOptions& = {},
+                           const Progress& = {});
 
 }  // namespace excursion

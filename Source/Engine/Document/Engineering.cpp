@@ -144,6 +144,8 @@ std::string withError(double value, double standardError, std::string_view unit)
            + (shown.unit.empty() ? "" : "\u202f" + shown.unit);
 }
 
+std::string plainText(double value, int decimals) { return raw(value, decimals); }
+
 std::string fixedText(double value, int decimals)
 {
     return std::isfinite(value) ? trueMinus(raw(value, decimals)) : std::string("\u2013");

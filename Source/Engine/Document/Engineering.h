@@ -31,6 +31,7 @@ std::string nominal(double value, std::string_view unit);
 std::string withError(double value, double standardError, std::string_view unit);
 
 /// Locale-free numbers. A minus is a true minus sign in typeset text.
+std::string plainText(double value, int decimals);  ///< "-61.0", with a hyphen, as terminals and documents have it
 std::string fixedText(double value, int decimals);
 std::string decibels(double value);  ///< "−61.0 dB", an en dash when not finite
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/Chain.h"
 
+#include "Engine/Predistortion/DriverEngine.h"
 #include "Engine/Predistortion/Subnormals.h"
 
 #include <algorithm>
@@ -16,18 +17,19 @@ constexpr double plainTime = 0.0003;  // s, see Glide: gone within the latency
 }  // namespace
 
 Chain::Chain(const Model& model, const RealTimeOptions& options, const ChainControls& controls)
-    : bend_(model, options, controls.linearization),
-      cone_(model, options.sampleRate * options.oversampling),
-      coneRecovery_(static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
-      wet_(static_cast<int>(fadeTime * options.sampleRate), bend_.latency()),
-      played_(static_cast<int>(fadeTime * options.sampleRate), 0),
-      perVolt_(1.0 / plateau(model)),
-      factor_(options.oversampling),
-      fullScale_(levelTime, options.sampleRate),
-      before_(levelTime, options.sampleRate),
-      after_(levelTime, options.sampleRate),
-      plainGain_(plainTime, options.sampleRate, 1.0),
-      plain_(static_cast<std::size_t>(bend_.latency()))
+    : Chain(std::make_unique<DriverEngine>(model, options, controls.linearization), options.sampleRate, controls)
+{
+}
+
+Chain::Chain(std::unique_ptr<ChainEngine> engine, double sampleRate, const ChainControls& controls)
+    : engine_(std::move(engine)),
+      wet_(static_cast<int>(fadeTime * sampleRate), engine_->latency()),
+      played_(static_cast<int>(fadeTime * sampleRate), 0),
+      fullScale_(levelTime, sampleRate),
+      before_(levelTime, sampleRate),
+      after_(levelTime, sampleRate),
+      plainGain_(plainTime, sampleRate, 1.0),
+      plain_(static_cast<std::size_t>(engine_->latency()))
 {
     set(controls);
     reset();
@@ -40,17 +42,15 @@ void Chain::set(const ChainControls& controls)
                plays = mode != Mode::bypass && mode != Mode::linearize;
     if (mode != Mode::bypass) {
         if (!wet_.runs()) {  // what is switched in finds nothing of before
-            bend_.turn(false);
-            bend_.reset();
-            coneRecovery_.reset();
+            engine_->resetBending();
             played_.turn(plays);
             played_.jump();
         }
         if (plays && !played_.runs())
-            cone_.reset();
+            engine_->resetPlaying();
         played_.turn(plays);
         if (plays)
-            cone_.setLinearShareRemoved(mode == Mode::distortion ? 1.0 : 0.0);
+            engine_->setLinearShareRemoved(mode == Mode::distortion ? 1.0 : 0.0);
     }
     if (mode != Mode::bypass && !wet_.on()) {
         plainGain_.jump(1.0);
@@ -58,8 +58,8 @@ void Chain::set(const ChainControls& controls)
         loudest_ = 0.0;
     }
     wet_.turn(mode != Mode::bypass);
-    bend_.set(controls.linearization);
-    bend_.turn(bends);
+    engine_->set(controls.linearization);
+    engine_->turn(bends);
     limit_ = bends ? controls.linearization.voltageLimit : std::numeric_limits<double>::infinity();
     if (controls.fullScale > 0.0 && std::isfinite(controls.fullScale) && controls.trim >= 0.0
         && std::isfinite(controls.trim)) {
@@ -73,9 +73,7 @@ void Chain::set(const ChainControls& controls)
 
 void Chain::reset()
 {
-    bend_.reset();
-    cone_.reset();
-    coneRecovery_.reset();
+    engine_->reset();
     wet_.jump();
     played_.jump();
     for (auto* level : {&fullScale_, &before_, &after_})
@@ -87,24 +85,16 @@ void Chain::reset()
     plainAt_ = 0;
 }
 
-/// The cone's part, at the higher rate.
-void Chain::play(std::size_t taken)
+/// The plain sample of the time of what comes out now.
+double Chain::delayed(double sample, double& scale)
 {
-    double* const samples = bend_.between();
-    for (std::size_t k = 0; k < taken; ++k) {
-        const double weight = played_.step(), volume = coneRecovery_.step();
-        for (int s = 0; s < factor_; ++s) {
-            double& u = samples[k * static_cast<std::size_t>(factor_) + static_cast<std::size_t>(s)];
-            double a = u;
-            if (!cone_.step(a)) {
-                coneRecovery_.fault();
-                faults_.fetch_add(1, std::memory_order_relaxed);
-            }
-            u += weight * (volume * perVolt_ * a - u);
-            peak_.displacement = std::max(peak_.displacement, std::abs(cone_.displacement()));
-            peak_.current = std::max(peak_.current, std::abs(cone_.current()));
-        }
-    }
+    if (plain_.empty())
+        return sample;
+    Passing passing {sample, scale};
+    std::swap(passing, plain_[plainAt_]);
+    plainAt_ = plainAt_ + 1 == plain_.size() ? 0 : plainAt_ + 1;
+    scale = passing.fullScale;
+    return passing.sample;
 }
 
 void Chain::process(const double* in, double* out, std::size_t n)
@@ -112,53 +102,44 @@ void Chain::process(const double* in, double* out, std::size_t n)
     const FlushSubnormals flush;
     while (n > 0) {
         const bool runs = wet_.runs();
-        const std::size_t taken = std::min(n, bend_.room());
-        std::array<double, Predistorter::longestPart> scale, clean;
+        const std::size_t taken = std::min(n, engine_->room());
+        std::array<double, ChainEngine::longestPart> scale, clean;
         for (std::size_t k = 0; k < taken; ++k) {
             const bool sound = std::isfinite(in[k]);
             clean[k] = sound ? in[k] : 0.0;
             scale[k] = fullScale_.step();
             block_[k] = in[k] * scale[k] * before_.step();
         }
-        if (runs) {
-            bend_.begin(block_.data(), taken);
-            if (played_.runs())
-                play(taken);
-            bend_.finish(block_.data(), taken);
-        }
+        if (runs)
+            engine_->process(block_.data(), taken, played_);
         for (std::size_t k = 0; k < taken; ++k) {
             if (!runs && !std::isfinite(in[k]))
                 faults_.fetch_add(1, std::memory_order_relaxed);
-            Passing passing {clean[k], scale[k]};
-            std::swap(passing, plain_[plainAt_]);
-            plainAt_ = plainAt_ + 1 == plain_.size() ? 0 : plainAt_ + 1;
+            double unit = scale[k], plain = delayed(clean[k], unit);
             const double weight = wet_.step(), trim = after_.step();
-            double plain = passing.sample;
             if (weight < 1.0 && runs) {
                 // Fading to or from what is kept to a limit of the voltage.
                 loudest_ = std::max(loudest_, std::abs(clean[k] * scale[k]));
                 plainGain_.aim(wet_.on() && loudest_ > limit_ ? limit_ / loudest_ : 1.0);
                 plain *= plainGain_.step();
                 if (wet_.on() && ++since_ > latency())
-                    plain = std::clamp(plain, -limit_ / passing.fullScale, limit_ / passing.fullScale);
+                    plain = std::clamp(plain, -limit_ / unit, limit_ / unit);
             }
-            const double made = runs ? trim * block_[k] / passing.fullScale : plain;
+            const double made = runs ? trim * block_[k] / unit : plain;
             out[k] = withoutSubnormals(weight == 0.0 ? plain : plain + weight * (made - plain));
         }
         in += taken;
         out += taken;
         n -= taken;
     }
-    displacement_.raise(peak_.displacement);
-    current_.raise(peak_.current);
-    peak_ = {};
-    bend_.publish();
+    engine_->publish();
 }
 
 Chain::Meters Chain::take()
 {
-    const auto bend = bend_.take();
-    return {bend, {displacement_.take(), current_.take(), 0}, bend.faults + faults_.load(std::memory_order_relaxed)};
+    auto meters = engine_->take();
+    meters.faults += faults_.load(std::memory_order_relaxed);
+    return meters;
 }
 
 }  // namespace excursion

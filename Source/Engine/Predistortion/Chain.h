@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Predistortion/Cone.h"
+#include "Engine/Predistortion/ChainEngine.h"
 #include "Engine/Predistortion/Fade.h"
 #include "Engine/Predistortion/Glide.h"
-#include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/Recipe.h"
-#include "Engine/Predistortion/Recovery.h"
-#include "Engine/Predistortion/Speaker.h"
 
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace excursion {
@@ -25,37 +23,30 @@ struct ChainControls {
     PredistortionControls linearization;
 };
 
-/// One channel of the plugin: sample -> V -> Predistorter (-> Cone) -> sample, with either of the two switched in as
-/// the mode says. What the cone makes is heard at the level of a linear driver's plateau (see plateau()), so that it
-/// can be compared with the signal. The latency is the same whatever the mode. In bypass the samples come out as they
-/// are, bit by bit. A sample that is not a finite number is silence in every mode. Audio thread and blocks: as
-/// Predistorter.
+/// One channel of the plugin: sample -> V -> predistorter (-> loudspeaker) -> sample, with either of the two switched
+/// in as the mode says; which they are says the ChainEngine. The latency is the same whatever the mode. In bypass the
+/// samples come out as they are, bit by bit. A sample that is not a finite number is silence in every mode. Audio
+/// thread and blocks: as Predistorter.
 class Chain {
 public:
-    /// Throws Error, see requireRunnable.
+    /// Of a driver. Throws Error, see requireRunnable.
     Chain(const Model&, const RealTimeOptions&, const ChainControls&);
+    /// @param sampleRate  Hz, at which the engine was made to run
+    Chain(std::unique_ptr<ChainEngine>, double sampleRate, const ChainControls&);
 
-    int latency() const { return bend_.latency(); }  ///< samples; fixed
+    int latency() const { return engine_->latency(); }  ///< samples; fixed
     void reset();
     void set(const ChainControls&);
     void process(const double* in, double* out, std::size_t n);
 
-    struct Meters {
-        Predistorter::Meters predistorter;
-        Speaker::Meters speaker;
-        int faults = 0;  ///< of both, and samples that were not finite, since construction
-    };
-    Meters take();  ///< from any one thread
+    using Meters = ChainEngine::Meters;  ///< faults: also samples that were not finite
+    Meters take();                       ///< from any one thread
 
 private:
-    void play(std::size_t taken);
+    double delayed(double sample, double& scale);
 
-    Predistorter bend_;
-    Cone cone_;
-    Recovery coneRecovery_;
-    Fade wet_, played_;  ///< what is made of the signal; of that, the cone's part
-    double perVolt_;
-    int factor_;
+    std::unique_ptr<ChainEngine> engine_;
+    Fade wet_, played_;  ///< what is made of the signal; of that, the loudspeaker's part
     /// before_, after_: where the trim is; plainGain_: keeps the plain signal to the limit while it fades
     Glide fullScale_, before_, after_, plainGain_;
     double limit_ = 0.0, loudest_ = 0.0;  ///< V; of the plain signal since something was switched in
@@ -65,9 +56,7 @@ private:
     };
     std::vector<Passing> plain_;  ///< a ring, as long as the latency
     std::size_t plainAt_ = 0;
-    std::array<double, Predistorter::longestPart> block_ {};
-    Speaker::Meters peak_;
-    Peak displacement_, current_;
+    std::array<double, ChainEngine::longestPart> block_ {};
     std::atomic<int> faults_ {0};
 };
 

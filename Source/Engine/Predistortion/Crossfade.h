@@ -13,13 +13,13 @@ namespace excursion {
 /// Plays the engine that was handed over last: when a new one comes, both run, the new one unheard at first, until what
 /// it has to remember of the signal is there, and then the old one fades into the new. A third that is offered
 /// meanwhile waits. Until the first one comes the signal goes through as it is. Engines have process(const double* in,
-/// double* out, std::size_t n), and all of them the same latency.
+/// double* out, std::size_t n); where their latencies differ, the signal fades from one time to the other.
 template <class Engine>
 class Crossfade {
 public:
     /// @param fade  samples
     /// @param warm  samples before it, in which a new engine runs unheard
-    explicit Crossfade(int fade, int warm = 0) : fade_(fade, warm), length_(std::max(fade, 1) + std::max(warm, 0)) {}
+    explicit Crossfade(int fade, int warm = 0) : fade_(fade), length_(std::max(fade, 1)), warm_(std::max(warm, 0)) {}
     Crossfade(const Crossfade&) = delete;
     Crossfade& operator=(const Crossfade&) = delete;
     ~Crossfade()
@@ -29,7 +29,8 @@ public:
     }
 
     /// From any other thread: an engine that is built and warm.
-    void offer(std::unique_ptr<Engine> engine) { handover_.offer(std::move(engine)); }
+    /// @param longer  samples that this one runs unheard beyond those of all
+    void offer(std::unique_ptr<Engine> engine, int longer = 0) { handover_.offer(std::move(engine), longer); }
     /// From any other thread, now and then: frees the engines that are done.
     int collect() { return handover_.collect(); }
 
@@ -37,7 +38,7 @@ public:
     void start(std::unique_ptr<Engine> engine)
     {
         delete std::exchange(old_, nullptr);
-        delete std::exchange(now_, new typename Handover<Engine>::Parcel {std::move(engine), nullptr});
+        delete std::exchange(now_, new typename Handover<Engine>::Parcel {std::move(engine), nullptr, 0});
         left_ = 0;
     }
 
@@ -60,7 +61,8 @@ public:
                 if (auto* parcel = handover_.take()) {
                     old_ = now_;
                     now_ = parcel;
-                    left_ = length_;
+                    unheard_ = warm_ + std::max(parcel->warm, 0);
+                    left_ = unheard_ + length_;
                     fade_.turn(false);
                     fade_.jump();
                     fade_.turn(true);
@@ -74,7 +76,8 @@ public:
                 now_->engine->process(in, out, count);
                 for (std::size_t k = 0; k < count; ++k) {
                     --left_;
-                    out[k] = before_[k] + fade_.step() * (out[k] - before_[k]);
+                    const double weight = unheard_ > 0 ? (--unheard_, 0.0) : fade_.step();
+                    out[k] = before_[k] + weight * (out[k] - before_[k]);
                 }
                 if (left_ == 0 && old_)
                     handover_.retire(std::exchange(old_, nullptr));
@@ -93,7 +96,7 @@ private:
     Handover<Engine> handover_;
     typename Handover<Engine>::Parcel *old_ = nullptr, *now_ = nullptr;
     Fade fade_;
-    int length_, left_ = 0;
+    int length_, warm_, left_ = 0, unheard_ = 0;
     std::array<double, 256> before_ {};
 };
 

@@ -19,6 +19,7 @@ public:
     struct Parcel {
         std::unique_ptr<Engine> engine;
         Parcel* next = nullptr;
+        int warm = 0;  ///< samples that it wants to run unheard at first
     };
 
     Handover() = default;
@@ -30,9 +31,9 @@ public:
         collect();
     }
 
-    void offer(std::unique_ptr<Engine> engine)
+    void offer(std::unique_ptr<Engine> engine, int warm = 0)
     {
-        delete offered_.exchange(new Parcel {std::move(engine), nullptr}, std::memory_order_acq_rel);
+        delete offered_.exchange(new Parcel {std::move(engine), nullptr, warm}, std::memory_order_acq_rel);
     }
 
     /// Frees what has been retired.

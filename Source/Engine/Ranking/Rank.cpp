@@ -2,10 +2,12 @@
 #include "Engine/Ranking/Rank.h"
 
 #include "Engine/BlackBox/Stimulus.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Estimate/Bla.h"
 #include "Engine/Estimate/Welch.h"
 #include "Engine/Linear/OrderSweep.h"
+#include "Engine/Ranking/Linearization.h"
 #include "Engine/Ranking/ModelClasses.h"
 #include "Engine/Validity.h"
 
@@ -87,6 +89,31 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
     return model;
 }
 
+/// Which class linearizes best: among those within half a decibel, the one with the least load.
+void tellStraightest(Ranking& ranking)
+{
+    const auto worthIt = [](const RankedModel& m) { return m.trouble.empty() && m.linearization.trouble.empty(); };
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& model : ranking.models)
+        if (worthIt(model))
+            least = std::min(least, model.linearization.leftDb);
+    const RankedModel* chosen = nullptr;
+    for (const auto& model : ranking.models)
+        if (worthIt(model) && model.linearization.leftDb < least + 0.5
+            && (!chosen || model.linearization.load < chosen->linearization.load))
+            chosen = &model;
+    if (!chosen) {
+        ranking.straightSentence = "No class of models linearizes this take.";
+        return;
+    }
+    const auto& told = chosen->linearization;
+    ranking.straightest = chosen->name;
+    ranking.straightSentence = "\"" + chosen->name + "\" linearizes best: of a distortion of "
+                               + plainText(told.beforeDb, 1) + " dB " + plainText(told.leftDb, 1) + " dB are left, for "
+                               + plainText(100.0 * told.load, 2) + " % of a core a channel, "
+                               + plainText(1e3 * told.latency, 1) + " ms late.";
+}
+
 }  // namespace
 
 bool RankOptions::isValid(std::string* reason) const
@@ -152,8 +179,8 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
                                    != options.classes.end();
         if (wanted)
             ranking.models.push_back(
-                judge(fitting, data, progress.part(done, std::min(1.0, done + 0.98 * fitting.share))));
-        done += 0.98 * fitting.share;
+                judge(fitting, data, progress.part(done, std::min(0.95, done + 0.93 * fitting.share))));
+        done += 0.93 * fitting.share;
     }
     const auto error = [](const RankedModel& m) {
         return std::isnan(m.validationDb) ? m.estimationDb : m.validationDb;
@@ -171,6 +198,13 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
     ranking.sentence = chosen ? "\"" + chosen->name + "\" explains most with " + std::to_string(chosen->parameters)
                                     + " parameters."
                               : "No stable model explains the take best.";
+    for (auto& model : ranking.models)
+        if (model.trouble.empty()) {
+            progress.at(0.95, "turning " + model.name + " around");
+            model.linearization = linearizationOf(model, std::string(name(ranking.output)), take.sampleRate,
+                                                  ranking.noiseDb, progress.part(0.95, 0.95));
+        }
+    tellStraightest(ranking);
     progress.at(1.0, "done");
     return ranking;
 }

@@ -24,6 +24,18 @@ struct RankOptions {
     bool isValid(std::string* reason = nullptr) const;
 };
 
+/// What it is worth to turn a class around, see linearizationOf(). Distortion is the power of what is not the linear
+/// part's output, over that.
+struct RankedLinearization {
+    double beforeDb = 0.0;  ///< as the model was fitted
+    double modelDb = 0.0;   ///< left of it on the model itself
+    double leftDb = 0.0;    ///< left of it on the take, with what the model does not explain
+    double load = 0.0;  ///< share of a core that predistorting one channel takes, in blocks of 64, at the take's rate
+    double latency = 0.0;  ///< s
+    std::string trouble;   ///< why it is not turned around, one sentence; the figures then mean nothing
+    double gainDb() const { return beforeDb - leftDb; }
+};
+
 /// One class of models, fitted to the take and judged on records that it has not seen.
 struct RankedModel {
     std::string name;           ///< of modelClasses()
@@ -36,11 +48,11 @@ struct RankedModel {
     double load = 0.0;
     double fitSeconds = 0.0;
     bool stable = false;  ///< around rest, and no record made it run away
-    /// of the model, with the stimulus of its fit, as `predistort` plays it; null of the linear and the physical
-    /// classes
+    /// of the model, with the stimulus of its fit, as `predistort` plays it; null of the linear fractional class
     nlohmann::ordered_json document = nullptr;
     /// a sentence where the class could not be fitted; the figures then mean nothing
     std::string trouble;
+    RankedLinearization linearization;
 };
 
 struct Ranking {
@@ -49,8 +61,10 @@ struct Ranking {
     std::optional<double> noiseDb;
     /// by ascending error on the validation records (without any: on the estimation records), troubled ones last
     std::vector<RankedModel> models;
-    std::string best;      ///< the class that explains most; empty: none is stable
-    std::string sentence;  ///< which one explains most, and what its peers lack
+    std::string best;              ///< the class that explains most; empty: none is stable
+    std::string sentence;          ///< which one explains most, and what its peers lack
+    std::string straightest;       ///< the class that leaves least distortion on the take; empty: none takes 3 dB away
+    std::string straightSentence;  ///< which one it is, what it leaves, load and latency; or that there is none
 };
 
 struct ModelClass {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/BlackBox/BlackBoxEngine.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+
+BlackBoxEngine::BlackBoxEngine(const PlayedBox& played, double sampleRate, const PredistortionControls& controls)
+    : speaker_(played.box, played.region, played.rest, sampleRate),
+      perOutput_(played.perOutput),
+      waiting_(static_cast<std::size_t>(speaker_.latency()))
+{
+    if (played.rehearsal)
+        bend_.emplace(RehearsedBox(played.box, played.region, played.rest, *played.rehearsal), sampleRate);
+    set(controls);
+    reset();
+}
+
+void BlackBoxEngine::reset()
+{
+    if (bend_)
+        bend_->reset();
+    speaker_.reset();
+    std::fill(waiting_.begin(), waiting_.end(), 0.0);
+    at_ = 0;
+}
+
+void BlackBoxEngine::resetBending()
+{
+    turn(false);
+    if (bend_)
+        bend_->reset();
+    std::fill(waiting_.begin(), waiting_.end(), 0.0);
+}
+
+void BlackBoxEngine::set(const PredistortionControls& controls)
+{
+    if (bend_)
+        bend_->set({controls.amount, controls.voltageLimit});
+}
+
+void BlackBoxEngine::turn(bool bends)
+{
+    if (bend_)
+        bend_->turn(bends);
+}
+
+void BlackBoxEngine::process(double* volts, std::size_t n, Fade& played)
+{
+    if (bend_)
+        bend_->process(volts, volts, n);
+    else
+        for (std::size_t k = 0; k < n; ++k)
+            if (!std::isfinite(volts[k])) {
+                volts[k] = 0.0;
+                faults_.fetch_add(1, std::memory_order_relaxed);
+            }
+    const bool plays = played.runs();
+    if (plays)
+        speaker_.process(volts, sound_.data(), n);
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!waiting_.empty()) {
+            std::swap(volts[k], waiting_[at_]);
+            at_ = at_ + 1 == waiting_.size() ? 0 : at_ + 1;
+        }
+        if (plays)
+            volts[k] += played.step() * (perOutput_ * sound_[k] - volts[k]);
+    }
+}
+
+ChainEngine::Meters BlackBoxEngine::take()
+{
+    Meters meters;
+    const auto speaker = speaker_.take();
+    meters.region = speaker.region;
+    meters.faults = speaker.faults + faults_.load(std::memory_order_relaxed);
+    if (bend_) {
+        const auto bend = bend_->take();
+        meters.predistorter.voltage = bend.out;
+        meters.predistorter.displacementReduction = bend.reduction;
+        meters.region = std::max(meters.region, bend.region);
+        meters.faults += bend.faults;
+    }
+    return meters;
+}
+
+}  // namespace excursion

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Predistortion/DriverEngine.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+
+DriverEngine::DriverEngine(const Model& model, const RealTimeOptions& options, const PredistortionControls& controls)
+    : bend_(model, options, controls),
+      cone_(model, options.sampleRate * options.oversampling),
+      coneRecovery_(static_cast<int>(0.02 * options.sampleRate), static_cast<int>(0.05 * options.sampleRate)),
+      perVolt_(1.0 / plateau(model)),
+      factor_(options.oversampling)
+{
+}
+
+void DriverEngine::reset()
+{
+    bend_.reset();
+    cone_.reset();
+    coneRecovery_.reset();
+}
+
+void DriverEngine::resetBending()
+{
+    bend_.turn(false);
+    bend_.reset();
+    coneRecovery_.reset();
+}
+
+/// The cone's part, at the higher rate.
+void DriverEngine::play(std::size_t n, Fade& played)
+{
+    double* const samples = bend_.between();
+    for (std::size_t k = 0; k < n; ++k) {
+        const double weight = played.step(), volume = coneRecovery_.step();
+        for (int s = 0; s < factor_; ++s) {
+            double& u = samples[k * static_cast<std::size_t>(factor_) + static_cast<std::size_t>(s)];
+            double a = u;
+            if (!cone_.step(a)) {
+                coneRecovery_.fault();
+                faults_.fetch_add(1, std::memory_order_relaxed);
+            }
+            u += weight * (volume * perVolt_ * a - u);
+            peak_.displacement = std::max(peak_.displacement, std::abs(cone_.displacement()));
+            peak_.current = std::max(peak_.current, std::abs(cone_.current()));
+        }
+    }
+}
+
+void DriverEngine::process(double* volts, std::size_t n, Fade& played)
+{
+    bend_.begin(volts, n);
+    if (played.runs())
+        play(n, played);
+    bend_.finish(volts, n);
+}
+
+void DriverEngine::publish()
+{
+    displacement_.raise(peak_.displacement);
+    current_.raise(peak_.current);
+    peak_ = {};
+    bend_.publish();
+}
+
+ChainEngine::Meters DriverEngine::take()
+{
+    const auto bend = bend_.take();
+    return {
+        bend, {displacement_.take(), current_.take(), 0}, 0.0, bend.faults + faults_.load(std::memory_order_relaxed)};
+}
+
+}  // namespace excursion

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Plugin/AnyModel.h"
+
+#include "Engine/BlackBox/ModelDocument.h"
+
+namespace excursion::plugin {
+
+LoadedBoxPointer loadedBox(const nlohmann::ordered_json& document, const std::string& where, const Progress& progress)
+{
+    const nlohmann::json plain(document);
+    const auto box = blackBoxOf(modelDocumentFrom(JsonField(plain, "", where)));
+    return std::make_shared<const LoadedBox>(LoadedBox {document, PlayedBox(box, progress)});
+}
+
+bool holdsBox(std::string_view text)
+{
+    const auto document = nlohmann::json::parse(text, nullptr, false);
+    return document.is_object() && isModelDocument(JsonField(document, "", ""));
+}
+
+}  // namespace excursion::plugin
