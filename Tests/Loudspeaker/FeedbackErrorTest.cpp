@@ -193,6 +193,7 @@ TEST_CASE("Played, a model leaves what its simulation leaves, with the columns o
 
 TEST_CASE("Near the noise a simulation tells more than laws that are fed noise", "[fed]")
 {
+    const auto start = ready({{"friction", 0.4}});
     auto found = withEffect(start.model, effectNamed("friction"), visitedExtent(start.model, start.record));
     for (auto& p : found.components.back().parameters)
         if (p.strength)

@@ -65,8 +65,10 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
     constexpr double begun = 0.15, done = 0.99;
     work.begin(progress.part(0.02, begun));
     const bool inTime = take.inTime() != nullptr;
-    const double searched = inTime ? begun : 0.7;
-    if (!inTime && work.addTogether(progress.part(begun, searched)))
+    // What no effect explains by itself several may explain together.
+    const bool together = !inTime || work.ladder().verdict == Verdict::unknownEffect;
+    const double searched = together ? 0.7 : begun;
+    if (together && work.addTogether(progress.part(begun, searched)))
         tell();
     // of a rung: none has an effect twice
     const double share = (done - searched) / static_cast<double>(catalogue().size());

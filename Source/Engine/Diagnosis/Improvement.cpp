@@ -143,10 +143,11 @@ std::vector<Rung> Improvement::rungsTogether(const Record& record, const Progres
     const auto& base = ladder_.rungs.back();
     const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(),
                                       [](const RankedEffect& r) { return r.vote.backs(); });
-    if (!hasPeriods(record) || backed < 2)
+    const bool oneIsKnown = base.diagnosis.verdict == Verdict::missingEffect;
+    if (!hasPeriods(record) || (backed < 2 && oneIsKnown))
         return {};
     const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
-    if (whole.votes.size() < 2)
+    if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown))
         return {};
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
     if (!(rungs.back().comparison.chi < base.comparison.chi))

@@ -33,8 +33,8 @@ public:
     void begin(const Progress& = {});
 
     /// Puts in at once what the catalogue explains together, where the last rung's diagnosis speaks for several
-    /// effects: the rungs from there to all of them, the largest fall of the error first. False, and nothing done,
-    /// where it speaks for one at most, and of a take without periods.
+    /// effects, or knows none to begin with: the rungs from there to all of them, the largest fall of the error first.
+    /// False, and nothing done, where it speaks for one, where nothing is found, and of a take without periods.
     bool addTogether(const Progress& = {});
 
     /// Another rung: the effect is put into the last model, everything is refitted. Throws Error (data) when the model

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 
 namespace excursion {
@@ -39,14 +40,17 @@ Vote voteOn(const Sums& sums, const std::vector<Eigen::Index>& together, std::ve
     const Eigen::VectorXd without = away + gaussNewtonStep(gone, rest),
                           all = gaussNewtonStep(sums.estimation, together);
     constexpr double fewestRows = 300.0;  // half a decibel of so many is what no chance gives
-    const double rows = noiseKnown ? sums.validation.rows : 0.0, sure = sums.areNoise() ? 0.0 : sureNoise * rows;
-    const double floor = std::max({rows - sure, std::min(rows, fewestRows), 1e-300});
-    const auto left = [&](const Eigen::VectorXd& d) {
-        return std::max(predictedCost(sums.validation, d) - sure, floor);
-    };
+    double uniqueDb = -std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < sums.byChannel.size(); ++c) {
+        const auto& channel = sums.byChannel[c];
+        const double rows = noiseKnown ? channel.rows : 0.0,
+                     sure = sums.power[c].overNoise() <= ErrorPower::most ? 0.0 : sureNoise * rows;
+        const double floor = std::max({rows - sure, std::min(rows, fewestRows), 1e-300});
+        const auto left = [&](const Eigen::VectorXd& d) { return std::max(predictedCost(channel, d) - sure, floor); };
+        uniqueDb = std::max(uniqueDb, 10.0 * std::log10(left(without) / left(all)));
+    }
     const double explained = predictedCost(sums.estimation, without) - predictedCost(sums.estimation, all);
-    return {10.0 * std::log10(left(without) / left(all)),
-            gainByLevel(sums, all, strengths) / std::max(explained, 1e-300)};
+    return {uniqueDb, gainByLevel(sums, all, strengths) / std::max(explained, 1e-300)};
 }
 
 std::map<std::string, Vote> votesOf(const Model& model, const Record& record, const ScoreOptions& options,

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -229,17 +230,15 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
     return fuller;
 }
 
-}  // namespace
-
-Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
+/// The effects that rounds of voting put into a base, and what the last of them was fitted to.
+Whole grown(const Model& base, const Record& record, Search& search, const Progress& progress)
 {
     Whole whole {base, {}, {}};
-    Search search(base, record, options);
     constexpr int rounds = 4;
     constexpr double worthARound = 1.0;  // dB
     auto now = search.left(whole.model);
     for (int n = 0; n < rounds && !now.isNoise(); ++n) {
-        const auto part = progress.part(0.7 * n / rounds, 0.7 * (n + 1) / rounds);
+        const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
         auto fuller = withBacked(whole.model, record,
                                  score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, search);
         if (fuller.components.size() == whole.model.components.size())
@@ -249,15 +248,51 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
             break;
         search.chooseResiduals(fuller);
         now = search.left(whole.model);
-        search.findPartsAnew(fuller);
-        search.takeOut(fuller, false, [](const Tried& tried) { return tried.vote.uniqueDb > hardlyNeeded; });
-        const auto then = search.left(fuller);
+        auto then = search.left(fuller);
+        if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes in the end
+            search.findPartsAnew(fuller);
+            search.takeOut(fuller, false, [](const Tried& tried) { return tried.vote.uniqueDb > hardlyNeeded; });
+            then = search.left(fuller);
+        }
         if (!(search.lost(now, then) > worthARound))
             break;
         now = then;
         whole.model = std::move(fuller);
         whole.fit = summary;
     }
+    return whole;
+}
+
+/// A model without laws as the loudest level alone makes it: where friction holds the cone of a quiet one, the common
+/// fit lies between two suspensions, and no small step leads from there to either. None of a model with laws, and of
+/// one level.
+std::optional<Model> fittedToLoudest(const Model& model, const Record& record, const FitOptions& options)
+{
+    const auto every = estimationSections(record);
+    int loudest = -1;
+    for (const auto s : every)
+        loudest = std::max(loudest, record.sections[s].level);
+    std::vector<std::size_t> sections;
+    std::copy_if(every.begin(), every.end(), std::back_inserter(sections),
+                 [&](std::size_t s) { return record.sections[s].level == loudest; });
+    if (sections.size() == every.size() || linearPart(model).components.size() < model.components.size())
+        return std::nullopt;
+    auto loud = model;
+    if (!quickFit(loud, record, sections, options).usable())
+        return std::nullopt;
+    return loud;
+}
+
+}  // namespace
+
+Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
+{
+    Search search(base, record, options);
+    Whole whole = grown(base, record, search, progress.part(0.0, 0.4));
+    if (const auto loud = fittedToLoudest(base, record, options); loud && !search.left(whole.model).isNoise())
+        if (auto other = grown(*loud, record, search, progress.part(0.4, 0.7));
+            other.fit.usable() && search.left(other.model).chi < search.left(whole.model).chi)
+            whole = std::move(other);
     if (!whole.fit.usable())
         return whole;
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
