@@ -182,7 +182,9 @@ Eigen::MatrixXd PnlssTake::wholeInput() const
 Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const PnlssOutcome& outcome)
 {
     Arrival told;
-    told.noiseDb = data.records.noiseDb ? data.records.noiseDb : outcome.untoldDb;
+    told.noiseDb = data.records.noiseDb;
+    if (!told.noiseDb && outcome.untold)
+        told.noiseDb = outcome.untold->db;
     told.noiseFrom = data.records.noiseDb ? "periods" : "residual";
     if (outcome.estimationDb <= exactDb) {
         told.arrived = true;
@@ -194,9 +196,28 @@ Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const Pn
         return told;
     }
     const double above = outcome.estimationDb - *told.noiseDb;
-    told.arrived = above <= atNoiseDb;
+    told.arrived = data.records.noiseDb ? above <= atNoiseDb : outcome.untold->reachedBy(outcome.estimationDb);
+    const auto fewer = std::string("a longer take that goes everywhere early on, or fewer coefficients: --mask, "
+                                   "--terms, a lower --order or --degree.");
+    if (!told.arrived) {
+        told.sentence = "Whether the error is at the noise cannot be told: what is left is as slow as the motion, and "
+                        "may be noise or something that the model lacks.";
+        told.advice = "Try " + fewer;
+        return told;
+    }
     if (*told.arrived) {
-        told.sentence = "The error is at the noise, " + errorText(*told.noiseDb) + " dB.";
+        const auto noise = "The error is at the noise, " + errorText(*told.noiseDb) + " dB";
+        const double over = data.records.validation.empty() ? 0.0
+                                                            : heldOutDb(outcome.estimationDb, data.records.estimation,
+                                                                        outcome.validationDb, data.records.validation);
+        told.sentence = noise + ".";
+        if (over <= heldOutMostDb)
+            return told;
+        told.arrived.reset();
+        told.sentence = noise + ", on the records of the estimation. On those held out "
+                        + (std::isfinite(over) ? "it is " + errorText(over) + " dB larger" : "the model runs away")
+                        + ", so whether this is the system cannot be told.";
+        told.advice = "Try " + fewer;
         return told;
     }
     told.sentence = (options.model.empty() ? "The fit did not arrive: its error is " : "The error is ")
@@ -238,7 +259,7 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
         std::vector<Eigen::VectorXd> initial;
         if (!data.periodic()) {
             initial = {initialStateOf(named.model, estimation.front())};
-            outcome.untoldDb = untoldDb(named.model, estimation, initial);
+            outcome.untold = untoldNoise(named.model, estimation, initial);
         }
         outcome.estimationDb = relativeErrorDb(named.model, estimation, initial);
         outcome.validationDb = relativeErrorDb(named.model, validation, initial);
@@ -260,7 +281,7 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
             "",
             {},
             {},
-            fit.untoldDb};
+            fit.untold};
         named = {std::filesystem::path(options.response.path).stem().string(),
                  {std::string(name(data.input->quantity))},
                  {std::string(name(data.output->quantity))},

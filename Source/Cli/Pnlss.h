@@ -34,8 +34,8 @@ struct PnlssOutcome {
     std::string alpha;                                                  ///< in words; empty for integer order
     nlohmann::ordered_json model;                                       ///< its document
     std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;  ///< the output from rest
-    /// dB of the output, of a take without periods: what is left that the input does not tell (see ResidualTest.h)
-    std::optional<double> untoldDb {};
+    /// of a take without periods: what is left that the input does not tell
+    std::optional<UntoldNoise> untold {};
 };
 
 /// A take with what is to be explained by what.
