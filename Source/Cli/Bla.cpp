@@ -11,6 +11,7 @@
 #include "Engine/Error.h"
 #include "Engine/Estimate/Bla.h"
 #include "Engine/Estimate/Distortion.h"
+#include "Engine/Estimate/RestGrowth.h"
 #include "Engine/Estimate/Welch.h"
 #include "Engine/Import/Export.h"
 
@@ -148,6 +149,16 @@ Found fromRecord(const Measurement& take, Quantity output, int segment)
     found.document["nonCoherentDb"] = decibels(power / all);
     found.remarks.push_back("not coherent with the input (noise and added distortion): "
                             + fixed(decibels(power / all), 1) + " dB of the output");
+    const auto growth = restGrowth(take, output, {.segment = segment});
+    found.document["rest"] = {{"verdict", name(growth.verdict)},
+                              {"slope", growth.slope},
+                              {"standardError", growth.standardError},
+                              {"rangeDb", growth.range},
+                              {"excessDb", numberOrNull(growth.excessDb)},
+                              {"gainDb", growth.gainDb},
+                              {"segments", growth.segments},
+                              {"sentence", growth.sentence()}};
+    found.remarks.push_back(growth.sentence());
     return found;
 }
 
