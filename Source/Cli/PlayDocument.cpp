@@ -8,6 +8,7 @@
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 #include "Engine/Polynomial/Narx/NarxFile.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
+#include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 
 #include <nlohmann/json.hpp>
 
@@ -48,6 +49,10 @@ std::optional<PlayedDocument> playedDocument(const std::string& path)
     }
     if (format == "excursion-narx") {
         const auto named = narxFromJson(field);
+        return playedAs(named, named.model.sampleRate);
+    }
+    if (format == "excursion-volterra-series") {
+        const auto named = volterraSeriesFromJson(field);
         return playedAs(named, named.model.sampleRate);
     }
     if (format == "excursion-block-model") {

@@ -12,6 +12,7 @@
 #include "Engine/Polynomial/Pnlss/LinearStarts.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Pnlss/ResidualTest.h"
+#include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 #include "Engine/Ranking/Agreement.h"
 #include "Engine/Take/TakeFile.h"
 
@@ -45,6 +46,18 @@ void writePlayed(const PnlssTake& data, const Eigen::MatrixXd& y, const std::str
     played.channels[1].samples.assign(y.data(), y.data() + y.size());
     played.channels[1].fullScale = std::max(data.output->fullScale, y.cwiseAbs().maxCoeff());
     writeMeasurement(played, folder);
+}
+
+/// The Volterra series of the model.
+void writeKernels(const PnlssArguments& options, const PnlssTake& data, const PnlssOutcome& outcome)
+{
+    const nlohmann::json document(outcome.model);
+    if (document.value("format", "") != "excursion-pnlss")
+        throw Error(Error::Kind::usage, "--volterra is for models of whole order.");
+    const auto named = pnlssFromJson(JsonField(document, "", "the model"));
+    writeVolterraSeries({named.name, std::string(name(data.input->quantity)), std::string(name(data.output->quantity)),
+                         volterraSeries(named.model, options.memory[0], options.memory[1], options.memory[2])},
+                        options.volterra);
 }
 
 bool isFractional(const PnlssArguments& options, const nlohmann::json& kept)
@@ -99,6 +112,8 @@ void require(const PnlssArguments& options)
         requireFilePlace(options.out);
     if (!options.played.empty())
         requireFolderPlace(options.played);
+    if (!options.volterra.empty())
+        requireFilePlace(options.volterra);
 }
 
 void run(PnlssArguments options, Terminal& terminal)
@@ -120,6 +135,8 @@ void run(PnlssArguments options, Terminal& terminal)
         outcome.model["stimulus"] = toJson(stimulusOf(data.records.estimation, data.take.sampleRate));
     if (!options.out.empty())
         writeJson(outcome.model, options.out);
+    if (!options.volterra.empty())
+        writeKernels(options, data, outcome);
     if (!options.played.empty())
         writePlayed(data, outcome.play(data.wholeInput()), options.played);
 
@@ -139,7 +156,7 @@ void run(PnlssArguments options, Terminal& terminal)
         terminal.say(arrival.advice);
     if (!outcome.stable)
         terminal.say("The linear part of this model is not stable.");
-    for (const auto& written : {options.out, options.played})
+    for (const auto& written : {options.out, options.volterra, options.played})
         if (!written.empty())
             terminal.say("Wrote " + written + ".");
 
@@ -331,6 +348,12 @@ void addPnlss(CLI::App& app, Terminal& terminal)
         ->type_name("FILE");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->add_option("--played", o->played, "also write the take as the model plays it")->type_name("DIR");
+    verb->add_option("--volterra", o->volterra, "also write the model's Volterra kernels to order 3, a .json")
+        ->type_name("FILE");
+    verb->add_option("--memory", o->memory, "samples of the kernels of order 1, 2 and 3; 0 leaves 2 or 3 out")
+        ->capture_default_str()
+        ->expected(3)
+        ->delimiter(',');
     verb->add_flag("--laws", o->laws,
                    "also tell which physical laws the model agrees with: what it plays is diagnosed as a loudspeaker");
     verb->footer("Exit code 1: the linear part of the model is not stable.");
