@@ -2,6 +2,8 @@
 #include "Cli/PlayDocument.h"
 
 #include "Engine/Error.h"
+#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Fractional/TimeResponse.h"
 #include "Engine/Linear/Simulation.h"
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Polynomial/Block/BlockModelFile.h"
@@ -15,25 +17,31 @@
 namespace excursion::cli {
 namespace {
 
+void requireOneEach(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+                    const std::string& path)
+{
+    if (inputs.size() != 1 || outputs.size() != 1)
+        throw Error(Error::Kind::data,
+                    "'" + path + "' holds a model of several inputs or outputs; one of each is played.");
+}
+
 template <class Model>
 PlayedDocument playedAs(const Named<Model>& named, double sampleRate)
 {
     return {named.input, named.output, sampleRate,
-            [model = named.model](const Eigen::MatrixXd& u) { return simulate(model, u); }};
+            [model = named.model](const Eigen::MatrixXd& u, double) { return simulate(model, u); }};
 }
 
 template <class Model>
 PlayedDocument playedAs(const Model& model, const std::vector<std::string>& inputs,
                         const std::vector<std::string>& outputs, double sampleRate, const std::string& path)
 {
-    if (inputs.size() != 1 || outputs.size() != 1)
-        throw Error(Error::Kind::data,
-                    "'" + path + "' holds a model of several inputs or outputs; one of each is played.");
+    requireOneEach(inputs, outputs, path);
     if (!(sampleRate > 0.0))
         throw Error(Error::Kind::data,
                     "'" + path + "' holds a model of continuous time; identify one at a sample rate.");
     return {inputs.front(), outputs.front(), sampleRate,
-            [model](const Eigen::MatrixXd& u) -> Eigen::MatrixXd { return simulate(model, u); }};
+            [model](const Eigen::MatrixXd& u, double) -> Eigen::MatrixXd { return simulate(model, u); }};
 }
 
 }  // namespace
@@ -70,6 +78,15 @@ std::optional<PlayedDocument> playedDocument(const std::string& path)
                                                + "' holds a model that is late on purpose, by a delay beside it; "
                                                  "it is not played.");
         return playedAs(named.model, named.inputs, named.outputs, named.model.sampleRate, path);
+    }
+    if (format == "excursion-fractional-state-space") {
+        const auto named = fractionalStateSpaceFromJson(field);
+        requireOneEach(named.inputs, named.outputs, path);
+        return PlayedDocument {named.inputs.front(), named.outputs.front(), 0.0,
+                               [model = named.model](const Eigen::MatrixXd& u, double rate) {
+                                   const LadderOptions band {0.1 * rate / static_cast<double>(u.rows()), rate, 4.0};
+                                   return simulateByLadder(model, u, rate, band);
+                               }};
     }
     return std::nullopt;
 }
