@@ -141,28 +141,49 @@ def try_one(build, library, tests, arguments, place, scratch):
     return "missed"
 
 
+def missed_in(log):
+    """The places that an earlier run, of which this is the output, has missed."""
+    for line in Path(log).read_text().splitlines():
+        told = re.match(r"missed\s+(\S+):(\d+): '(.*?)' -> '(.*?)': ", line)
+        if not told:
+            continue
+        file, at, old, new = ROOT / told[1], int(told[2]), told[3], told[4]
+        text = file.read_text()
+        begin = sum(len(row) + 1 for row in text.split("\n")[: at - 1])
+        for place in places(file):
+            if begin <= place[1] < begin + len(text.split("\n")[at - 1]) and text[place[1] : place[2]] == old and place[3] == new:
+                yield place
+                break
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    options.add_argument("libraries", nargs="+", help="folders of Source/Engine, such as Signal")
+    options.add_argument("libraries", nargs="*", help="folders of Source/Engine, such as Signal")
     options.add_argument("--build", default="build-mutation")
     options.add_argument("--places", type=int, default=60)
     options.add_argument("--seed", type=int, default=1)
-    options.add_argument("--also", nargs="*", default=[], help="test programs that are asked, too: tests_properties")
+    options.add_argument("--also", type=lambda names: names.split(","), default=[],
+                         help="test programs that are asked as well: tests_properties,tests_linear")
+    options.add_argument("--again", help="output of an earlier run: try what it missed once more")
     options.add_argument("--json", help="write what became of each place")
     options.add_argument("--filter", default="~[.]~[slow]", help="of the tests, Catch's")
     options = options.parse_args()
     build = Build(str((ROOT / options.build).resolve()))
     rng = random.Random(options.seed)
-    drawn = [[p for file in sorted((ENGINE / name).rglob("*.cpp")) for p in places(file)] for name in options.libraries]
+    if options.again:
+        chosen = list(missed_in(options.again))
+    else:
+        drawn = [[p for file in sorted((ENGINE / name).rglob("*.cpp")) for p in places(file)] for name in options.libraries]
+        for pool in drawn:
+            rng.shuffle(pool)
+        chosen = [pool[k] for k in range(options.places) for pool in drawn if k < len(pool)][: options.places]
     count, results = {}, []
     with tempfile.TemporaryDirectory() as folder:
-        for k in range(options.places):
-            library = k % len(drawn)
-            if not drawn[library]:
-                continue
-            place = drawn[library].pop(rng.randrange(len(drawn[library])))
-            name = options.libraries[library].split("/")[0]
-            told = try_one(build, name, [f"tests_{name.lower()}", *options.also], [options.filter], place, Path(folder))
+        for place in chosen:
+            name = place[0].relative_to(ENGINE).parts[0]
+            own = f"tests_{name.lower()}"
+            tests = [own, *(test for test in options.also if test != own)]
+            told = try_one(build, name, tests, [options.filter], place, Path(folder))
             file, first, last, new, kind = place
             text = file.read_text()
             line = text.count("\n", 0, first) + 1
