@@ -11,8 +11,12 @@
 #include "Engine/Error.h"
 #include "Engine/Estimate/Bla.h"
 #include "Engine/Estimate/Distortion.h"
+#include "Engine/Estimate/Periods.h"
+#include "Engine/Estimate/RestGrowth.h"
 #include "Engine/Estimate/Welch.h"
 #include "Engine/Import/Export.h"
+#include "Engine/Signal/Delay.h"
+#include "Engine/Signal/Level.h"
 
 #include <nlohmann/json.hpp>
 
@@ -148,7 +152,36 @@ Found fromRecord(const Measurement& take, Quantity output, int segment)
     found.document["nonCoherentDb"] = decibels(power / all);
     found.remarks.push_back("not coherent with the input (noise and added distortion): "
                             + fixed(decibels(power / all), 1) + " dB of the output");
+    const auto growth = restGrowth(take, output, {.segment = segment});
+    found.document["rest"] = {{"verdict", name(growth.verdict)},
+                              {"slope", growth.slope},
+                              {"standardError", growth.standardError},
+                              {"rangeDb", growth.range},
+                              {"excessDb", numberOrNull(growth.excessDb)},
+                              {"gainDb", growth.gainDb},
+                              {"segments", growth.segments},
+                              {"sentence", growth.sentence()}};
+    found.remarks.push_back(growth.sentence());
     return found;
+}
+
+/// How late the output is, as one number for all frequencies.
+void tellDelay(Found& found, const Measurement& take, Quantity output, int level, int segment)
+{
+    const auto &in = take.input(), &out = *take.find(output);
+    if (take.length() < 16 || peakOf(in.samples) == 0.0 || peakOf(out.samples) == 0.0)
+        return;
+    const auto late = level >= 0
+                          ? estimateDelay(averagePeriod(take, in, level, 0), averagePeriod(take, out, level, 0),
+                                          {.period = take.excitation->period})
+                          : estimateDelay(in.samples, out.samples,
+                                          {.segment = WelchOptions {.segment = segment}.segmentOf(take.length())});
+    found.document["delay"] = {{"samples", numberOrNull(late.samples)},
+                               {"standardError", numberOrNull(late.standardError)},
+                               {"inverted", late.inverted}};
+    found.remarks.push_back("delay that explains the phase best, what a driver turns included: "
+                            + fixed(late.samples, 2) + " samples, " + fixed(1e3 * late.samples / take.sampleRate, 3)
+                            + " ms" + (late.inverted ? ", inverted" : ""));
 }
 
 /// One row each third of an octave: the line nearest to it.
@@ -266,6 +299,7 @@ void run(const BlaArguments& options, Terminal& terminal)
                       : options.level >= 0 ? options.level
                                            : static_cast<int>(take.excitation->levels.size()) - 1;
     auto found = periodic ? fromPeriods(take, output, level) : fromRecord(take, output, options.segment);
+    tellDelay(found, take, output, level, options.segment);
 
     const auto input = take.input().quantity;
     auto head = documentOf(found.frf, options.take, name(input), name(output));

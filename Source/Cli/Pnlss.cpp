@@ -12,6 +12,7 @@
 #include "Engine/Polynomial/Pnlss/LinearStarts.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Pnlss/ResidualTest.h"
+#include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 #include "Engine/Ranking/Agreement.h"
 #include "Engine/Take/TakeFile.h"
 
@@ -45,6 +46,18 @@ void writePlayed(const PnlssTake& data, const Eigen::MatrixXd& y, const std::str
     played.channels[1].samples.assign(y.data(), y.data() + y.size());
     played.channels[1].fullScale = std::max(data.output->fullScale, y.cwiseAbs().maxCoeff());
     writeMeasurement(played, folder);
+}
+
+/// The Volterra series of the model.
+void writeKernels(const PnlssArguments& options, const PnlssTake& data, const PnlssOutcome& outcome)
+{
+    const nlohmann::json document(outcome.model);
+    if (document.value("format", "") != "excursion-pnlss")
+        throw Error(Error::Kind::usage, "--volterra is for models of whole order.");
+    const auto named = pnlssFromJson(JsonField(document, "", "the model"));
+    writeVolterraSeries({named.name, std::string(name(data.input->quantity)), std::string(name(data.output->quantity)),
+                         volterraSeries(named.model, options.memory[0], options.memory[1], options.memory[2])},
+                        options.volterra);
 }
 
 bool isFractional(const PnlssArguments& options, const nlohmann::json& kept)
@@ -99,6 +112,8 @@ void require(const PnlssArguments& options)
         requireFilePlace(options.out);
     if (!options.played.empty())
         requireFolderPlace(options.played);
+    if (!options.volterra.empty())
+        requireFilePlace(options.volterra);
 }
 
 void run(PnlssArguments options, Terminal& terminal)
@@ -120,6 +135,8 @@ void run(PnlssArguments options, Terminal& terminal)
         outcome.model["stimulus"] = toJson(stimulusOf(data.records.estimation, data.take.sampleRate));
     if (!options.out.empty())
         writeJson(outcome.model, options.out);
+    if (!options.volterra.empty())
+        writeKernels(options, data, outcome);
     if (!options.played.empty())
         writePlayed(data, outcome.play(data.wholeInput()), options.played);
 
@@ -139,7 +156,7 @@ void run(PnlssArguments options, Terminal& terminal)
         terminal.say(arrival.advice);
     if (!outcome.stable)
         terminal.say("The linear part of this model is not stable.");
-    for (const auto& written : {options.out, options.played})
+    for (const auto& written : {options.out, options.volterra, options.played})
         if (!written.empty())
             terminal.say("Wrote " + written + ".");
 
@@ -182,7 +199,9 @@ Eigen::MatrixXd PnlssTake::wholeInput() const
 Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const PnlssOutcome& outcome)
 {
     Arrival told;
-    told.noiseDb = data.records.noiseDb ? data.records.noiseDb : outcome.untoldDb;
+    told.noiseDb = data.records.noiseDb;
+    if (!told.noiseDb && outcome.untold)
+        told.noiseDb = outcome.untold->db;
     told.noiseFrom = data.records.noiseDb ? "periods" : "residual";
     if (outcome.estimationDb <= exactDb) {
         told.arrived = true;
@@ -194,9 +213,28 @@ Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const Pn
         return told;
     }
     const double above = outcome.estimationDb - *told.noiseDb;
-    told.arrived = above <= atNoiseDb;
+    told.arrived = data.records.noiseDb ? above <= atNoiseDb : outcome.untold->reachedBy(outcome.estimationDb);
+    const auto fewer = std::string("a longer take that goes everywhere early on, or fewer coefficients: --mask, "
+                                   "--terms, a lower --order or --degree.");
+    if (!told.arrived) {
+        told.sentence = "Whether the error is at the noise cannot be told: what is left is as slow as the motion, and "
+                        "may be noise or something that the model lacks.";
+        told.advice = "Try " + fewer;
+        return told;
+    }
     if (*told.arrived) {
-        told.sentence = "The error is at the noise, " + errorText(*told.noiseDb) + " dB.";
+        const auto noise = "The error is at the noise, " + errorText(*told.noiseDb) + " dB";
+        const double over = data.records.validation.empty() ? 0.0
+                                                            : heldOutDb(outcome.estimationDb, data.records.estimation,
+                                                                        outcome.validationDb, data.records.validation);
+        told.sentence = noise + ".";
+        if (over <= heldOutMostDb)
+            return told;
+        told.arrived.reset();
+        told.sentence = noise + ", on the records of the estimation. On those held out "
+                        + (std::isfinite(over) ? "it is " + errorText(over) + " dB larger" : "the model runs away")
+                        + ", so whether this is the system cannot be told.";
+        told.advice = "Try " + fewer;
         return told;
     }
     told.sentence = (options.model.empty() ? "The fit did not arrive: its error is " : "The error is ")
@@ -238,7 +276,7 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
         std::vector<Eigen::VectorXd> initial;
         if (!data.periodic()) {
             initial = {initialStateOf(named.model, estimation.front())};
-            outcome.untoldDb = untoldDb(named.model, estimation, initial);
+            outcome.untold = untoldNoise(named.model, estimation, initial);
         }
         outcome.estimationDb = relativeErrorDb(named.model, estimation, initial);
         outcome.validationDb = relativeErrorDb(named.model, validation, initial);
@@ -260,7 +298,7 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
             "",
             {},
             {},
-            fit.untoldDb};
+            fit.untold};
         named = {std::filesystem::path(options.response.path).stem().string(),
                  {std::string(name(data.input->quantity))},
                  {std::string(name(data.output->quantity))},
@@ -310,6 +348,12 @@ void addPnlss(CLI::App& app, Terminal& terminal)
         ->type_name("FILE");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->add_option("--played", o->played, "also write the take as the model plays it")->type_name("DIR");
+    verb->add_option("--volterra", o->volterra, "also write the model's Volterra kernels to order 3, a .json")
+        ->type_name("FILE");
+    verb->add_option("--memory", o->memory, "samples of the kernels of order 1, 2 and 3; 0 leaves 2 or 3 out")
+        ->capture_default_str()
+        ->expected(3)
+        ->delimiter(',');
     verb->add_flag("--laws", o->laws,
                    "also tell which physical laws the model agrees with: what it plays is diagnosed as a loudspeaker");
     verb->footer("Exit code 1: the linear part of the model is not stable.");

@@ -18,7 +18,8 @@ namespace excursion::cli {
 
 struct PnlssArguments {
     ResponseChoice response;
-    std::string model, start, out, played, mask = "full", terms, alpha;
+    std::string model, start, out, played, volterra, mask = "full", terms, alpha;
+    std::vector<int> memory {1024, 128, 24};  ///< samples of the Volterra kernels of order 1, 2, 3
     int order = 0, degree = 3, iterations = 50;
     bool noOutputTerms = false, offset = false, mixed = false, laws = false;
     bool chosenTerms = false;  ///< --degree, --mask, --terms or --offset was given
@@ -34,8 +35,8 @@ struct PnlssOutcome {
     std::string alpha;                                                  ///< in words; empty for integer order
     nlohmann::ordered_json model;                                       ///< its document
     std::function<Eigen::MatrixXd(const Eigen::MatrixXd& input)> play;  ///< the output from rest
-    /// dB of the output, of a take without periods: what is left that the input does not tell (see ResidualTest.h)
-    std::optional<double> untoldDb {};
+    /// of a take without periods: what is left that the input does not tell
+    std::optional<UntoldNoise> untold {};
 };
 
 /// A take with what is to be explained by what.

@@ -110,14 +110,14 @@ void runDocument(const SimulateArguments& options, const ModelDocument& model, T
         throw Error(Error::Kind::data, "'" + options.model + "' makes a " + model.output + " of a " + model.input
                                            + "; what a voltage or a force makes is played.");
     const auto given = played(options, *input == Quantity::voltage);
-    if (std::abs(given.sampleRate - model.sampleRate) > 1e-6 * model.sampleRate)
+    if (model.sampleRate > 0.0 && std::abs(given.sampleRate - model.sampleRate) > 1e-6 * model.sampleRate)
         throw Error(Error::Kind::data, "'" + options.model + "' plays at " + significant(model.sampleRate, 8)
                                            + " Hz, but '" + options.input + "' is sampled at "
                                            + significant(given.sampleRate, 8) + " Hz; resample it, or identify the "
                                            + "model at that rate.");
     const auto& u = given.channel.samples;
     const Eigen::MatrixXd y = simulate(
-        model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())));
+        model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())), given.sampleRate);
     if (!y.allFinite())
         throw Error(Error::Kind::numerical, "The model runs away with this input.");
     SweepTake result;

@@ -6,6 +6,7 @@
 #include "Engine/Fractional/FractionalStateSpaceFile.h"
 #include "Plots/HarmonicPlots.h"
 #include "Plots/ModelPlots.h"
+#include "Plots/VolterraPlots.h"
 #include "Report/ClassesReport.h"
 #include "Report/Page.h"
 
@@ -221,6 +222,36 @@ void addHarmonicCurves(Page& page, const JsonField& document)
     }
 }
 
+Eigen::VectorXd vectorIn(const JsonField& list)
+{
+    const auto numbers = list.numbers();
+    return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+void addVolterraSeries(Page& page, const JsonField& document)
+{
+    const double rate = document.at("sampleRate").number();
+    if (!(rate > 0.0))
+        document.at("sampleRate").refuse("a sample rate above 0 Hz");
+    const auto first = vectorIn(document.at("first"));
+    const auto rows = static_cast<Eigen::Index>(document.at("second").items().size());
+    const auto second = matrixFrom(document.at("second"), rows, rows);
+    page.headline(document.at("name").text() + ": " + document.at("output").text() + " under "
+                      + document.at("input").text() + ", kernels of " + std::to_string(first.size()) + ", "
+                      + std::to_string(rows) + " and " + std::to_string(document.at("third").items().size())
+                      + " samples",
+                  "good");
+    page.section("The kernels");
+    std::vector<Plot> plots {firstKernelPlot(first, rate, "")};
+    if (rows > 0)
+        plots.push_back(secondKernelPlot(second, rate, ""));
+    const int columns = static_cast<int>(plots.size());
+    page.figures(std::move(plots), columns,
+                 "The first kernel answers one impulse, by output unit over input unit. The second is a surface, drawn "
+                 "along its diagonals: half of what an impulse, s after another, adds to both answers, by output unit "
+                 "over the square of the input's.");
+}
+
 struct PageOf {
     const char* format;
     const char* title;
@@ -235,6 +266,7 @@ constexpr PageOf pagesOf[] {
     {"excursion-motor-cone", "Motor and cone", addMotorCone},
     {"excursion-pnlss-fit", "Polynomial model", addPnlssFit},
     {"excursion-harmonics", "Harmonic distortion", addHarmonicCurves},
+    {"excursion-volterra-series", "Volterra series", addVolterraSeries},
     {"excursion-ranking", "Classes of models", addRankingOfClasses}};
 
 }  // namespace

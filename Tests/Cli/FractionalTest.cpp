@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models of fractional order from the command line.
 #include "Cli/Program.h"
+#include "Engine/Take/TakeFile.h"
 #include "Scratch.h"
 
 #include <catch2/catch.hpp>
@@ -160,4 +161,36 @@ TEST_CASE("reduce and stabilize read models in s^alpha, and write them again")
     broken.erase("alpha");
     scratch.file("bad.json", broken.dump());
     CHECK(run({"stabilize", bad, "--out", out}).code == 3);
+}
+
+TEST_CASE("simulate plays a model of fractional order, at the rate of what is played")
+{
+    const Scratch scratch;
+    const auto model = scratch
+                           .file("half.json", R"({"format": "excursion-fractional-state-space", "version": 1,
+        "name": "half", "alpha": 0.5, "form": {"format": "excursion-state-space", "version": 1, "name": "half",
+        "inputs": ["voltage"], "outputs": ["displacement"], "sampleRate": 0.0, "order": 1,
+        "A": [[-40.0]], "B": [[1.0]], "C": [[40.0]], "D": [[0.0]]}})")
+                           .string();
+    // 40 / (40 + (j w)^1/2), w = 2 pi 200
+    const double w = 2.0 * std::numbers::pi * 200.0, root = std::sqrt(w / 2.0);
+    const double gain = 40.0 / std::hypot(40.0 + root, root);
+    for (const double rate : {8000.0, 20000.0}) {
+        std::ostringstream csv;
+        csv.precision(17);
+        csv << "time (s),voltage (V)\n";
+        for (int t = 0; t < static_cast<int>(rate); ++t)
+            csv << t / rate << ',' << std::sin(w * t / rate) << '\n';
+        const auto tone = scratch.file("tone.csv", csv.str()).string(),
+                   played = (scratch / ("played " + std::to_string(rate))).string();
+        const auto told = runProgram(scratch.folder(), {"simulate", model, tone, "--out", played});
+        INFO(told.err);
+        REQUIRE(told.code == 0);
+        const auto y = excursion::readOwnTake(excursion::headerOf(played)).take.channels.at(1).samples;
+        double power = 0.0;
+        const auto half = y.size() / 2;  // a hundred periods, and all that is left of the beginning dies as t^-3/2
+        for (std::size_t t = half; t < y.size(); ++t)
+            power += y[t] * y[t] / static_cast<double>(half);
+        CHECK(std::sqrt(2.0 * power) == Approx(gain).epsilon(3e-3));
+    }
 }

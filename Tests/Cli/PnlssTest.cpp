@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polynomial state-space models from the command line.
 #include "Cli/Chain.h"
+#include "Engine/Take/TakeFile.h"
 #include "Linear/Problem.h"
 
 #include <sstream>
@@ -93,6 +94,29 @@ TEST_CASE("pnlss of one record arrives at its noise or says that it did not, and
     CHECK(missed.at("advice").get<std::string>().find("--order") != std::string::npos);
     const auto words = runProgram(scratch.folder(), {"pnlss", take, "--order", "1"});
     CHECK(words.out.find("did not arrive") != std::string::npos);
+
+    const auto kernels = (scratch / "kernels.json").string(), byKernels = (scratch / "by kernels").string(),
+               byModel = (scratch / "by model").string();
+    REQUIRE(
+        runProgram(scratch.folder(), {"pnlss", take, "--model", kept, "--volterra", kernels, "--memory", "200,80,48"})
+            .code
+        == 0);
+    for (const auto& [model, played] : {std::pair {kept, byModel}, {kernels, byKernels}})
+        REQUIRE(runProgram(scratch.folder(), {"simulate", model, take, "--out", played}).code == 0);
+    const auto exact = excursion::readOwnTake(excursion::headerOf(byModel)).take.channels.at(1).samples,
+               series = excursion::readOwnTake(excursion::headerOf(byKernels)).take.channels.at(1).samples;
+    double off = 0.0, power = 0.0;
+    for (std::size_t t = 0; t < exact.size(); ++t) {
+        off += std::pow(series[t] - exact[t], 2);
+        power += exact[t] * exact[t];
+    }
+    CHECK(off < 0.01 * power);  // what a series to order 3 leaves of a cube in a loop
+    CHECK(off > 0.0);
+    const auto response = runProgram(scratch.folder(), {"bla", take, "--json"});
+    INFO(response.err);
+    REQUIRE(response.code == 0);
+    CHECK(nlohmann::json::parse(response.out).at("rest").at("verdict") == "untold");  // one level all along
+    CHECK(nlohmann::json::parse(response.out).at("delay").at("samples") > 1.0);
 
     const auto again = runProgram(scratch.folder(), {"pnlss", take, "--start", kept, "--json"});
     INFO(again.err);

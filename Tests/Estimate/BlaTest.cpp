@@ -2,6 +2,7 @@
 #include "Engine/Estimate/Bla.h"
 
 #include "Engine/Error.h"
+#include "Engine/Signal/Fft.h"
 #include "Estimate/SyntheticTake.h"
 
 #include <catch2/catch.hpp>
@@ -138,4 +139,53 @@ TEST_CASE("a missing channel, level or excitation is refused")
     CHECK_THROWS_AS(bla(take, Quantity::current, 0), Error);
     take.excitation.reset();
     CHECK_THROWS_AS(bla(take, Quantity::current, 0), Error);
+}
+
+TEST_CASE("Variances of the BLA are, to rounding, those of its definition from single realizations and periods")
+{
+    synthetic::Loudspeaker driver;
+    driver.oddStiffness = 0.3;
+    synthetic::Plan plan;
+    plan.period = 1024;
+    plan.sampleRate = 8000.0;
+    plan.bandHigh = 2000.0;
+    plan.realizations = 3;
+    plan.periods = 4;
+    plan.levels = {1.0, 2.0};
+    plan.noiseDb = -50.0;
+    std::mt19937_64 random(11);
+    const auto take = synthetic::record(driver, plan, random);
+    const auto& lines = take.excitation->lines;
+    const auto result = bla(take, Quantity::displacement, 1);
+    REQUIRE(result.frf.value.size() == lines.size());
+    const auto spectrumOf = [&](Quantity quantity, int m, int p) {
+        const auto& x = take.find(quantity)->samples;
+        const auto start = x.begin() + 1024 * ((3 + m) * 5 + 1 + p);  // one period settles, the first level is over
+        return fft(std::vector<double>(start, start + 1024));
+    };
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto k = static_cast<std::size_t>(lines[i]);
+        std::vector<std::complex<double>> G;
+        double noise = 0.0, total = 0.0;
+        for (int m = 0; m < 3; ++m) {
+            std::complex<double> U = 0.0, Y = 0.0;
+            for (int p = 0; p < 4; ++p) {
+                U += spectrumOf(Quantity::voltage, m, p)[k] / 4.0;
+                Y += spectrumOf(Quantity::displacement, m, p)[k] / 4.0;
+            }
+            G.push_back(Y / U);
+            for (int p = 0; p < 4; ++p)
+                noise += std::norm(spectrumOf(Quantity::displacement, m, p)[k]
+                                   - G.back() * spectrumOf(Quantity::voltage, m, p)[k])
+                         / (4.0 * 3.0) / std::norm(U) / 9.0;
+        }
+        const auto mean = (G[0] + G[1] + G[2]) / 3.0;
+        for (const auto& g : G)
+            total += std::norm(g - mean) / (3.0 * 2.0);
+        CHECK(std::abs(result.frf.value[i] - mean) < 1e-10 * std::abs(mean));
+        CHECK(result.frf.noiseVariance[i] == Approx(noise).epsilon(1e-6));
+        CHECK(result.frf.totalVariance[i] == Approx(total).epsilon(1e-6));
+        CHECK(result.nonlinearVariance[i] == Approx(std::max(total - noise, 0.0)).epsilon(1e-5).margin(1e-6 * total));
+        CHECK(result.stochasticNonlinear[i] == Approx(3.0 * result.nonlinearVariance[i]).epsilon(1e-9));
+    }
 }

@@ -152,6 +152,10 @@ TEST_CASE("fitAtDelay takes the delay it is given, and senseless options are ref
     narrow.most = -1e-3;
     refused(Error::Kind::usage, "range", [&] { fitDelayed(data, narrow); });
     narrow = {};
+    narrow.scan = 3;
+    CHECK(narrow.isValid());
+    narrow.scan = 1000;
+    CHECK(narrow.isValid());
     narrow.scan = 2;
     refused(Error::Kind::usage, "first look", [&] { fitDelayed(data, narrow); });
     auto two = data;

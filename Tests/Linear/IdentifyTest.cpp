@@ -153,6 +153,16 @@ TEST_CASE("The order of a noisy response is found, in continuous time too")
     // Chosen by validation as well
     auto validation = measured(truth, logarithmic(12.0, 18000.0, 150));
     CHECK(sweepOrders(data, options, &validation).entries[sweep.chosen].order == 3);
+    // Where the validation data is what one of the models says, that one.
+    for (const std::size_t of : {0, 1, 3, 5}) {
+        validation = measured(sweep.entries[of].found.model, logarithmic(12.0, 18000.0, 150));
+        const auto chosen = sweepOrders(data, options, &validation);
+        CAPTURE(of, chosen.sentence);
+        CHECK(*chosen.entries[of].validationDb < -150.0);
+        for (std::size_t k = 0; k < 6; ++k)
+            CHECK(*chosen.entries[k].validationDb >= *chosen.entries[of].validationDb);
+        CHECK(chosen.chosen == of);
+    }
 }
 
 TEST_CASE("Bad input of an identification is told in a sentence")

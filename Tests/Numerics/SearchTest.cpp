@@ -191,6 +191,13 @@ TEST_CASE("Options of a search that make no sense carry a reason, and every end 
         CHECK_THROWS_AS(search(valley, Eigen::Vector2d(0.0, 0.0), options), Error);
     };
     CHECK(SearchOptions().isValid());
+    SearchOptions least;  // the bounds themselves are allowed
+    least.maximumIterations = 0;
+    least.settledSteps = 1;
+    least.costTolerance = least.rankTolerance = least.roundingCost = 0.0;
+    least.damping.attempts = 1;
+    least.damping.least = 0.0;
+    CHECK(least.isValid());
     refused([](auto& o) { o.maximumIterations = -1; });
     refused([](auto& o) { o.settledSteps = 0; });
     refused([](auto& o) { o.costTolerance = 1.0; });

@@ -39,7 +39,8 @@ Eigen::VectorXd simulated(const plugin::LoadedBox& box, const std::vector<double
 {
     const nlohmann::json document(box.document);
     const auto model = modelDocumentFrom(JsonField(document, "", "a test"));
-    return simulate(model, Eigen::Map<const Eigen::VectorXd>(volts.data(), static_cast<Eigen::Index>(volts.size())))
+    return simulate(model, Eigen::Map<const Eigen::VectorXd>(volts.data(), static_cast<Eigen::Index>(volts.size())),
+                    model.sampleRate)
         .col(0);
 }
 

@@ -75,6 +75,11 @@ TEST_CASE("Each grid has the lines that its name says")
     const auto lines = chooseLines(o);
     CHECK(std::vector<int>(lines.begin(), lines.begin() + 10) == std::vector<int> {1, 2, 3, 4, 5, 6, 8, 10, 13, 16});
     CHECK(std::set<int>(lines.begin(), lines.end()).size() == lines.size());
+    o.period = 2001;  // its last line below half the sample rate is 1000, which is one of the grid
+    o.bandHigh = 0.5 * o.sampleRate;
+    CHECK(chooseLines(o).back() == 1000);
+    o.period = 1999;
+    CHECK(chooseLines(o).back() < 1000);
 }
 
 TEST_CASE("An odd-random grid leaves out one line of each group, the same in all realizations")

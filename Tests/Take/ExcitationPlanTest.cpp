@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 using namespace excursion;
@@ -64,4 +65,32 @@ TEST_CASE("An excitation plan plays levels, realizations and periods in order")
 
     o.levels = {2.0, 0.5};
     CHECK_THROWS_AS(planExcitation(o), Error);
+}
+
+TEST_CASE("A plan says what it cannot be: levels that do not ascend, counts out of bounds, a length beyond all memory")
+{
+    ExcitationPlanOptions good;
+    good.multisine = multisineOf(Grid::full, Shape::white);
+    CHECK(good.isValid());
+    const auto refuses = [&](const auto& change) {
+        auto options = good;
+        change(options);
+        std::string reason;
+        return !options.isValid(&reason) && !reason.empty();
+    };
+    using Options = ExcitationPlanOptions;
+    const double infinite = std::numeric_limits<double>::infinity();
+    for (const std::vector<double>& levels :
+         {std::vector<double> {}, {0.0}, {-1.0}, {infinite}, {1.0, 1.0}, {2.0, 1.0}, {1.0, infinite}})
+        CHECK(refuses([&](Options& o) { o.levels = levels; }));
+    CHECK(refuses([](Options& o) { o.settlePeriods = -1; }));
+    CHECK(refuses([](Options& o) { o.settlePeriods = 1001; }));
+    CHECK_FALSE(refuses([](Options& o) { o.settlePeriods = 0; }));
+    CHECK(refuses([](Options& o) { o.periods = 0; }));
+    CHECK(refuses([](Options& o) { o.periods = 10001; }));
+    CHECK(refuses([](Options& o) { o.realizations = 0; }));
+    // 4096 (1 + 3) 10000 3 samples are 492 million, those of one more level 655
+    CHECK_FALSE(refuses([](Options& o) { o.realizations = 10000; }));
+    CHECK(refuses([](Options& o) { o.realizations = 10000, o.levels = {1.0, 2.0, 3.0, 4.0}; }));
+    CHECK(refuses([](Options& o) { o.realizations = 10000, o.periods = 4; }));
 }

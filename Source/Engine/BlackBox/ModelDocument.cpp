@@ -2,6 +2,8 @@
 #include "Engine/BlackBox/ModelDocument.h"
 
 #include "Engine/Error.h"
+#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Fractional/TimeResponse.h"
 #include "Engine/Linear/Simulation.h"
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Polynomial/Block/BlockModelFile.h"
@@ -9,6 +11,7 @@
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 #include "Engine/Polynomial/Narx/NarxFile.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
+#include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 
 #include <nlohmann/json.hpp>
 
@@ -33,15 +36,21 @@ ModelDocument documented(Named<Model> named, double sampleRate)
             {}};
 }
 
+void requireOneEach(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+                    const std::string& source)
+{
+    if (inputs.size() != 1 || outputs.size() != 1)
+        throw Error(Error::Kind::data,
+                    "'" + source + "' holds a model of several inputs or outputs; one of each is played.");
+}
+
 /// Of a class that may have several inputs and outputs.
 template <class Model>
 ModelDocument documented(const std::string& name, const std::vector<std::string>& inputs,
                          const std::vector<std::string>& outputs, double sampleRate, Model model,
                          const std::string& source)
 {
-    if (inputs.size() != 1 || outputs.size() != 1)
-        throw Error(Error::Kind::data,
-                    "'" + source + "' holds a model of several inputs or outputs; one of each is played.");
+    requireOneEach(inputs, outputs, source);
     if (!(sampleRate > 0.0))
         throw Error(Error::Kind::data,
                     "'" + source + "' holds a model of continuous time; identify one at a sample rate.");
@@ -56,6 +65,13 @@ ModelDocument stateSpace(const JsonField& document)
                                            + "' holds a model that is late on purpose, by a delay beside it; it is "
                                              "not played.");
     return documented(named.name, named.inputs, named.outputs, named.model.sampleRate, named.model, document.source());
+}
+
+ModelDocument fractionalStateSpace(const JsonField& document)
+{
+    const auto named = fractionalStateSpaceFromJson(document);
+    requireOneEach(named.inputs, named.outputs, document.source());
+    return {named.name, named.inputs.front(), named.outputs.front(), 0.0, named.model, std::nullopt, {}};
 }
 
 ModelDocument pnlss(const JsonField& document)
@@ -93,35 +109,52 @@ ModelDocument hammerstein(const JsonField& document)
     return documented(std::move(named), rate);
 }
 
+ModelDocument volterraSeries(const JsonField& document)
+{
+    auto named = volterraSeriesFromJson(document);
+    const double rate = named.model.sampleRate;
+    return documented(std::move(named), rate);
+}
+
 struct Reader {
     const char* format;
     ModelDocument (*read)(const JsonField&);
 };
 
 constexpr std::array readers {Reader {"excursion-state-space", stateSpace},
+                              Reader {"excursion-fractional-state-space", fractionalStateSpace},
                               Reader {"excursion-pnlss", pnlss},
                               Reader {"excursion-fractional-pnlss", fractionalPnlss},
                               Reader {"excursion-block-model", blockModel},
                               Reader {"excursion-narx", narx},
-                              Reader {"excursion-parallel-hammerstein", hammerstein}};
+                              Reader {"excursion-parallel-hammerstein", hammerstein},
+                              Reader {"excursion-volterra-series", volterraSeries}};
 
 struct Simulate {
     const Eigen::MatrixXd& input;
+    double sampleRate;
     template <class Model>
     Eigen::MatrixXd operator()(const Model& model) const
     {
         return simulate(model, input);
     }
     Eigen::MatrixXd operator()(const Fractional& model) const { return simulate(model.model, input, model.grid); }
+    Eigen::MatrixXd operator()(const FractionalStateSpace& model) const
+    {
+        const LadderOptions band {0.1 * sampleRate / static_cast<double>(input.rows()), sampleRate, 4.0};
+        return simulateByLadder(model, input, sampleRate, band);
+    }
 };
 
 struct Box {
     const Stimulus& stimulus;
     const std::string& source;
-    BlackBox operator()(const StateSpace&) const
+    BlackBox operator()(const StateSpace&) const { return refuse(); }
+    BlackBox operator()(const FractionalStateSpace&) const { return refuse(); }
+    BlackBox operator()(const VolterraSeries&) const
     {
         throw Error(Error::Kind::data,
-                    "'" + source + "' holds a linear model, which has no distortion: there is nothing to correct.");
+                    "'" + source + "' holds a Volterra series; the model that it was made of is turned around.");
     }
     BlackBox operator()(const Fractional& model) const { return blackBoxOf(model.model, model.grid); }
     BlackBox operator()(const ParallelHammerstein& model) const { return blackBoxOf(model, stimulus); }
@@ -130,7 +163,21 @@ struct Box {
     {
         return blackBoxOf(model);
     }
+
+    [[noreturn]] BlackBox refuse() const
+    {
+        throw Error(Error::Kind::data,
+                    "'" + source + "' holds a linear model, which has no distortion: there is nothing to correct.");
+    }
 };
+
+/// Whether the class is played and turned around, so that its document has to tell what it was fitted under.
+bool needsStimulus(const ModelDocument& document)
+{
+    return !std::holds_alternative<StateSpace>(document.model)
+           && !std::holds_alternative<FractionalStateSpace>(document.model)
+           && !std::holds_alternative<VolterraSeries>(document.model);
+}
 
 }  // namespace
 
@@ -158,14 +205,14 @@ ModelDocument modelDocumentFrom(const JsonField& document)
     return {};  // not reached
 }
 
-Eigen::MatrixXd simulate(const ModelDocument& document, const Eigen::MatrixXd& input)
+Eigen::MatrixXd simulate(const ModelDocument& document, const Eigen::MatrixXd& input, double sampleRate)
 {
-    return std::visit(Simulate {input}, document.model);
+    return std::visit(Simulate {input, sampleRate}, document.model);
 }
 
 BlackBox blackBoxOf(const ModelDocument& document)
 {
-    if (!document.stimulus && !std::holds_alternative<StateSpace>(document.model))
+    if (!document.stimulus && needsStimulus(document))
         throw Error(
             Error::Kind::data,
             "'" + document.source

@@ -229,7 +229,15 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.costPerResidual > nearNoise && !quick.fedGradient)
             return summary;
     }
-    return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));
+    summary = fitBySimulation(model, record, chosen, false, progress.part(0.75, 0.9));
+    // At the noise, degrees tell that fed laws with noise in their motion did not: the way here must not decide on them.
+    if (hasPeriods(record) && summary.usable() && summary.onlyNoise) {
+        score.played = true;
+        score.substeps = summary.substeps;
+        if (!raiseDegrees(model, record, score).empty())
+            summary = fitBySimulation(model, record, chosen, false, progress.part(0.9, 1.0));
+    }
+    return summary;
 }
 
 }  // namespace excursion

@@ -25,8 +25,16 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Way {
     VectorXd values;
     double damping = 1.0, judgedDb = infinity;
-    int iterations = 0;  // by simulation of the whole records
+    int iterations = 0;    // by simulation of the whole records
+    bool atNoise = false;  // as far as the residual tells; where it is judged
     PnlssFit fit;
+
+    bool isBetterThan(const Way& other) const
+    {
+        if (other.values.size() == 0 || atNoise != other.atNoise)
+            return other.values.size() == 0 || atNoise;
+        return judgedDb < other.judgedDb;
+    }
 };
 
 /// The ways of one fit.
@@ -81,17 +89,28 @@ public:
         return way.values != problem_.valuesOf(start.model, start.initialStates);
     }
 
-    /// Whether there is nothing left to be found by another way.
+    /// Whether there is nothing left to be found by another way: the error is at the noise, and not much larger on the
+    /// validation records. The model with the least error on these may stand early on the way, as they go where the
+    /// others do not: a sweep's end, the loudest bars. Where it is not at the noise and the end of the way is, the end
+    /// is taken, unless on the validation records it is worse than no model.
     bool isEnough(Way& way) const
     {
         if (way.judgedDb <= options_.enoughDb)
             return true;
         if (!options_.judgeResidual || !std::isfinite(way.fit.estimationDb))
             return false;
-        if (!way.fit.untoldDb)
-            way.fit.untoldDb = untoldDb(way.fit.model, estimation_, way.fit.initialStates);
-        return way.fit.estimationDb <= exactDb
-               || (way.fit.untoldDb && way.fit.estimationDb <= *way.fit.untoldDb + atNoiseDb);
+        way.atNoise = isAtNoise(way.fit);
+        if (!way.atNoise) {
+            PnlssFit end = way.fit;
+            take(end, way.values);
+            if (end.estimationDb >= way.fit.estimationDb || end.validationDb > 0.0 || !isAtNoise(end))
+                return false;
+            way.atNoise = true;
+            way.judgedDb = end.validationDb;
+            way.fit = std::move(end);
+        }
+        return validation_.empty() || way.fit.estimationDb <= exactDb
+               || heldOutDb(way.fit.estimationDb, estimation_, way.fit.validationDb, validation_) <= heldOutMostDb;
     }
 
     /// On by simulation, until the way has this many iterations.
@@ -162,21 +181,33 @@ private:
     void judge(Way& way, const VectorXd& values, double cost)
     {
         auto& fit = way.fit;
-        const auto model = problem_.modelAt(values);
         fit.history.push_back(decibelsOf(cost));
-        const auto initial = problem_.initialStates(values);
-        const double validationDb = validation_.empty()
-                                        ? std::numeric_limits<double>::quiet_NaN()
-                                        : relativeErrorDb(model, validation_, validationStates(initial));
-        const double judgedDb = validation_.empty() ? decibelsOf(cost) : validationDb;
+        auto here = fit;
+        take(here, values);
+        const double judgedDb = validation_.empty() ? decibelsOf(cost) : here.validationDb;
         if (judgedDb < way.judgedDb) {
             way.judgedDb = judgedDb;
-            fit.model = model;
-            fit.initialStates = initial;
-            fit.untoldDb.reset();
-            fit.validationDb = validationDb;
-            fit.estimationDb = relativeErrorDb(model, estimation_, fit.initialStates);
+            fit = std::move(here);
         }
+    }
+
+    /// The model at these values, and its errors.
+    void take(PnlssFit& fit, const VectorXd& values) const
+    {
+        fit.model = problem_.modelAt(values);
+        fit.initialStates = problem_.initialStates(values);
+        fit.estimationDb = relativeErrorDb(fit.model, estimation_, fit.initialStates);
+        fit.validationDb = validation_.empty()
+                               ? std::numeric_limits<double>::quiet_NaN()
+                               : relativeErrorDb(fit.model, validation_, validationStates(fit.initialStates));
+        fit.untold.reset();
+    }
+
+    bool isAtNoise(PnlssFit& fit) const
+    {
+        if (!fit.untold)
+            fit.untold = untoldNoise(fit.model, estimation_, fit.initialStates);
+        return fit.estimationDb <= exactDb || (fit.untold && fit.untold->reachedBy(fit.estimationDb).value_or(false));
     }
 
     std::vector<VectorXd> validationStates(const std::vector<VectorXd>& estimated) const
@@ -286,7 +317,7 @@ PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<Pnlss
             return;
         way = fitting.simulated(std::move(way), any ? half : all);
         enough = fitting.isEnough(way);
-        if (best.values.size() == 0 || way.judgedDb < best.judgedDb)
+        if (way.isBetterThan(best))
             best = std::move(way);
     };
     for (const auto& start : starts)

@@ -3,6 +3,7 @@
 
 #include "Engine/Numerics/SearchSummary.h"
 #include "Engine/Polynomial/Pnlss/Pnlss.h"
+#include "Engine/Polynomial/Pnlss/ResidualTest.h"
 #include "Engine/Polynomial/PnlssRecord.h"
 #include "Engine/Progress.h"
 
@@ -60,9 +61,8 @@ struct PnlssFit : SearchSummary {
     std::vector<Eigen::VectorXd> initialStates;  ///< one a record, where they were estimated
     /// relative rms error [B 4.26], of the model that is returned; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
-    /// dB of the output: what is left that the input does not tell, where the residual was judged
-    std::optional<double> untoldDb;
-    bool stable = false;  ///< its linear part is stable and no record made it run away
+    std::optional<UntoldNoise> untold;  ///< what is left that the input does not tell, where the residual was judged
+    bool stable = false;                ///< its linear part is stable and no record made it run away
     /// relative rms error in dB on the estimation records after each accepted step of the way that was kept
     std::vector<double> history;
 };

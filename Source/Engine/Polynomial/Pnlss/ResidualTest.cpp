@@ -4,6 +4,8 @@
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Polynomial/Monomials.h"
 #include "Engine/Polynomial/Pnlss/Recursion.h"
+#include "Engine/Polynomial/Pnlss/TangentTest.h"
+#include "Engine/Polynomial/Autoregression.h"
 #include "Engine/Signal/Level.h"
 
 #include <Eigen/Cholesky>
@@ -19,42 +21,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index residualLags = 3, longestFilter = 30, mostRegressors = 120;
-
-/// a(0) = 1, a(1) .. of the filter that leaves least of x going forth and back.
-VectorXd burg(const VectorXd& x, Index order)
-{
-    VectorXd a = VectorXd::Zero(order + 1), forth = x, back = x;
-    a[0] = 1.0;
-    for (Index k = 1; k <= order; ++k) {
-        const Index count = x.size() - k;
-        const VectorXd f = forth.tail(count), b = back.head(count);
-        const double power = f.squaredNorm() + b.squaredNorm();
-        const double reflection = power > 0.0 ? -2.0 * f.dot(b) / power : 0.0;
-        const VectorXd before = a;
-        for (Index i = 1; i <= k; ++i)
-            a[i] = before[i] + reflection * before[k - i];
-        forth = f + reflection * b;
-        back = b + reflection * f;
-    }
-    return a;
-}
-
-VectorXd whitenedBy(const VectorXd& a, const VectorXd& x)
-{
-    VectorXd y = x;
-    for (Index i = 1; i < a.size(); ++i)
-        y.tail(x.size() - i) += a[i] * x.head(x.size() - i);
-    return y;
-}
-
-VectorXd colouredBy(const VectorXd& a, const VectorXd& y)
-{
-    VectorXd x = y;
-    for (Index t = 0; t < x.size(); ++t)
-        for (Index i = 1; i < a.size() && i <= t; ++i)
-            x[t] -= a[i] * x[t - i];
-    return x;
-}
 
 /// The highest degree of which all monomials fit into what the record carries.
 int degreeFor(Index variables, Index room)
@@ -132,7 +98,7 @@ std::optional<double> untold(const VectorXd& e, const MatrixXd& states, const Ma
     if (degree == 0 || N < 8 * longestFilter)
         return std::nullopt;
     const double power = e.squaredNorm(), share = innovationShare(e, output.tail(N), input.bottomRows(N));
-    const VectorXd a = burg(e, longestFilter);
+    const VectorXd a = autoregression(e, longestFilter);
     const VectorXd white = whitenedBy(a, e);
     const auto now = monomialColumns(states, input, degree);
     const Index K = now.cols(), P = K * residualLags;
@@ -151,10 +117,32 @@ std::optional<double> untold(const VectorXd& e, const MatrixXd& states, const Ma
     return std::min({power, untold, share * power});
 }
 
+/// Power of the output of a judged sample, dB.
+double sampleDb(const std::vector<PnlssRecord>& records)
+{
+    double samples = 0.0;
+    for (const auto& record : records)
+        samples += static_cast<double>((record.output.rows() - record.skip) * record.output.cols());
+    return decibelsOf(judgedPower(records) / samples);
+}
+
 }  // namespace
 
-std::optional<double> untoldDb(const Pnlss& model, const std::vector<PnlssRecord>& records,
-                               const std::vector<VectorXd>& initial)
+std::optional<bool> UntoldNoise::reachedBy(double errorDb) const
+{
+    if (errorDb <= leastDb + atUntoldDb)
+        return true;
+    return errorDb <= db + atUntoldDb ? std::optional<bool>() : false;
+}
+
+double heldOutDb(double estimationDb, const std::vector<PnlssRecord>& estimation, double validationDb,
+                 const std::vector<PnlssRecord>& validation)
+{
+    return validationDb + sampleDb(validation) - estimationDb - sampleDb(estimation);
+}
+
+std::optional<UntoldNoise> untoldNoise(const Pnlss& model, const std::vector<PnlssRecord>& records,
+                                       const std::vector<VectorXd>& initial)
 {
     const Recursion recursion(model, false);
     double sum = 0.0;
@@ -174,12 +162,13 @@ std::optional<double> untoldDb(const Pnlss& model, const std::vector<PnlssRecord
             sum += *power;
         }
     }
-    return decibelsOf(sum / judgedPower(records));
-}
-
-std::optional<double> untoldDb(const Pnlss& model, const PnlssRecord& record, const VectorXd& initial)
-{
-    return untoldDb(model, std::vector {record}, {initial});
+    double least = sum;
+    if (const auto off = offTangent(model, records, initial)) {
+        sum = std::min(sum, off->power / off->alike);
+        least = std::min(least, off->power / off->white);
+    }
+    const double power = judgedPower(records);
+    return UntoldNoise {decibelsOf(sum / power), decibelsOf(least / power)};
 }
 
 }  // namespace excursion
