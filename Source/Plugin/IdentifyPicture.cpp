@@ -53,21 +53,32 @@ void IdentifyPage::resized()
     const bool wide = getWidth() >= 960,
                given = time_.getSelectedItemIndex() == static_cast<int>(ModelTime::fractional);
     auto row = line(high);
-    identify_.setBounds(row.removeFromRight(wide ? 110 : 84));
-    row.removeFromRight(gap);
+    if (!wide) {
+        identify_.setBounds(row.removeFromRight(84));
+        row.removeFromRight(gap);
+    }
     place(row, output_, wide ? 150 : 122);
     place(row, level_, wide ? 150 : 112);
     place(row, order_, wide ? 150 : 124);
     place(row, time_, wide ? 180 : 156);
     alpha_.setVisible(given);
-    alpha_.setBounds(row.withWidth(std::min(row.getWidth(), 220)));
+    if (wide) {
+        if (given)
+            place(row, alpha_, std::min(180, row.getWidth() - 260));
+        place(row, unstable_, 134);
+        place(row, identify_, 110);
+    } else {
+        alpha_.setBounds(row);
+    }
     row = line(high);
     place(row, stabilizingTitle_, 58);
     place(row, stabilizing_, wide ? 170 : 148);
     place(row, reducingTitle_, 52);
     place(row, reducing_, wide ? 190 : 164);
-    unstable_.setBounds(row.removeFromRight(134));
-    row.removeFromRight(gap);
+    if (!wide) {
+        unstable_.setBounds(row.removeFromRight(134));
+        row.removeFromRight(gap);
+    }
     reduced_.setBounds(row.withWidth(std::min(row.getWidth(), 260)));
     row = line(high);
     place(row, degreeTitle_, 58);

@@ -117,6 +117,7 @@ TEST_CASE("Every page can be read at every size: nothing is cut off or covered, 
     editor.show(plugin::syntheticFindings(static_cast<std::size_t>(rungs)));
     processor.session().put(
         plugin::identifiedForPictures(rungs == 1 ? plugin::ModelTime::continuous : plugin::ModelTime::fractional));
+    editor.identify().choose(processor.session().identification().linear->asked);
     for (const auto theme : {plugin::look::Theme::light, plugin::look::Theme::dark}) {
         editor.setTheme(theme);
         for (const auto& [width, height] : sizes) {
