@@ -163,9 +163,10 @@ void IdentifyPage::choose(const IdentifyWish& wish)
 
 void IdentifyPage::choose(const ShapeWish& wish)
 {
-    const auto* place = wish.stabilizing ? std::find(std::begin(methods), std::end(methods), *wish.stabilizing)
-                                         : std::begin(methods) - 1;
-    stabilizing_.setSelectedItemIndex(static_cast<int>(place - std::begin(methods)) + 1, juce::dontSendNotification);
+    const auto place = wish.stabilizing ? std::find(std::begin(methods), std::end(methods), *wish.stabilizing)
+                                              - std::begin(methods) + 1
+                                        : 0;
+    stabilizing_.setSelectedItemIndex(static_cast<int>(place), juce::dontSendNotification);
     reducing_.setSelectedItemIndex(static_cast<int>(wish.reducing), juce::dontSendNotification);
     if (wish.order > 0)
         reduced_.setValue(wish.order, juce::dontSendNotification);
@@ -222,10 +223,14 @@ void IdentifyPage::note(const Identification& now)
 {
     if (now == noted_ || reduced_.isMouseButtonDown(true))
         return;
-    const auto what = now.pnlss ? "Fit a PNLSS"
-                      : now.linear && noted_.linear && now.linear->base.A.isApprox(noted_.linear->base.A)
-                          ? "Shape the model"
-                          : "Identify";
+    const auto sameBase = [](const StateSpace& one, const StateSpace& other) {
+        return one.order() == other.order() && one.A == other.A;
+    };
+    const auto* what = "Identify";
+    if (now.pnlss)
+        what = "Fit a PNLSS";
+    else if (now.linear && noted_.linear && sameBase(now.linear->base, noted_.linear->base))
+        what = "Shape the model";
     window_.history().did(
         what, [this, before = noted_] { put(before); }, [this, now] { put(now); });
     noted_ = now;
