@@ -76,6 +76,8 @@ int main()
         auto input = playedAs(stimulus, rate, 1 << 18, 5);
         BlackBoxPredistorter predistorter(box, rate);
         measureShare("predistorter", predistorter, input, rate, modelRate);
+        predistorter.turn(false);
+        measureShare("switched off", predistorter, input, rate, modelRate);
         BlackBoxSpeaker speaker(box.box, box.region, box.rest, rate);
         measureShare("speaker", speaker, input, rate, modelRate);
         std::printf("             %.1f dB gain, %d samples late, look ahead %d, %d passes\n", box.rehearsal.gainDb(),

@@ -4,6 +4,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Plots/Plots.h"
 #include "Plots/Words.h"
+#include "Plugin/FillList.h"
 #include "Plugin/Look.h"
 
 #include <algorithm>
@@ -11,15 +12,6 @@
 
 namespace excursion::plugin {
 namespace {
-
-/// The items of a list; what was chosen stays chosen as far as it can.
-void fill(juce::ComboBox& list, const juce::StringArray& items, int otherwise)
-{
-    const int before = list.getSelectedItemIndex();
-    list.clear(juce::dontSendNotification);
-    list.addItemList(items, 1);
-    list.setSelectedItemIndex(before >= 0 && before < items.size() ? before : otherwise, juce::dontSendNotification);
-}
 
 /// A stretch around the largest swing, as a whole period would be a black bar.
 Plot wavePlot(const Waveform& wave)
@@ -87,11 +79,11 @@ void ComparePage::show(const std::shared_ptr<const Findings>& fresh)
         for (const double level : ladder.rungs.back().comparison.levels)
             levels.add(level > 0.0 ? words(nominal(level, "V")) + " rms" : "the take");
     }
-    fill(rung_, rungs, rungs.size() - 1);
+    fillList(rung_, rungs, rungs.size() - 1);
     if (rungs.size() != before)
         rung_.setSelectedItemIndex(rungs.size() - 1, juce::dontSendNotification);
-    fill(channel_, channels, 0);
-    fill(level_, levels, levels.size() - 1);
+    fillList(channel_, channels, 0);
+    fillList(level_, levels, levels.size() - 1);
     draw();
 }
 

@@ -212,7 +212,7 @@ void Editor::showView()
     theme("Light", look::Theme::light);
     theme("Dark", look::Theme::dark);
     for (const auto* text :
-         {"Ctrl+1 to Ctrl+4: pages", "Ctrl+Page Up, Ctrl+Page Down: one page on", "Ctrl+Z, Ctrl+Shift+Z: undo, redo",
+         {"Ctrl+1 to Ctrl+5: pages", "Ctrl+Page Up, Ctrl+Page Down: one page on", "Ctrl+Z, Ctrl+Shift+Z: undo, redo",
           "Ctrl+O: open a take", "Ctrl with +, - and 0: scale", "Tab, Shift+Tab: from control to control",
           "Arrows, Page Up, Page Down, Home: move a slider",
           "On a plot: arrows read, + and - zoom, Home shows all, Return saves",
@@ -329,12 +329,17 @@ void Editor::useFile(const juce::File& file)
             use(readModel(path), file.getFileName());
             return;
         }
-        replaced_ = owner_.anyModel();
-        owner_.rehearsing().load(nlohmann::ordered_json::parse(text), file.getFileName().toStdString());
-        tell("Rehearsing what it is worth to turn " + file.getFileName() + " around.", false);
+        useBox(nlohmann::ordered_json::parse(text), file.getFileName());
     } catch (const Error& error) {
         tell(words(error.what()), true);
     }
+}
+
+void Editor::useBox(const nlohmann::ordered_json& document, const juce::String& from)
+{
+    replaced_ = owner_.anyModel();
+    owner_.rehearsing().load(document, from.toStdString());
+    tell("Rehearsing what it is worth to turn the model of " + from + " around.", false);
 }
 
 /// What came of a model without physics that was loaded.
@@ -427,7 +432,7 @@ bool Editor::keyPressed(const juce::KeyPress& key)
         redo();
         return true;
     }
-    if (code >= '1' && code <= '4') {
+    if (code >= '1' && code < '1' + static_cast<int>(pages_.size())) {
         go(static_cast<PageName>(code - '1'));
         return true;
     }
@@ -479,8 +484,10 @@ void Editor::layOut(juce::Rectangle<int> area)
     redo_.setBounds(head.removeFromRight(60));
     head.removeFromRight(4);
     undo_.setBounds(head.removeFromRight(60));
+    head.removeFromRight(8);
+    const int each = std::min(120, head.getWidth() / static_cast<int>(tabs_.size()));
     for (auto& tab : tabs_)
-        tab.setBounds(head.removeFromLeft(120));
+        tab.setBounds(head.removeFromLeft(each));
     area.removeFromTop(8);
     auto foot = area.removeFromBottom(34);
     cancel_.setBounds(foot.removeFromRight(80).reduced(0, 3));

@@ -5,6 +5,7 @@
 #include "Plugin/DiagnosePage.h"
 #include "Plugin/FocusRing.h"
 #include "Plugin/History.h"
+#include "Plugin/IdentifyPage.h"
 #include "Plugin/LinearizePage.h"
 #include "Plugin/MeasurePage.h"
 #include "Plugin/Preferences.h"
@@ -13,10 +14,10 @@
 
 namespace excursion::plugin {
 
-/// The window: four pages, from the measurement to the linearization, and a status line with the progress of what is
+/// The window: five pages, from the measurement to the linearization, and a status line with the progress of what is
 /// under way. A take or a model is taken wherever it is dropped. Everything is laid out on a body of at least 800 x 560
 /// that is drawn at a scale: as a person chose, or growing with the window, and smaller where the window is. Keys:
-/// Ctrl+1 to Ctrl+4 the pages, Ctrl+Page Up and Down one on, Ctrl+Z and Ctrl+Shift+Z take back and do again, Ctrl+O
+/// Ctrl+1 to Ctrl+5 the pages, Ctrl+Page Up and Down one on, Ctrl+Z and Ctrl+Shift+Z take back and do again, Ctrl+O
 /// opens, Ctrl with + - 0 scales.
 class Editor : public juce::AudioProcessorEditor,
                public juce::FileDragAndDropTarget,
@@ -50,12 +51,14 @@ public:
     Page& page(PageName name) { return *pages_[static_cast<std::size_t>(name)]; }
     MeasurePage& measure() { return measure_; }
     DiagnosePage& diagnose() { return diagnose_; }
+    IdentifyPage& identify() { return identify_; }
 
     Processor& processor() override { return owner_; }
     History& history() override { return history_; }
     void go(PageName) override;
     void use(const Model&, const juce::String& from) override;
     void useFile(const juce::File&) override;
+    void useBox(const nlohmann::ordered_json&, const juce::String& from) override;
     void tell(const juce::String&, bool trouble) override;
 
     void paint(juce::Graphics&) override;
@@ -83,16 +86,18 @@ private:
     FocusRing ring_;
     juce::TooltipWindow tips_ {this};
     juce::Label status_;
-    std::array<juce::TextButton, 4> tabs_ {juce::TextButton {"Measure"}, juce::TextButton {"Compare"},
-                                           juce::TextButton {"Diagnose"}, juce::TextButton {"Linearize"}};
+    std::array<juce::TextButton, 5> tabs_ {juce::TextButton {"Measure"}, juce::TextButton {"Compare"},
+                                           juce::TextButton {"Diagnose"}, juce::TextButton {"Identify"},
+                                           juce::TextButton {"Linearize"}};
     double fraction_ = 0.0;
     juce::ProgressBar progress_ {fraction_};
     juce::TextButton cancel_ {"Cancel"}, undo_ {"Undo"}, redo_ {"Redo"}, view_ {"View"};
     MeasurePage measure_;
     ComparePage compare_ {*this};
     DiagnosePage diagnose_ {*this};
+    IdentifyPage identify_ {*this};
     LinearizePage linearize_ {*this};
-    const std::array<Page*, 4> pages_ {&measure_, &compare_, &diagnose_, &linearize_};
+    const std::array<Page*, 5> pages_ {&measure_, &compare_, &diagnose_, &identify_, &linearize_};
     std::size_t page_ = 0;
     std::uint64_t seen_ = 0;                    ///< version of the findings that the pages show
     std::string said_;                          ///< of the session's status

@@ -11,7 +11,7 @@
 
 namespace excursion::plugin {
 
-enum class PageName { measure, compare, diagnose, linearize };
+enum class PageName { measure, compare, diagnose, identify, linearize };
 
 /// What a page may ask of the window that it is on.
 class Window {
@@ -24,6 +24,8 @@ public:
     virtual void use(const Model&, const juce::String& from) = 0;
     /// the same with the model in a file, of a driver or without physics; the latter is rehearsed first
     virtual void useFile(const juce::File&) = 0;
+    /// the document of a model without physics, which is rehearsed first
+    virtual void useBox(const nlohmann::ordered_json&, const juce::String& from) = 0;
     virtual void tell(const juce::String&, bool trouble) = 0;  ///< in the status line
 };
 

@@ -43,11 +43,15 @@ Processor::Processor()
       worker_([this](const std::stop_token& stop) { work(stop); }),
       rehearsing_([this](const LoadedBoxPointer& box) { put(box); })
 {
-    setLatencySamples(Chain(model_, options(), {}).latency());  // the same at every rate
+    latency_ = Chain(model_, options(), {}).latency();  // the same at every rate
+    setLatencySamples(latency_);
 }
 
 Processor::~Processor()
 {
+    rehearsing_.cancel();
+    rehearsing_.wait();
+    cancelPendingUpdate();
     worker_.request_stop();
     worker_.join();
 }
@@ -126,7 +130,6 @@ void Processor::setModel(const AnyModel& model)
 
 void Processor::put(const AnyModel& model)
 {
-    int latency = 0;
     {
         const std::lock_guard lock(mutex_);
         const auto* box = std::get_if<LoadedBoxPointer>(&model);
@@ -134,7 +137,7 @@ void Processor::put(const AnyModel& model)
             requireRunnable(std::get<Model>(model), options());
             requireRunnable(withoutOff(std::get<Model>(model), parameters_.recipe()), options());
         }
-        latency = build(model);
+        int latency = build(model);
         box_ = box != nullptr ? *box : nullptr;
         if (box == nullptr)
             model_ = std::get<Model>(model);
@@ -143,10 +146,22 @@ void Processor::put(const AnyModel& model)
             const juce::ScopedLock still(getCallbackLock());
             latency = start();
         }
+        latency_ = latency;
         modelVersion_.fetch_add(1, std::memory_order_release);
     }
-    setLatencySamples(latency);
+    tellLatency();
 }
+
+/// At once on the message thread, else there as soon as it can.
+void Processor::tellLatency()
+{
+    if (juce::MessageManager::existsAndIsCurrentThread())
+        handleAsyncUpdate();
+    else
+        triggerAsyncUpdate();
+}
+
+void Processor::handleAsyncUpdate() { setLatencySamples(latency_); }
 
 AnyModel Processor::anyModel() const
 {
@@ -174,13 +189,14 @@ std::string Processor::standstill() const
 
 void Processor::prepareToPlay(double sampleRate, int)
 {
-    int latency = 0;
     {
         const std::lock_guard lock(mutex_);
         sampleRate_ = sampleRate;
-        latency = start();
+        latency_ = start();
     }
-    setLatencySamples(latency);
+    // Whoever prepares asks for it next, whichever thread that is, and may have no message loop.
+    cancelPendingUpdate();
+    setLatencySamples(latency_);
 }
 
 /// With the mutex held, while no audio runs: chains that play at once, or delays.
@@ -206,8 +222,8 @@ int Processor::start()
         // No host expects an exception here.
         standstill_ = std::string("The signal goes through as it is: ") + error.what();
         channels_.clear();
-        delays_.assign(count, Delay(getLatencySamples()));
-        return getLatencySamples();
+        delays_.assign(count, Delay(latency_));
+        return latency_;
     }
 }
 

@@ -24,9 +24,10 @@ namespace excursion::plugin {
 /// The plugin without its window. One Chain a channel plays; a thread of its own builds new chains when the model or
 /// the switches of the effects change, and frees the old ones. The audio thread sees parameters (atomics) and the
 /// hand-over, nothing else. A driver and a model without physics are loaded, played and handed over in the same way;
-/// their latencies differ, and the host is told. At a rate at which no chain can run the signal goes through as it is,
+/// their latencies differ, and the host is told on the message thread, as JUCE keeps the latency in a plain int and
+/// calls the host from whoever sets it. At a rate at which no chain can run the signal goes through as it is,
 /// as late as ever.
-class Processor : public juce::AudioProcessor {
+class Processor : public juce::AudioProcessor, private juce::AsyncUpdater {
 public:
     static constexpr int oversampling = 2;
     static constexpr double fadeTime = 0.05;  ///< s, from model to model
@@ -97,6 +98,8 @@ private:
     int build(const AnyModel&);
     std::vector<std::unique_ptr<Chain>> chains(const AnyModel&, std::size_t channels);
     int start();
+    void tellLatency();
+    void handleAsyncUpdate() override;
     void work(const std::stop_token&);
     RealTimeOptions options() const;
 
@@ -105,7 +108,8 @@ private:
     Model model_;
     LoadedBoxPointer box_;  ///< null: the driver plays
     std::atomic<std::uint64_t> modelVersion_ {1};
-    double sampleRate_ = 0.0;  ///< 0: not prepared
+    double sampleRate_ = 0.0;       ///< 0: not prepared
+    std::atomic<int> latency_ {0};  ///< samples; what the host has been told, or is about to be
     std::atomic<double> measuredDisplacement_ {0.0};
     std::uint64_t switches_ = 0;  ///< of the effects, as they were when chains were built
     std::string standstill_;

@@ -56,6 +56,7 @@ void Session::cancel()
 {
     const std::lock_guard lock(mutex_);
     orders_.clear();
+    shape_.reset();
     stop_.request_stop();
     status_.busy = working_;
     changed_.notify_all();
@@ -163,6 +164,7 @@ void Session::begin(PreparedTake take, const Findings& told, const Progress& pro
     fresh->report = take.report();
     fresh->file = makeLadderFile(work.ladder(), take, told.source);
     fresh->take = std::make_shared<const PreparedTake>(std::move(take));
+    put({});  // those of another take
     publish(fresh);
     improvement_.emplace(std::move(work));
     if (!improvement_->take().report().fitForUse()) {

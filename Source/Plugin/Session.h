@@ -6,6 +6,8 @@
 #include "Engine/Diagnosis/LadderFile.h"
 #include "Engine/Import/RecordingOptions.h"
 #include "Engine/Take/Measurement.h"
+#include "Plugin/FittedPnlss.h"
+#include "Plugin/Identifying.h"
 
 #include <condition_variable>
 #include <cstdint>
@@ -36,7 +38,15 @@ struct VirtualOrder {
     std::uint64_t seed = 1;
 };
 
-/// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back. Every
+/// Models of the take that know no physics; null: none yet.
+struct Identification {
+    std::shared_ptr<const Identified> linear;
+    std::shared_ptr<const FittedPnlss> pnlss;  ///< that began at this linear model
+    bool operator==(const Identification&) const = default;
+};
+
+/// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back,
+/// identify models without physics. Every
 /// method may be called from any thread but the audio thread, and returns at once; orders are carried out one after the
 /// other. A new take makes what is under way stop.
 class Session {
@@ -50,6 +60,10 @@ public:
               const std::string& source);  ///< of a recording that was just made, as importRecording()
     void add(const std::string& effect);
     void undo();
+    void identify(const IdentifyWish&);
+    void shape(const ShapeWish&);  ///< of the model that was identified; in place of a wish that waits
+    void fitPnlss(const PnlssWish&);
+    void put(const Identification&);  ///< what there was before; not an order
     void saveReport(const std::string& path);
     void saveTake(const std::string& folder);
 
@@ -61,9 +75,11 @@ public:
         std::string words;          ///< what is being done, or what the last order came to
         bool trouble = false;       ///< the last order failed
         std::uint64_t version = 0;  ///< counts the findings
+        std::uint64_t models = 0;   ///< counts the identifications
     };
     Status status() const;
     std::shared_ptr<const Findings> findings() const;  ///< null before the first take
+    Identification identification() const;
 
     void wait() const;  ///< until nothing is under way
 
@@ -75,6 +91,7 @@ private:
     void begin(PreparedTake, const Findings& told, const Progress&);
     void publish(std::shared_ptr<Findings>);
     void publishLadder();
+    std::shared_ptr<const Findings> taken() const;
     void say(const std::string&);
     Improvement& improvement();
 
@@ -82,10 +99,12 @@ private:
     mutable std::mutex mutex_;                ///< of what follows
     mutable std::condition_variable_any changed_;
     std::vector<Work> orders_;
-    std::stop_source stop_;  ///< of the order under way
+    std::optional<ShapeWish> shape_;  ///< of the order to shape that waits
+    std::stop_source stop_;           ///< of the order under way
     bool working_ = false;
     Status status_;
     std::shared_ptr<const Findings> findings_;
+    Identification identification_;
     std::jthread thread_;
 };
 

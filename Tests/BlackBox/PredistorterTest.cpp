@@ -142,6 +142,42 @@ TEST_CASE("Switched off, the samples come out as they are", "[predistorter]")
     }
 }
 
+TEST_CASE("Switched off the model stands still; switched on again it corrects as if it never had, without a step",
+          "[predistorter]")
+{
+    for (const double rate : {48000.0, 44100.0}) {
+        const auto period = playedAs(pinkStimulus(2.0), rate, 16384, 4);
+        const std::size_t block = 128, off = 200 * block, on = 600 * block, end = 1200 * block;
+        BlackBoxPredistorter always(oneBox(), rate), switched(oneBox(), rate);
+        std::vector<double> u(end), a(end), b(end);
+        for (std::size_t n = 0; n < end; ++n)
+            u[n] = 0.9 * period[n % period.size()];
+        always.process(u.data(), a.data(), end);
+        for (std::size_t n = 0; n < end; n += block) {
+            if (n == off || n == on)
+                switched.turn(n == on);
+            switched.process(u.data() + n, b.data() + n, block);
+        }
+        const auto late = static_cast<std::size_t>(switched.latency());
+        for (std::size_t n = off + 200 * block; n < on; ++n)
+            REQUIRE(b[n] == u[n - late]);
+        double before = 0.0, apart = 0.0, bends = 0.0, bent = 0.0;
+        for (std::size_t n = off; n < end; ++n) {
+            const auto correction = [&](const std::vector<double>& of, std::size_t k) { return of[k] - u[k - late]; };
+            bends = std::max(bends, std::abs(correction(a, n) - correction(a, n - 1)));
+            bent = std::max(bent, std::abs(correction(b, n) - correction(b, n - 1)));
+            if (n >= on + static_cast<std::size_t>(rate)) {
+                before += correction(a, n) * correction(a, n);
+                apart += (b[n] - a[n]) * (b[n] - a[n]);
+            }
+        }
+        INFO(rate << " Hz: " << decibelsOf(apart / before) << " dB, " << bends << " and " << bent << " a sample");
+        CHECK(before > 0.0);
+        CHECK(decibelsOf(apart / before) < -40.0);
+        CHECK(bent < 1.5 * bends);
+    }
+}
+
 TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[predistorter]")
 {
     const auto& stimulus = oneBox().box.stimulus;

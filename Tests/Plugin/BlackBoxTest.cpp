@@ -11,9 +11,17 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <thread>
+
+// of the message loop, which this program does not run
+namespace juce {
+bool dispatchNextMessageOnSystemQueue(bool returnIfNoPendingMessages);
+}
 
 using namespace excursion;
 using plugin::Processor;
@@ -253,16 +261,20 @@ TEST_CASE("Bypass is bit by bit the signal with every class of models, as late a
         }
 }
 
-TEST_CASE("A host hears of the latency of the model that plays", "[plugin][blackbox]")
+TEST_CASE("A host hears of the latency of the model that plays, and on the message thread alone", "[plugin][blackbox]")
 {
     struct Host : juce::AudioProcessorListener {
         void audioProcessorParameterChanged(juce::AudioProcessor*, int, float) override {}
         void audioProcessorChanged(juce::AudioProcessor*, const ChangeDetails& what) override
         {
             told += what.latencyChanged ? 1 : 0;
+            elsewhere += juce::MessageManager::existsAndIsCurrentThread() ? 0 : 1;
         }
-        int told = 0;
+        std::atomic<int> told {0}, elsewhere {0};
     } host;
+    const auto deliver = [] {
+        while (juce::dispatchNextMessageOnSystemQueue(true)) {}
+    };
     Processor processor;
     processor.prepareToPlay(rate, 512);
     const int driver = processor.getLatencySamples();
@@ -276,12 +288,64 @@ TEST_CASE("A host hears of the latency of the model that plays", "[plugin][black
     CHECK(status.words.find("a gain of") != std::string::npos);
     REQUIRE(processor.box());
     CHECK(processor.box()->played.box.name == "pnlss");
+    // It plays already; the thread that made it ready has left the word to the message thread.
+    CHECK(host.told == 0);
+    CHECK(processor.getLatencySamples() == driver);
+    deliver();
     CHECK(host.told == 1);
     CHECK(processor.getLatencySamples() != driver);
     processor.setModel(processor.model());
     CHECK(processor.getLatencySamples() == driver);
     CHECK(host.told == 2);
+    // From a thread of a host's, and then prepared before a message came: the one that prepares knows at once.
+    std::thread([&] { processor.setModel(boxes().front()); }).join();
+    CHECK(processor.getLatencySamples() == driver);
+    processor.prepareToPlay(rate, 512);
+    CHECK(processor.getLatencySamples() != driver);
+    CHECK(host.told == 3);
+    deliver();
+    CHECK(host.told == 3);
+    CHECK(host.elsewhere == 0);
     processor.removeListener(&host);
+}
+
+TEST_CASE("Models are rehearsed, taken back and handed over while audio runs on a thread of its own",
+          "[plugin][blackbox]")
+{
+    Processor processor;
+    setMode(processor, Mode::audition);
+    processor.prepareToPlay(rate, 256);
+    std::atomic<bool> finite {true};
+    std::jthread audio([&](const std::stop_token& stop) {
+        juce::MidiBuffer midi;
+        juce::AudioBuffer<float> buffer(2, 256);
+        for (int n = 0; !stop.stop_requested(); ++n) {
+            for (int k = 0; k < 256; ++k)
+                for (int c = 0; c < 2; ++c)
+                    buffer.setSample(c, k, 0.3f * std::sin(0.01f * static_cast<float>(256 * (n % 1000) + k)));
+            processor.processBlock(buffer, midi);
+            if (!std::isfinite(buffer.getMagnitude(0, 256)))
+                finite = false;
+            std::this_thread::yield();
+        }
+    });
+    const int driver = processor.getLatencySamples();
+    for (int k = 0; k < 3; ++k) {
+        processor.rehearsing().load(boxes()[static_cast<std::size_t>(k)]->document, "a file");
+        while (processor.rehearsing().status().busy) {
+            while (juce::dispatchNextMessageOnSystemQueue(true)) {}
+            CHECK(processor.getLatencySamples() > 0);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        while (juce::dispatchNextMessageOnSystemQueue(true)) {}
+        CHECK(processor.box() != nullptr);
+        CHECK(processor.take().faults == 0);
+        processor.setModel(processor.model());
+        CHECK(processor.getLatencySamples() == driver);
+    }
+    audio.request_stop();
+    audio.join();
+    CHECK(finite);
 }
 
 TEST_CASE("A driver and models without physics take over from one another without a step", "[plugin][blackbox]")

@@ -45,7 +45,9 @@ TEST_CASE("Tab reaches every control, in the order in which it is read, and each
     Processor processor;
     Editor editor(processor, &devices);
     editor.show(plugin::syntheticFindings(2));
-    for (const auto name : {PageName::measure, PageName::compare, PageName::diagnose, PageName::linearize}) {
+    processor.session().put(plugin::identifiedForPictures(plugin::ModelTime::fractional));
+    for (const auto name :
+         {PageName::measure, PageName::compare, PageName::diagnose, PageName::identify, PageName::linearize}) {
         editor.go(name);
         editor.update();
         juce::KeyboardFocusTraverser traverser;
@@ -71,7 +73,7 @@ TEST_CASE("Tab reaches every control, in the order in which it is read, and each
             CHECK((isControl(*one) || dynamic_cast<juce::Viewport*>(one) != nullptr));
         }
         REQUIRE(reached.size() > 4);
-        for (std::size_t k = 0; k < 4; ++k)  // the pages come first
+        for (std::size_t k = 0; k < 5; ++k)  // the pages come first
             CHECK(dynamic_cast<juce::TextButton*>(reached[k]) != nullptr);
     }
 }
@@ -224,7 +226,7 @@ TEST_CASE("Keys choose the page and the scale", "[plugin]")
 {
     Processor processor;
     Editor editor(processor);
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 5; ++k) {
         CHECK(editor.keyPressed(ctrl('1' + k)));
         CHECK(editor.page(static_cast<PageName>(k)).isVisible());
     }

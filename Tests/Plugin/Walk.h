@@ -5,6 +5,8 @@
 #include "Plugin/Editor.h"
 #include "Plugin/Text.h"
 
+#include <cmath>
+#include <complex>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -78,6 +80,35 @@ inline std::shared_ptr<const Findings> syntheticFindings(std::size_t rungs)
         findings->waveforms.push_back(std::move(waves));
     }
     return findings;
+}
+
+/// What the page Identify shows of an impedance, and of a polynomial model that began there.
+inline Identification identifiedForPictures(ModelTime time)
+{
+    Spectra spectra;
+    Spectra::Channel voltage {Quantity::voltage, "V", {}}, current {Quantity::current, "A", {}};
+    for (double f = 10.0; f < 20000.0; f *= 1.02) {
+        const std::complex<double> s(0.0, 2.0 * 3.14159265358979 * f);
+        spectra.frequency.push_back(f);
+        voltage.values.push_back(3.3 + 0.03 * std::pow(s, 0.7) + 1700.0 * s / (s * s + 55.0 * s + 129000.0));
+        current.values.emplace_back(1.0);
+    }
+    spectra.channels = {voltage, current};
+    IdentifyWish wish;
+    wish.order = 4;
+    wish.time = time;
+    wish.alpha = 0.7;
+    auto pnlss = std::make_shared<FittedPnlss>();
+    pnlss->startDb = -24.3;
+    pnlss->estimationDb = -71.2;
+    pnlss->validationDb = -70.9;
+    pnlss->noiseDb = -73.1;
+    for (int k = 0; k < 40; ++k)
+        pnlss->history.push_back(-24.3 - 47.0 * (1.0 - std::exp(-0.15 * k)));
+    pnlss->terms = 120;
+    pnlss->stable = true;
+    pnlss->words = "PNLSS of 120 terms.";
+    return {std::make_shared<const Identified>(identifiedOf(PreparedTake(spectra), wish, "midbass")), pnlss};
 }
 
 }  // namespace excursion::plugin

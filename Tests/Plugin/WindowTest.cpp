@@ -21,6 +21,7 @@ constexpr std::pair<int, int> sizes[] {{800, 560}, {1024, 700}, {1280, 800}, {19
 constexpr std::pair<PageName, const char*> pageNames[] {{PageName::measure, "measure"},
                                                         {PageName::compare, "compare"},
                                                         {PageName::diagnose, "diagnose"},
+                                                        {PageName::identify, "identify"},
                                                         {PageName::linearize, "linearize"}};
 
 void keepPicture(Editor& editor, const juce::String& name)
@@ -114,6 +115,9 @@ TEST_CASE("Every page can be read at every size: nothing is cut off or covered, 
     Editor editor(processor);
     const auto rungs = GENERATE(1, 4);
     editor.show(plugin::syntheticFindings(static_cast<std::size_t>(rungs)));
+    processor.session().put(
+        plugin::identifiedForPictures(rungs == 1 ? plugin::ModelTime::continuous : plugin::ModelTime::fractional));
+    editor.identify().choose(processor.session().identification().linear->asked);
     for (const auto theme : {plugin::look::Theme::light, plugin::look::Theme::dark}) {
         editor.setTheme(theme);
         for (const auto& [width, height] : sizes) {

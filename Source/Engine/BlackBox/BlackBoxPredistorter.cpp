@@ -18,6 +18,7 @@ double largestCorrection(const RehearsedBox& model)
 }
 
 constexpr double amountTime = 0.005;  // s, see Glide
+constexpr double memoryTime = 0.1;    // s
 
 }  // namespace
 
@@ -46,6 +47,7 @@ BlackBoxPredistorter::BlackBoxPredistorter(const RehearsedBox& model, double sam
               + static_cast<int>(
                   std::ceil((linearizer_.latency() + back_.reach()) * sampleRate / model.box.linear.sampleRate))
               + (toModel_.reach() > 0 ? 2 : 0)),
+      memory_(linearizer_.latency() + static_cast<int>(memoryTime * model.box.linear.sampleRate)),
       amount_(amountTime, sampleRate),
       delayed_(static_cast<std::size_t>(behind_) + 1),
       corrections_(static_cast<std::size_t>(behind_) + 64)
@@ -60,6 +62,9 @@ void BlackBoxPredistorter::reset()
     toModel_.reset();
     back_.reset();
     linearizer_.reset();
+    idle_ = false;
+    warm_ = 0;
+    set(controls_);
     amount_.jump();
     std::fill(delayed_.begin(), delayed_.end(), 0.0);
     std::fill(corrections_.begin(), corrections_.end(), 0.0);
@@ -74,13 +79,33 @@ void BlackBoxPredistorter::set(const BlackBoxControls& controls)
 {
     if (controls.areSound())
         controls_ = controls;
-    amount_.aim(on_ ? controls_.amount : 0.0);
+    amount_.aim(on_ && !idle_ && warm_ == 0 ? controls_.amount : 0.0);
 }
 
 void BlackBoxPredistorter::turn(bool on)
 {
     on_ = on;
     set(controls_);
+}
+
+/// Of one sample at the model's rate; none while it stands still.
+double BlackBoxPredistorter::correctionFor(double u, double limit, double& region)
+{
+    if (!on_ && amount_.still()) {
+        idle_ = true;
+        warm_ = 0;
+        return 0.0;
+    }
+    if (idle_) {
+        linearizer_.reset();
+        idle_ = false;
+        warm_ = memory_;
+    }
+    const auto sample = linearizer_.step(u, largest_, limit);
+    region = std::max(region, sample.distance);
+    if (warm_ > 0 && --warm_ == 0)
+        set(controls_);
+    return sample.correction;
 }
 
 void BlackBoxPredistorter::process(const double* in, double* out, std::size_t n)
@@ -95,13 +120,12 @@ void BlackBoxPredistorter::process(const double* in, double* out, std::size_t n)
             faults_.fetch_add(1, std::memory_order_relaxed);
         toModel_.push(u);
         for (double v = 0.0; toModel_.pull(v);) {
-            const auto sample = linearizer_.step(v, largest_, limit);
-            region = std::max(region, sample.distance);
+            const double made = correctionFor(v, limit, region);
             if (skip_ > 0) {
                 --skip_;
                 continue;
             }
-            back_.push(sample.correction);
+            back_.push(made);
             for (double w = 0.0; back_.pull(w);) {
                 corrections_[made_] = w;
                 made_ = made_ + 1 == corrections_.size() ? 0 : made_ + 1;

@@ -51,7 +51,8 @@ public:
     void reset();
     void set(const BlackBoxControls&);  ///< followed smoothly; what is not sound is left as it was
 
-    /// Switched off the signal goes through as it is, but for samples that are no numbers.
+    /// Switched off the signal goes through as it is, but for samples that are no numbers. Once the correction has
+    /// faded the model stands still; switched on again it hears the signal for 0.1 s, and then the correction comes in.
     void turn(bool on);
 
     /// @param in, out  n samples, may be the same place
@@ -68,12 +69,16 @@ public:
     Meters take();
 
 private:
+    double correctionFor(double u, double limit, double& region);
+
     RegionLimiter limiter_;
     RateConverter toModel_, back_;
     BlackBoxLinearizer linearizer_;
     double bound_, largest_;
     int behind_;
-    bool on_ = true;
+    int memory_;  ///< samples of the model, in which it forgets that it stood still
+    bool on_ = true, idle_ = false;
+    int warm_ = 0;  ///< samples of the model, until the correction may come in
     BlackBoxControls controls_;
     Glide amount_;
     std::vector<double> delayed_, corrections_;  ///< rings; corrections_: those that came before their sample is due

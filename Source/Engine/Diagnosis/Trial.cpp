@@ -153,7 +153,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
-    summary = stage(30, 5e-5, true, 0.3, 0.5);
+    summary = stage(30, 5e-6, true, 0.3, 0.5);
     // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
     // noise the cost falls by next to nothing for long.
     if (near(summary) && summary.onlyNoise && summary.costPerResidual < clean)
@@ -229,15 +229,7 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.costPerResidual > nearNoise && !quick.fedGradient)
             return summary;
     }
-    summary = fitBySimulation(model, record, chosen, false, progress.part(0.75, 0.9));
-    // At the noise, degrees tell that fed laws with noise in their motion did not: the way here must not decide on them.
-    if (hasPeriods(record) && summary.usable() && summary.onlyNoise) {
-        score.played = true;
-        score.substeps = summary.substeps;
-        if (!raiseDegrees(model, record, score).empty())
-            summary = fitBySimulation(model, record, chosen, false, progress.part(0.9, 1.0));
-    }
-    return summary;
+    return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));
 }
 
 }  // namespace excursion
