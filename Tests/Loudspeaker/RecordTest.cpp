@@ -183,6 +183,22 @@ TEST_CASE("What was played drifts, what was not is as quiet as the noise", "[rec
     }
 }
 
+TEST_CASE("A few played lines far apart share their scatter all the same", "[record]")
+{
+    constexpr double noise = 0.02;
+    auto sparse = take(1, noise);
+    sparse.excitation->settlePeriods = settle + periods - 2;
+    sparse.excitation->periods = 2;
+    sparse.excitation->lines = {3, 7, 15, 31, 63, 127, 191, 255, 319, 401};
+    const auto record = makeRecord(sparse);
+    const double truth = std::sqrt(N * noise * noise / 2.0);
+    for (const auto& section : record.sections)
+        for (const int k : section.excited) {
+            CHECK(section.deviation[0][static_cast<std::size_t>(k)] > 0.7 * truth);
+            CHECK(section.deviation[0][static_cast<std::size_t>(k)] < 1.4 * truth);
+        }
+}
+
 TEST_CASE("The realization that goes least far is held out, at all levels", "[record]")
 {
     for (const int faint : {0, 1, 2}) {

@@ -144,7 +144,7 @@ std::vector<Rung> Improvement::rungsTogether(const Record& record, const Progres
     const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(),
                                       [](const RankedEffect& r) { return r.vote.backs(); });
     const bool oneIsKnown = base.diagnosis.verdict == Verdict::missingEffect;
-    if (!hasPeriods(record) || (backed < 2 && oneIsKnown))
+    if (!hasPeriods(record) || base.diagnosis.verdict == Verdict::complete || (backed < 2 && oneIsKnown))
         return {};
     const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
     if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown))

@@ -7,12 +7,6 @@
 
 namespace excursion {
 
-bool Sums::areNoise() const
-{
-    return std::all_of(power.begin(), power.end(),
-                       [](const ErrorPower& p) { return p.overNoise() <= ErrorPower::most; });
-}
-
 Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> sections,
             const std::vector<Eigen::Index>& active, const ScoreOptions& options, const Progress& progress)
 {

@@ -31,9 +31,6 @@ struct Sums {
     std::map<int, NormalEquations> byLevel;  ///< of the estimation sections
     std::vector<ErrorPower> power;           ///< of the validation sections
     bool finite = true;
-
-    /// Whether no channel's error stands above its noise.
-    bool areNoise() const;
 };
 
 /// By the quick error of FeedbackError.h.

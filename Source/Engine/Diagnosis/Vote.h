@@ -11,7 +11,8 @@ namespace excursion {
 
 /// What a whole catalogue, or a whole model, says of one of its effects.
 struct Vote {
-    /// by how much all others together would leave more without it: what it alone explains
+    /// by how much all others together would leave more without it, in the channel that tells most: what it alone
+    /// explains
     double uniqueDb = 0.0;
     double inconsistency =
         0.0;  ///< how much more it would explain with strengths of its own at each level, as a share of that: a law is

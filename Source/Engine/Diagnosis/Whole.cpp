@@ -160,9 +160,9 @@ public:
             auto& [effect, tried] = *one;
             if (keeps(tried))
                 continue;
-            auto leaner = any || tried.leaner.components.empty() ? withoutEffect(model, effect)
-                                                                 : std::move(tried.leaner);
-            if (any) {  // another one has gone, whose work it may do now
+            const bool fitted = !any && !tried.leaner.components.empty();
+            auto leaner = fitted ? std::move(tried.leaner) : withoutEffect(model, effect);
+            if (!fitted) {  // also when another one has gone, whose work it may do now
                 if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
                     continue;
                 const auto then = left(leaner), now = left(model);
@@ -236,6 +236,7 @@ Whole grown(const Model& base, const Record& record, Search& search, const Progr
     Whole whole {base, {}, {}};
     constexpr int rounds = 4;
     constexpr double worthARound = 1.0;  // dB
+    search.chooseResiduals(base);
     auto now = search.left(whole.model);
     for (int n = 0; n < rounds && !now.isNoise(); ++n) {
         const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
@@ -289,10 +290,12 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
 {
     Search search(base, record, options);
     Whole whole = grown(base, record, search, progress.part(0.0, 0.4));
-    if (const auto loud = fittedToLoudest(base, record, options); loud && !search.left(whole.model).isNoise())
-        if (auto other = grown(*loud, record, search, progress.part(0.4, 0.7));
-            other.fit.usable() && search.left(other.model).chi < search.left(whole.model).chi)
+    if (const auto loud = fittedToLoudest(base, record, options); loud && !search.left(whole.model).isNoise()) {
+        auto other = grown(*loud, record, search, progress.part(0.4, 0.7));
+        search.chooseResiduals(whole.model);
+        if (other.fit.usable() && search.left(other.model).chi < search.left(whole.model).chi)
             whole = std::move(other);
+    }
     if (!whole.fit.usable())
         return whole;
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));

@@ -37,6 +37,7 @@ double power(const Spectrum& spectrum)
 /// played and hardly anything else. A line that sticks out (hum) keeps its own level.
 std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited)
 {
+    constexpr double enough = 12.0;  // lines that share
     std::vector<char> played(raw.size(), 0);
     for (const int k : excited)
         if (static_cast<std::size_t>(k) < played.size())
@@ -51,8 +52,12 @@ std::vector<double> smoothVariance(const std::vector<double>& raw, const std::ve
         for (std::size_t k = 0; k < raw.size(); ++k) {
             if (played[k] != kind)
                 continue;
-            const std::size_t reach = std::max<std::size_t>(12, k / 16);
-            const std::size_t from = k > reach ? k - reach : 0, to = std::min(raw.size(), k + reach + 1);
+            std::size_t reach = std::max<std::size_t>(12, k / 16), from = 0, to = raw.size();
+            do {  // on a sparse grid as far as it takes to find enough of them
+                from = k > reach ? k - reach : 0;
+                to = std::min(raw.size(), k + reach + 1);
+                reach *= 2;
+            } while (count[to] - count[from] < enough && (from > 0 || to < raw.size()));
             result[k] = std::max((total[to] - total[from]) / (count[to] - count[from]), raw[k] / 6.0);
         }
     }

@@ -106,7 +106,7 @@ public:
             if (end.estimationDb >= way.fit.estimationDb || end.validationDb > 0.0 || !isAtNoise(end))
                 return false;
             way.atNoise = true;
-            way.judgedDb = end.validationDb;
+            way.judgedDb = validation_.empty() ? end.estimationDb : end.validationDb;
             way.fit = std::move(end);
         }
         return validation_.empty() || way.fit.estimationDb <= exactDb
