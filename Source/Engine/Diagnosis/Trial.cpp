@@ -153,7 +153,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
-    summary = stage(30, 5e-6, true, 0.3, 0.5);
+    summary = stage(30, 5e-7, true, 0.3, 0.5);
     // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
     // noise the cost falls by next to nothing for long.
     if (near(summary) && summary.onlyNoise && summary.costPerResidual < clean)
