@@ -266,17 +266,8 @@ TEST_CASE("The speaker plays as the model is simulated, and never runs away", "[
 
 TEST_CASE("A model that cannot be turned around is refused in a sentence", "[predistorter]")
 {
-    // What is odd in the output alone and delayed cannot be made undone where the linear part is silent: the linear
-    // part passes nothing but a resonance far below the distortion.
     const auto stimulus = pinkStimulus(2.0);
-    auto model = randomPnlss(12, modelRate, stimulus);
-    model.E.setZero();
-    model.linear.C.setZero();
-    model.linear.C(0, 0) = 1e-9;
-    for (Eigen::Index k = 0; k < model.terms(); ++k)
-        if (model.exponents(k, 3) == 2 && model.exponents.row(k).sum() == 2)
-            model.F(0, k) = 1.0;
-    CHECK_THROWS_AS(RehearsedBox(boxOf(model, stimulus)), Error);
+    CHECK_THROWS_AS(RehearsedBox(boxOf(oneWay(modelRate, stimulus), stimulus)), Error);
 
     auto unstable = randomPnlss(13, modelRate, stimulus);
     unstable.linear.A *= 1.2;

@@ -76,6 +76,20 @@ inline Pnlss randomPnlss(std::uint64_t seed, double sampleRate, const Stimulus& 
     return model;
 }
 
+/// One that cannot be turned around: what is odd in the output alone and delayed cannot be made undone where the linear
+/// part is silent, and this one passes nothing but a resonance far below the distortion.
+inline Pnlss oneWay(double sampleRate, const Stimulus& stimulus)
+{
+    auto model = randomPnlss(12, sampleRate, stimulus);
+    model.E.setZero();
+    model.linear.C.setZero();
+    model.linear.C(0, 0) = 1e-9;
+    for (Eigen::Index k = 0; k < model.terms(); ++k)
+        if (model.exponents(k, 3) == 2 && model.exponents.row(k).sum() == 2)
+            model.F(0, k) = 1.0;
+    return model;
+}
+
 inline BlackBox boxOf(const Pnlss& model, const Stimulus& stimulus)
 {
     auto box = blackBoxOf(model);

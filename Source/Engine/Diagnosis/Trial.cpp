@@ -52,7 +52,9 @@ Model newestScaled(Model model, double factor)
 void chooseResiduals(FitOptions& fit, ScoreOptions& score, const Model& model, const Record& record,
                      const std::vector<std::size_t>& sections)
 {
-    fit.substeps = score.substeps = substepsFor(model, record, fit.simulationTolerance);
+    if (fit.substeps == 0)
+        fit.substeps = substepsFor(model, record, fit.simulationTolerance);
+    score.substeps = fit.substeps;
     fit.fedGradient = score.played = isBetterPlayed(model, record, sections, withoutGradient(fit));
 }
 

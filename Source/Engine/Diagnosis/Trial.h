@@ -25,7 +25,8 @@ FitSummary quickFit(Model&, const Record&, const std::vector<std::size_t>& secti
 FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& sections, FitOptions, const Progress& = {});
 
 /// Makes trials on these sections judge by what a simulation leaves where that is less than what fed laws leave: near
-/// the noise, when the motion that laws are fed carries more of it than the model is wrong.
+/// the noise, when the motion that laws are fed carries more of it than the model is wrong. FitOptions::substeps
+/// counts; 0 becomes what the model needs.
 void chooseResiduals(FitOptions&, ScoreOptions&, const Model&, const Record&, const std::vector<std::size_t>& sections);
 
 /// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it
@@ -35,8 +36,7 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std:
                   const FitOptions&, const Progress& = {});
 
 /// Finds linear effects that have several parts anew, as others that are known now may have uncovered more of them.
-/// True where that left less; the model is fitted with laws that are fed, then. Nothing is done of a record without
-/// periods.
+/// True where that left less; the model has had a quick fit, then. Nothing is done of a record without periods.
 bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
 /// Puts an effect into the model where the score test says that it starts, and fits that quickly. Throws Error (data)
@@ -44,8 +44,8 @@ bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sectio
 void tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});
 
 /// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays.
-/// Of a take with periods the laws are fed, and what comes near the noise is fitted by simulation in the end;
-/// FitSummary::substeps is 0 where it was not.
+/// Of a take with periods the fits are quick ones, and what comes near the noise, or was better played, is fitted by
+/// simulation in the end; FitSummary::substeps is 0 where it was not.
 FitSummary refine(Model&, const Record&, const FitOptions&, const Progress& = {});
 
 }  // namespace excursion

@@ -39,7 +39,11 @@ public:
     }
 
     /// Judges by what a simulation leaves of this model from here on, where that is less than what fed laws leave.
-    void chooseResiduals(const Model& model) { excursion::chooseResiduals(options_, test_, model, record_, sections_); }
+    void chooseResiduals(const Model& model)
+    {
+        options_.substeps = 0;  // chosen for this model
+        excursion::chooseResiduals(options_, test_, model, record_, sections_);
+    }
 
     const ScoreOptions& test() const { return test_; }
     FitSummary fit(Model& model, const Progress& progress) const { return fit(model, {12, 1e-3}, progress); }
@@ -276,7 +280,7 @@ std::optional<Model> fittedToLoudest(const Model& model, const Record& record, c
     std::vector<std::size_t> sections;
     std::copy_if(every.begin(), every.end(), std::back_inserter(sections),
                  [&](std::size_t s) { return record.sections[s].level == loudest; });
-    if (sections.size() == every.size() || linearPart(model).components.size() < model.components.size())
+    if (sections.size() == every.size() || hasLaws(model))
         return std::nullopt;
     auto loud = model;
     if (!quickFit(loud, record, sections, options).usable())

@@ -19,8 +19,8 @@ struct Whole {
 
 /// Fits to a record with periods what the catalogue explains together. In rounds all effects that a vote of the whole
 /// catalogue backs are put in at once, everything is fitted quickly, and those are taken out again that the others can
-/// do without; a later round may put them back. Where something is left that no effect explains, those
-/// stay that stand alone.
+/// do without; a later round may put them back. Should that not end at the noise, another search begins from the linear
+/// model of the loudest level. Where something is left that no effect explains, those stay that stand alone.
 /// @param base  fitted; what it has stays
 Whole fitWhole(const Model& base, const Record&, const FitOptions&, const Progress& = {});
 

@@ -193,9 +193,9 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
 
 Record withoutLaws(const Model& model, const Record& record, unsigned threads)
 {
-    const auto still = linearPart(model);
-    if (!hasPeriods(record) || still.components.size() == model.components.size())
+    if (!hasPeriods(record) || !hasLaws(model))
         return record;
+    const auto still = linearPart(model);
     std::vector<std::size_t> every(record.sections.size());
     std::iota(every.begin(), every.end(), std::size_t {0});
     OutputErrorOptions run;
@@ -231,7 +231,7 @@ std::vector<SectionFit> playedError(const Model& model, const Record& record, co
 bool isBetterPlayed(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                     const OutputErrorOptions& options)
 {
-    if (!hasPeriods(record))
+    if (!hasPeriods(record) || !hasLaws(model))
         return false;
     const auto costOf = [&](bool played) {
         auto run = options;

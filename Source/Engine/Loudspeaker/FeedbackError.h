@@ -34,7 +34,7 @@ std::vector<SectionFit> playedError(const Model&, const Record&, const std::vect
                                     const OutputErrorOptions&, const Progress& = {});
 
 /// Whether a simulation leaves less than laws that are fed: the noise of the motion that they are fed is larger then
-/// than what is wrong with the model. Never so of a record without periods.
+/// than what is wrong with the model. Never so of a record without periods, and of a model without laws.
 bool isBetterPlayed(const Model&, const Record&, const std::vector<std::size_t>& sections, const OutputErrorOptions&);
 
 /// What is quickest told of a model. Where the record has periods: with laws that are fed the settled motion, or

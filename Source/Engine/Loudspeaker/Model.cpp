@@ -146,6 +146,12 @@ Model linearPart(Model model)
     return model;
 }
 
+bool hasLaws(const Model& model)
+{
+    return std::any_of(model.components.begin(), model.components.end(),
+                       [](const Component& c) { return !c.effect->linear(); });
+}
+
 Model undonePart(Model model)
 {
     if (std::erase_if(model.components, [](const Component& c) { return !c.effect->undone(); }) > 0)

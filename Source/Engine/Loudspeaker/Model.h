@@ -81,6 +81,8 @@ void followOthers(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
 Model linearPart(Model);
+/// Whether an effect that is not linear is in it, at any strength.
+bool hasLaws(const Model&);
 /// The base and those effects that predistortion reckons with.
 Model undonePart(Model);
 /// The model with the law of that component expanded to another degree; coefficients that are new are zero.
