@@ -62,20 +62,19 @@ std::vector<std::size_t> sparseLines(std::size_t first, std::size_t last)
     return lines;
 }
 
-/// Rows of lines, on straight lines between those that are known.
-Eigen::MatrixXcd between(const Eigen::MatrixXcd& known, const std::vector<std::size_t>& lines)
+/// A value a line, on straight lines between those that are known.
+Spectrum between(const Eigen::VectorXcd& known, const std::vector<std::size_t>& lines)
 {
-    Eigen::MatrixXcd all(static_cast<Eigen::Index>(lines.back() - lines.front() + 1), known.cols());
-    for (Eigen::Index c = 0; c < known.cols(); ++c) {
-        Eigen::Index row = 0;
-        for (std::size_t n = 0; n + 1 < lines.size(); ++n) {
-            const auto here = known(static_cast<Eigen::Index>(n), c), next = known(static_cast<Eigen::Index>(n) + 1, c);
-            const auto count = static_cast<double>(lines[n + 1] - lines[n]);
-            for (double k = 0.0; k < count; ++k)
-                all(row++, c) = here + (next - here) * (k / count);
-        }
-        all(row, c) = known(known.rows() - 1, c);
+    Spectrum all;
+    all.reserve(lines.back() - lines.front() + 1);
+    for (std::size_t n = 0; n + 1 < lines.size(); ++n) {
+        const auto here = known[static_cast<Eigen::Index>(n)], next = known[static_cast<Eigen::Index>(n) + 1];
+        const auto count = lines[n + 1] - lines[n];
+        const auto step = (next - here) / static_cast<double>(count);
+        for (std::size_t k = 0; k < count; ++k)
+            all.push_back(here + step * static_cast<double>(k));
     }
+    all.push_back(known[known.size() - 1]);
     return all;
 }
 
@@ -94,17 +93,20 @@ Paths pathsOf(const Model& model, const std::vector<Quantity>& quantities, std::
         frequency.push_back(frequencyOf(k));
     Paths paths {{}, {}, first, smallSignal(model).lateness};
     auto responses = respondToEach(model, quantities, frequency, drives, false, threads);
-    if (withGradient) {  // slopes are dear, and smooth from line to line at high frequencies
-        const auto lines = sparseLines(first, last);
-        for (const auto k : lines)
-            sparse.push_back(frequencyOf(k));
-        const auto slopes = respondToEach(model, quantities, sparse, drives, true, threads);
-        for (std::size_t d = 0; d < drives.size(); ++d)
-            for (std::size_t q = 0; q < quantities.size(); ++q)
-                responses[d][q].gradient = between(slopes[d][q].gradient, lines);
-    }
-    paths.fromVoltage = std::move(responses[0]);
-    paths.fromForce = std::move(responses[1]);
+    const std::vector made {&paths.fromVoltage, &paths.fromForce};  // as the drives
+    for (std::size_t d = 0; d < drives.size(); ++d)
+        for (auto& response : responses[d])
+            made[d]->push_back({std::move(response.value), {}});
+    if (!withGradient)
+        return paths;
+    const auto lines = sparseLines(first, last);  // slopes are dear, and smooth from line to line at high frequencies
+    for (const auto k : lines)
+        sparse.push_back(frequencyOf(k));
+    const auto known = respondToEach(model, quantities, sparse, drives, true, threads);
+    for (std::size_t d = 0; d < drives.size(); ++d)
+        for (std::size_t q = 0; q < quantities.size(); ++q)
+            for (const auto slope : known[d][q].gradient.colwise())
+                (*made[d])[q].slopes.push_back(slope.isZero(0.0) ? Spectrum {} : between(slope, lines));
     return paths;
 }
 

@@ -11,9 +11,15 @@
 
 namespace excursion {
 
+/// A linear response on the lines of a window.
+struct Path {
+    Spectrum value;
+    std::vector<Spectrum> slopes;  ///< by parameter, empty where it has no part in it; none unless asked for
+};
+
 /// The linear part of a model, by its responses to the voltage and to a force on the cone, on the lines of a window.
 struct Paths {
-    std::vector<Response> fromVoltage, fromForce;  ///< by quantity; by line from `first` on
+    std::vector<Path> fromVoltage, fromForce;  ///< by quantity; by line from `first` on
     std::size_t first = 0;
     double lateness = 0.0;  ///< s, of the sound at rest
 };

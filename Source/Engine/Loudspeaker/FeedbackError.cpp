@@ -12,6 +12,8 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <type_traits>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -48,31 +50,40 @@ public:
     }
 
 private:
+    /// The lines of the residuals, of a spectrum that begins with line `begin`.
+    template <class Lines>
+    auto lines(Lines&& spectrum, std::size_t begin = 0) const
+    {
+        using Array =
+            std::conditional_t<std::is_const_v<std::remove_reference_t<Lines>>, const Eigen::ArrayXcd, Eigen::ArrayXcd>;
+        return Eigen::Map<Array>(spectrum.data() + (residual_.firstLine() - begin), residual_.rows() / 2);
+    }
+
     /// The spectrum that a voltage and a force make of a channel.
     Spectrum sum(std::size_t c, const Spectrum& voltage, const Spectrum& force) const
     {
         Spectrum result(voltage.size(), 0.0);
-        for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
-            result[k] = paths_.fromVoltage[c].value[k - paths_.first] * voltage[k]
-                        + paths_.fromForce[c].value[k - paths_.first] * force[k];
+        lines(result) = lines(paths_.fromVoltage[c].value, paths_.first) * lines(voltage)
+                        + lines(paths_.fromForce[c].value, paths_.first) * lines(force);
         return result;
     }
 
     /// What leaves the cone, of what arrives as late as at rest.
-    std::vector<double> leaving(const Spectrum& sound) const
-    {
-        return inverseFft(later(sound, -paths_.lateness), section_.window);
-    }
-    /// What arrives, as late as the laws make it.
-    Spectrum arriving(const std::vector<double>& flow) const
-    {
-        return later(fft(arrival_.back().heard(flow)), paths_.lateness);
-    }
-
-    Spectrum later(Spectrum sound, double time) const
+    std::vector<double> leaving(Spectrum sound) const
     {
         for (std::size_t k = 0; k < sound.size(); ++k)
-            sound[k] *= std::polar(1.0, -2.0 * std::numbers::pi * record_.frequency(section_, k) * time);
+            sound[k] *= std::conj(onTheWay_[k]);
+        return inverseFft(sound, section_.window);
+    }
+    /// What arrives, as late as the laws make it.
+    Spectrum arriving(const std::vector<double>& flow) const { return later(arrival_.back().heard(flow)); }
+
+    /// As late as at rest.
+    Spectrum later(const std::vector<double>& flow) const
+    {
+        auto sound = fft(flow);
+        for (std::size_t k = 0; k < sound.size(); ++k)
+            sound[k] *= onTheWay_[k];
         return sound;
     }
 
@@ -82,6 +93,10 @@ private:
         for (const auto& law : fed_.laws) {
             if (law.lateness.empty())
                 continue;
+            if (onTheWay_.empty())
+                for (std::size_t k = 0; k < sound.size(); ++k)
+                    onTheWay_.push_back(
+                        std::polar(1.0, -2.0 * std::numbers::pi * record_.frequency(section_, k) * paths_.lateness));
             const auto flow = leaving(sound);
             arrival_.emplace_back(law.lateness, record_.sampleRate);
             byLeaving_ = slopeByLeaving(flow, law.lateness, record_.sampleRate);
@@ -93,15 +108,15 @@ private:
     Eigen::MatrixXd columns(std::size_t c, const std::vector<Eigen::Index>& active, bool heard) const
     {
         Eigen::MatrixXd J = Eigen::MatrixXd::Zero(residual_.rows(), static_cast<Eigen::Index>(active.size()));
-        Spectrum slope(fed_.voltage.size(), 0.0);
-        const auto fill = [&](Eigen::Index column, const auto& at) {
-            for (std::size_t k = residual_.firstLine(); k <= residual_.lastLine(); ++k)
-                slope[k] = at(k);
+        Spectrum slope;
+        const auto add = [&](const Spectrum& path, double sign, const Spectrum& drive) {
+            if (!path.empty() && !drive.empty())
+                lines(slope) += sign * lines(path, paths_.first) * lines(drive);
+        };
+        const auto fill = [&](Eigen::Index column) {
             if (heard)
-                slope = arriving(leaving(slope));
+                slope = arriving(leaving(std::move(slope)));
             residual_.fill(c, slope, J.col(column));
-            if (heard)
-                std::fill(slope.begin(), slope.end(), 0.0);
         };
         const auto& byVoltage = paths_.fromVoltage[c];
         const auto& byForce = paths_.fromForce[c];
@@ -117,31 +132,32 @@ private:
         for (std::size_t a = 0; a < active.size(); ++a) {
             const auto column = static_cast<Eigen::Index>(a);
             const auto [law, own] = owner[static_cast<std::size_t>(active[a])];
+            slope.assign(fed_.voltage.size(), 0.0);
             if (law == none) {
-                fill(column, [&](std::size_t k) {
-                    const auto row = static_cast<Eigen::Index>(k - paths_.first);
-                    return byVoltage.gradient(row, active[a]) * fed_.voltage[k]
-                           + byForce.gradient(row, active[a]) * fed_.force[k];
-                });
+                const auto &U = byVoltage.slopes[static_cast<std::size_t>(active[a])],
+                           &F = byForce.slopes[static_cast<std::size_t>(active[a])];
+                if (U.empty() && F.empty())
+                    continue;
+                add(U, 1.0, fed_.voltage);
+                add(F, 1.0, fed_.force);
+                fill(column);
                 continue;
             }
             const auto& drive = fed_.laws[law];
             const auto &U = drive.voltageSlopes[own], &F = drive.forceSlopes[own];
             if (U.empty())
                 continue;
-            const double electrical = model_.electrical() ? 1.0 : 0.0;
-            Spectrum late;
+            add(byForce.value, 1.0, F);
+            if (model_.electrical())
+                add(byVoltage.value, -1.0, U);
             if (heard && !drive.latenessSlopes[own].empty()) {
                 auto change = drive.latenessSlopes[own];
                 for (std::size_t n = 0; n < change.size(); ++n)
                     change[n] *= -byLeaving_[n];
-                late = later(fft(change), paths_.lateness);  // as at rest, which arriving() makes later still
+                const auto late = later(change);
+                lines(slope) += lines(late);  // as at rest, which arriving() makes later still
             }
-            fill(column, [&](std::size_t k) {
-                const auto sum = byForce.value[k - paths_.first] * F[k]
-                                 - electrical * byVoltage.value[k - paths_.first] * U[k];
-                return late.empty() ? sum : sum + late[k];
-            });
+            fill(column);
         }
         return J;
     }
@@ -154,6 +170,7 @@ private:
     const Paths& paths_;
     std::vector<Arrival> arrival_;
     std::vector<double> byLeaving_;
+    Spectrum onTheWay_;  ///< what the way to the microphone makes of a line, once it is asked for
 };
 
 }  // namespace

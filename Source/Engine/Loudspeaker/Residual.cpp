@@ -18,6 +18,11 @@ Residual::Residual(const Record& record, const Section& section) : section_(sect
 {
     std::tie(first_, last_) = record.lineRange(section);
     lines_ = static_cast<Eigen::Index>(last_ - first_ + 1);
+    for (const auto& deviation : section.deviation) {
+        auto& weight = weight_.emplace_back(lines_);
+        for (Eigen::Index n = 0; n < lines_; ++n)
+            weight[n] = std::numbers::sqrt2 / deviation[first_ + static_cast<std::size_t>(n)];
+    }
 }
 
 Eigen::VectorXd Residual::of(std::size_t channel, const std::vector<std::complex<double>>& predicted) const
@@ -46,12 +51,11 @@ ErrorPower Residual::power(std::size_t channel, const std::vector<std::complex<d
 void Residual::fill(std::size_t channel, const std::vector<std::complex<double>>& derivative,
                     Eigen::Ref<Eigen::VectorXd> column) const
 {
-    const auto& deviation = section_.deviation[channel];
+    const auto& weight = weight_[channel];
+    const auto* line = derivative.data() + first_;
     for (Eigen::Index n = 0; n < lines_; ++n) {
-        const auto k = first_ + static_cast<std::size_t>(n);
-        const auto weighted = std::numbers::sqrt2 / deviation[k] * derivative[k];
-        column[n] = weighted.real();
-        column[lines_ + n] = weighted.imag();
+        column[n] = weight[n] * line[n].real();
+        column[lines_ + n] = weight[n] * line[n].imag();
     }
 }
 

@@ -48,6 +48,7 @@ private:
     const Section& section_;
     std::size_t first_ = 0, last_ = 0;
     Eigen::Index lines_ = 0;
+    std::vector<Eigen::VectorXd> weight_;  ///< [channel], of both parts of a line
 };
 
 }  // namespace excursion
