@@ -170,17 +170,25 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
 {
     if (!hasPeriods(record))
         return false;
+    // What is really there shows at once: the responses have told its shape.
     constexpr double worthIt = 0.95;
+    auto glance = options;
+    glance.search = {3, 1e-2};
     const auto still = withoutLaws(model, record, options.threads);
+    double now = quickCost(model, record, sections, options);
     bool found = false;
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& component = model.components[k];
         if (!component.effect->linear() || component.effect->parts(component.extent).empty())
             continue;
         auto anew = model;
-        if (fitByResponse(anew, k, still).usable() && quickFit(anew, record, sections, options).usable()
-            && quickCost(anew, record, sections, options) < worthIt * quickCost(model, record, sections, options)) {
+        if (!fitByResponse(anew, k, still).usable() || !quickFit(anew, record, sections, glance).usable()
+            || quickCost(anew, record, sections, options) > now
+            || !quickFit(anew, record, sections, options).usable())
+            continue;
+        if (const double then = quickCost(anew, record, sections, options); then < worthIt * now) {
             model = std::move(anew);
+            now = then;
             found = true;
         }
     }

@@ -13,23 +13,25 @@
 namespace excursion {
 namespace {
 
-// values a sample between which a polynomial goes: with eight points 1e-5 is left at 0.42 of the rate, less below
-constexpr int finer = 4;
+// values a sample between which a polynomial goes: with eight points 1e-5 is left at 0.42 of the rate, less below, and
+// half a percent when rough
+constexpr int finely = 4, roughly = 2;
 
 /// The periodic record of N samples that has this spectrum, at `finer` times its rate, by zeros above its own lines.
-std::vector<double> refined(std::vector<std::complex<double>> spectrum, std::size_t N)
+std::vector<double> refined(std::vector<std::complex<double>> spectrum, std::size_t N, int finer)
 {
     if (N % 2 == 0)
         spectrum.back() *= 0.5;  // the Nyquist line stands for both its sides
-    spectrum.resize(finer * N / 2 + 1, 0.0);
-    auto fine = inverseFft(spectrum, finer * N);
+    const auto length = static_cast<std::size_t>(finer) * N;
+    spectrum.resize(length / 2 + 1, 0.0);
+    auto fine = inverseFft(spectrum, length);
     for (auto& value : fine)
         value *= finer;
     return fine;
 }
 
 /// Lagrange's polynomial through eight of the finer values, periodic.
-double between(const std::vector<double>& fine, double sample)
+double between(const std::vector<double>& fine, double sample, int finer)
 {
     constexpr int points = 8;
     static constexpr std::array<double, points> inverse = [] {  // 1/prod (k - j)
@@ -96,7 +98,8 @@ Arrival::Arrival(std::span<const double> lateness, double sampleRate)
     auto spectrum = fft(lateness);
     for (auto& line : spectrum)
         line *= sampleRate;
-    const auto late = refined(std::move(spectrum), N);
+    constexpr int finer = finely;
+    const auto late = refined(std::move(spectrum), N, finer);
     const auto length = static_cast<std::ptrdiff_t>(late.size());
     left_.resize(N);
     for (std::size_t n = 0; n < N; ++n) {
@@ -108,7 +111,7 @@ Arrival::Arrival(std::span<const double> lateness, double sampleRate)
             auto nearest = static_cast<std::ptrdiff_t>(finer * s) % length;
             nearest += nearest < 0 ? length : 0;
             const auto from = static_cast<std::size_t>(std::min(nearest, length - 2));
-            const double change = (s + between(late, s) - t) / (1.0 + finer * (late[from + 1] - late[from]));
+            const double change = (s + between(late, s, finer) - t) / (1.0 + finer * (late[from + 1] - late[from]));
             s -= change;
             if (!(std::abs(change) > 1e-9))
                 break;
@@ -121,10 +124,20 @@ std::vector<double> Arrival::heard(std::span<const double> samples) const
 {
     if (left_.empty())
         return {samples.begin(), samples.end()};
-    const auto fine = refined(fft(samples), samples.size());
-    std::vector<double> result(samples.size());
-    for (std::size_t n = 0; n < result.size(); ++n)
-        result[n] = between(fine, left_[n]);
+    return read(fft(samples), samples.size(), finely);
+}
+
+std::vector<double> Arrival::heardRoughly(std::vector<std::complex<double>> spectrum, std::size_t N) const
+{
+    return left_.empty() ? inverseFft(spectrum, N) : read(std::move(spectrum), N, roughly);
+}
+
+std::vector<double> Arrival::read(std::vector<std::complex<double>> spectrum, std::size_t N, int finer) const
+{
+    const auto fine = refined(std::move(spectrum), N, finer);
+    std::vector<double> result(N);
+    for (std::size_t n = 0; n < N; ++n)
+        result[n] = between(fine, left_[n], finer);
     return result;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <complex>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -33,7 +34,12 @@ public:
     /// A record of the same period, heard: x(s(t)). As it is when the lateness is zero throughout.
     std::vector<double> heard(std::span<const double> samples) const;
 
+    /// The same of a record of N samples that has this spectrum, at a third of the price: within half a percent.
+    std::vector<double> heardRoughly(std::vector<std::complex<double>> spectrum, std::size_t N) const;
+
 private:
+    std::vector<double> read(std::vector<std::complex<double>> spectrum, std::size_t N, int finer) const;
+
     std::vector<double> left_;  ///< samples; empty when nothing is late
 };
 

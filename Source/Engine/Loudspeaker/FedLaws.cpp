@@ -20,7 +20,7 @@ MemoryStart atRest(const Component& law)
 /// Where the memory of a law that is not slow stands a quarter of a period before the window.
 MemoryStart startOf(const Component& law, const Section& section, const ShownMotion& motion, double sampleRate)
 {
-    if (law.effect->memorySize(law.extent) == 0)
+    if (law.effect->memorySize(law.extent) == 0 || forgetsInAQuarter(law, motion, sampleRate))
         return atRest(law);
     return settledMemory(law, everySample(motion), section.window - section.window / 4, sampleRate);
 }

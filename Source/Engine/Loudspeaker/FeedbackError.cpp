@@ -68,15 +68,13 @@ private:
         return result;
     }
 
-    /// What leaves the cone, of what arrives as late as at rest.
-    std::vector<double> leaving(Spectrum sound) const
+    /// The spectrum of what leaves the cone, of what arrives as late as at rest.
+    Spectrum leaving(Spectrum sound) const
     {
         for (std::size_t k = 0; k < sound.size(); ++k)
             sound[k] *= std::conj(onTheWay_[k]);
-        return inverseFft(sound, section_.window);
+        return sound;
     }
-    /// What arrives, as late as the laws make it.
-    Spectrum arriving(const std::vector<double>& flow) const { return later(arrival_.back().heard(flow)); }
 
     /// As late as at rest.
     Spectrum later(const std::vector<double>& flow) const
@@ -97,10 +95,10 @@ private:
                 for (std::size_t k = 0; k < sound.size(); ++k)
                     onTheWay_.push_back(
                         std::polar(1.0, -2.0 * std::numbers::pi * record_.frequency(section_, k) * paths_.lateness));
-            const auto flow = leaving(sound);
+            const auto flow = inverseFft(leaving(std::move(sound)), section_.window);
             arrival_.emplace_back(law.lateness, record_.sampleRate);
             byLeaving_ = slopeByLeaving(flow, law.lateness, record_.sampleRate);
-            sound = arriving(flow);
+            sound = later(arrival_.back().heard(flow));
         }
         return !arrival_.empty();
     }
@@ -115,7 +113,7 @@ private:
         };
         const auto fill = [&](Eigen::Index column) {
             if (heard)
-                slope = arriving(leaving(std::move(slope)));
+                slope = later(arrival_.back().heardRoughly(leaving(std::move(slope)), section_.window));
             residual_.fill(c, slope, J.col(column));
         };
         const auto& byVoltage = paths_.fromVoltage[c];
@@ -155,7 +153,7 @@ private:
                 for (std::size_t n = 0; n < change.size(); ++n)
                     change[n] *= -byLeaving_[n];
                 const auto late = later(change);
-                lines(slope) += lines(late);  // as at rest, which arriving() makes later still
+                lines(slope) += lines(late);  // as at rest, which fill() makes later still
             }
             fill(column);
         }

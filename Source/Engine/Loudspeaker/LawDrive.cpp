@@ -65,10 +65,11 @@ private:
     const ShownMotion& motion_;
 };
 
-/// How quick a law's memory is along the motion.
+/// How a law's memory goes along the motion.
 struct Pace {
     int steps = 1;  ///< a sample, in which the memory can be followed: its fastest rate times one stays below one
     bool quarterForgets = true;  ///< nothing of what was is left of its slowest part after a quarter of the period
+    bool steady = true;          ///< each state forgets at a rate of its own that nothing changes, dm/dt = a - r m
 };
 
 Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
@@ -77,9 +78,12 @@ Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
     if (size == 0)
         return {};
     const auto coefficients = coefficientsOf(law, valuesOf(law));
-    std::vector<double> memory(size, 0.0), rest(size), moved(size), sum(size, 0.0);
+    std::vector<double> memory(size, 0.0), rest(size), moved(size), sum(size, 0.0), first;
     double fastest = 0.0, asked = 0.0;
-    for (std::size_t n = 0; n < motion.i.size(); n += 2 * fine, asked += 1.0) {
+    bool steady = true;
+    constexpr std::size_t apart = 8 * fine;
+    constexpr double same = 1e-9;
+    for (std::size_t n = 0; n < motion.i.size(); n += apart, asked += 1.0) {
         const auto rates = [&](std::vector<double>& out) {
             Balance<double> unused;
             law.effect->contribute(law.extent, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]},
@@ -87,18 +91,99 @@ Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
         };
         rates(rest);
         for (std::size_t k = 0; k < size; ++k) {
-            memory[k] = 1.0;
+            const double held = n % (2 * apart) == 0 ? 1.0 : 2.0;  // a rate that is not affine tells them apart
+            memory[k] = held;
             rates(moved);
             memory[k] = 0.0;
-            const double rate = std::abs(moved[k] - rest[k]);
+            const double rate = std::abs(moved[k] - rest[k]) / held;
             fastest = std::max(fastest, rate);
             sum[k] += rate;
+            if (first.size() < size)
+                first.push_back(rate);
+            steady = steady && moved[k] < rest[k] && std::abs(rate - first[k]) <= same * first[k];
+            for (std::size_t other = 0; other < size && steady; ++other)
+                steady = other == k || std::abs(moved[other] - rest[other]) <= same * std::abs(rest[other]);
         }
     }
     constexpr double most = 32.0, forgotten = 7.0;  // exp(-7): a thousandth
     const double quarter = static_cast<double>(motion.i.size() / fine) / (4.0 * sampleRate);
     return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)),
-            *std::min_element(sum.begin(), sum.end()) / asked * quarter > forgotten};
+            *std::min_element(sum.begin(), sum.end()) / asked * quarter > forgotten, steady};
+}
+
+/// A state that forgets at a steady rate r, dm/dt = a - r m, over one step: a goes along the parabola through its
+/// values at the step's begin, middle and end, and the state exactly with it.
+template <class T>
+class Relaxation {
+public:
+    Relaxation(const T& rate, double step)
+    {
+        using std::exp;
+        const T z = rate * step;
+        decay_ = exp(-z);
+        // integrals of exp(-z (1 - s)) s^j over the step
+        T I0, I1, I2;
+        if (z < T(0.1)) {
+            const auto series = [&](double factor, int j) {
+                T term = T(factor), total = term;
+                for (int k = 1; k < 8; ++k) {
+                    term *= -z / static_cast<double>(j + k + 1);
+                    total += term;
+                }
+                return total;
+            };
+            I0 = series(1.0, 0);
+            I1 = series(1.0 / 2.0, 1);
+            I2 = series(1.0 / 3.0, 2);
+        } else {
+            I0 = (1.0 - decay_) / z;
+            I1 = (1.0 - I0) / z;
+            I2 = (1.0 - 2.0 * I1) / z;
+        }
+        begin_ = step * (I0 - 3.0 * I1 + 2.0 * I2);
+        middle_ = step * 4.0 * (I1 - I2);
+        end_ = step * (2.0 * I2 - I1);
+    }
+
+    T after(const T& m, const T& begin, const T& middle, const T& end) const
+    {
+        return decay_ * m + begin_ * begin + middle_ * middle + end_ * end;
+    }
+
+private:
+    T decay_, begin_, middle_, end_;
+};
+
+/// follow() of a memory that is steady.
+template <class T, class See>
+void followSteady(const Along<T>& law, std::vector<T> memory, std::size_t length, std::size_t leadIn, double sampleRate,
+                  const See& see)
+{
+    const std::size_t size = memory.size();
+    const std::vector<T> none(size, T(0.0));
+    std::vector<T> begin(size), middle(size), end(size), rate(size);
+    std::vector<Relaxation<T>> states;
+    law.ask(0.0, none.data(), begin.data());
+    for (std::size_t k = 0; k < size; ++k) {
+        auto one = none;
+        one[k] = T(1.0);
+        law.ask(0.0, one.data(), rate.data());
+        states.emplace_back(begin[k] - rate[k], 1.0 / sampleRate);
+    }
+    law.ask(static_cast<double>(length - leadIn), none.data(), begin.data());
+    for (std::size_t step = 0; step < leadIn + length; step += fine) {
+        const std::size_t n = (length - leadIn + step) % length;
+        const auto place = static_cast<double>(n);
+        if (step >= leadIn) {
+            const auto sum = law.ask(place, memory.data(), rate.data());
+            see(n, sum, memory, rate);
+        }
+        law.ask(place + 0.5 * fine, none.data(), middle.data());
+        law.ask(place + fine, none.data(), end.data());
+        for (std::size_t k = 0; k < size; ++k)
+            memory[k] = states[k].after(memory[k], begin[k], middle[k], end[k]);
+        std::swap(begin, end);
+    }
 }
 
 /// Follows a law's memory from the lead-in before the window to its end, and shows what it meets there once a sample:
@@ -129,7 +214,7 @@ void follow(const Along<T>& law, std::vector<T> memory, std::size_t length, std:
 
 template <class T>
 Answers<T> ask(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion,
-               const std::vector<T>& start, std::size_t leadIn, int steps, double sampleRate)
+               const std::vector<T>& start, std::size_t leadIn, const Pace& pace, double sampleRate)
 {
     const Along<T> along(law, parameters, motion);
     const std::size_t length = motion.i.size();
@@ -137,12 +222,16 @@ Answers<T> ask(const Component& law, const std::vector<T>& parameters, const Sho
     answers.voltage.reserve(length / fine);
     answers.force.reserve(length / fine);
     if (!start.empty()) {
-        follow(along, start, length, leadIn, steps, sampleRate,
-               [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory, const std::vector<T>& rate) {
-                   if (answers.memory.empty())
-                       answers.memory = memory;
-                   along.answer(n, sum, memory.data(), rate.data(), answers);
-               });
+        const auto see = [&](std::size_t n, const Balance<T>& sum, const std::vector<T>& memory,
+                             const std::vector<T>& rate) {
+            if (answers.memory.empty())
+                answers.memory = memory;
+            along.answer(n, sum, memory.data(), rate.data(), answers);
+        };
+        if (pace.steady)
+            followSteady(along, start, length, leadIn, sampleRate, see);
+        else
+            follow(along, start, length, leadIn, pace.steps, sampleRate, see);
         return answers;
     }
     for (std::size_t n = 0; n < length; n += fine)
@@ -160,6 +249,11 @@ std::vector<double> series(const std::vector<T>& samples, const Read& read)
 
 }  // namespace
 
+bool forgetsInAQuarter(const Component& law, const ShownMotion& motion, double sampleRate)
+{
+    return paceOf(law, motion, sampleRate).quarterForgets;
+}
+
 LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate,
                  const std::vector<bool>& wanted)
 {
@@ -168,8 +262,8 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
     const auto pace = paceOf(law, motion, sampleRate);
     const std::size_t length = motion.i.size(), quarter = length / fine / 4 * fine;
     LawDrive drive;
-    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, quarter,
-                                   pace.steps, sampleRate);
+    const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, quarter, pace,
+                                   sampleRate);
     drive.voltage = fft(plain.voltage);
     drive.force = fft(plain.force);
     drive.lateness = plain.lateness;
@@ -193,7 +287,7 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
             for (std::size_t m = 0; m < size && !whole; ++m)
                 memory[m].v[slot] = start.gradient(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(own[j]));
         }
-        const auto jets = ask<Jet>(law, parameters, motion, memory, whole ? length : quarter, pace.steps, sampleRate);
+        const auto jets = ask<Jet>(law, parameters, motion, memory, whole ? length : quarter, pace, sampleRate);
         for (std::size_t j = 0; j < own.size(); ++j) {
             const auto slope = [slot = static_cast<Eigen::Index>(j)](const Jet& value) { return value.v[slot]; };
             drive.voltageSlopes[own[j]] = fft(series(jets.voltage, slope));

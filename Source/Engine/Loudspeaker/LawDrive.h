@@ -20,8 +20,12 @@ struct LawDrive {
     std::vector<std::vector<double>> latenessSlopes;
 };
 
+/// Whether a law's memory knows nothing after a quarter of the motion's period of where it stood before.
+bool forgetsInAQuarter(const Component&, const ShownMotion&, double sampleRate);
+
 /// Asks the law, which is no linear effect, along the motion. Its memory is followed, and differentiated, from its
-/// start by the fourth-order Runge-Kutta method.
+/// start: exactly along parabolas from half a sample to the next where each state forgets at a steady rate, else by the
+/// fourth-order Runge-Kutta method.
 /// @param start      of its memory, a quarter of a period before the window
 /// @param wanted     parameters to differentiate by: one flag each
 LawDrive driveOf(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate,
