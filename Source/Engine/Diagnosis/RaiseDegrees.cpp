@@ -41,11 +41,9 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
         }
     for (const auto& p : higher.path.parameters)
         visit(p, false, 0);
-    // Twice what noise alone gives, about the 95 % point of chi-square: a higher price would leave a bias of several
-    // standard errors out of the confidence bands, a lower one would let the law wander where the record seldom is.
     const double now = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, old));
     const double unit = std::max(1.0, now / std::max(1.0, sums.estimation.rows));
-    const double price = 2.4 * unit;
+    const double price = priceOfCoefficient * unit;
     // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a
     // share that is worth it.
     const double least = record.noiseKnown && unit < nearNoise ? 0.0 : 0.02 * now;

@@ -40,6 +40,23 @@ double quickCost(const Model& model, const Record& record, const std::vector<std
     return costOf(model, quickError(model, record, sections, {}, withoutGradient(options)));
 }
 
+/// Whether laws of a higher degree leave so much less that it pays for their coefficients: what the slopes of fed laws
+/// promise need not come.
+bool paysForItself(const Model& higher, const Model& model, const Record& record,
+                   const std::vector<std::size_t>& sections, const FitOptions& options)
+{
+    const auto left = [&](const Model& of) {
+        return sumOf(quickError(of, record, sections, {}, withoutGradient(options)));
+    };
+    const auto now = left(model), then = left(higher);
+    if (!now || !then)
+        return then.has_value();
+    const double unit = std::max(1.0, then->cost / std::max(1.0, then->rows)),
+                 more = static_cast<double>(freeParameters(higher).size())
+                        - static_cast<double>(freeParameters(model).size());
+    return now->cost - then->cost > priceOfCoefficient * unit * more;
+}
+
 /// The strengths of the newest component times a factor.
 Model newestScaled(Model model, double factor)
 {
@@ -66,9 +83,12 @@ FitSummary quickFit(Model& model, const Record& record, const std::vector<std::s
     fed.fedGradient = false;
     if (!options.fedGradient)
         return fit(model, record, sections, fed, progress);
-    if (auto found = model;
-        fit(found, record, sections, fed, progress.part(0.0, 0.2)).usable()
-        && quickCost(found, record, sections, options) < quickCost(model, record, sections, options))
+    // While fed laws leave much more than a simulation their fit goes astray.
+    constexpr double astray = 3.0;
+    const double now = quickCost(model, record, sections, options);
+    if (auto found = model; quickCost(model, record, sections, fed) < astray * now
+                            && fit(found, record, sections, fed, progress.part(0.0, 0.2)).usable()
+                            && quickCost(found, record, sections, options) < now)
         model = std::move(found);
     auto played = options;
     played.fed = false;
@@ -183,8 +203,7 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
             continue;
         auto anew = model;
         if (!fitByResponse(anew, k, still).usable() || !quickFit(anew, record, sections, glance).usable()
-            || quickCost(anew, record, sections, options) > now
-            || !quickFit(anew, record, sections, options).usable())
+            || quickCost(anew, record, sections, options) > now || !quickFit(anew, record, sections, options).usable())
             continue;
         if (const double then = quickCost(anew, record, sections, options); then < worthIt * now) {
             model = std::move(anew);
@@ -227,8 +246,16 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     if (!quick.fedGradient)
         chooseResiduals(quick, score, model, record, sections);
     constexpr int mostRaises = 3;
-    for (int n = 0; n < mostRaises && !raiseDegrees(model, record, score).empty(); ++n)
-        summary = fitFed(model, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
+    for (int n = 0; n < mostRaises; ++n) {
+        auto higher = model;
+        if (raiseDegrees(higher, record, score).empty())
+            break;
+        const auto next = fitFed(higher, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
+        if (!next.usable() || !paysForItself(higher, model, record, sections, quick))
+            break;
+        model = std::move(higher);
+        summary = next;
+    }
     if (hasPeriods(record)) {
         if (record.noiseKnown && (summary.costPerResidual > atNoise || !summary.onlyNoise))
             findPartsAnew(model, record, sections, quick);

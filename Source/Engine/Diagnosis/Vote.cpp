@@ -50,7 +50,8 @@ Vote voteOn(const Sums& sums, const std::vector<Eigen::Index>& together, std::ve
         uniqueDb = std::max(uniqueDb, 10.0 * std::log10(left(without) / left(all)));
     }
     const double explained = predictedCost(sums.estimation, without) - predictedCost(sums.estimation, all);
-    return {uniqueDb, gainByLevel(sums, all, strengths) / std::max(explained, 1e-300)};
+    const double byLevel = gainByLevel(sums, all, strengths);
+    return {uniqueDb, byLevel / std::max(explained, 1e-300), byLevel};
 }
 
 std::map<std::string, Vote> votesOf(const Model& model, const Record& record, const ScoreOptions& options,

@@ -14,9 +14,10 @@ struct Vote {
     /// by how much all others together would leave more without it, in the channel that tells most: what it alone
     /// explains
     double uniqueDb = 0.0;
-    double inconsistency =
-        0.0;  ///< how much more it would explain with strengths of its own at each level, as a share of that: a law is
-              ///< the same at all levels, what is bent to stand for something else is not
+    /// how much more it would explain with strengths of its own at each level, as a share of that: a law is the same at
+    /// all levels, what is bent to stand for something else is not
+    double inconsistency = 0.0;
+    double byLevel = 0.0;  ///< how much more, of the cost
 
     /// Whether the others explain clearly less without it, and it is about the same at all levels.
     bool backs() const { return uniqueDb >= 0.5 && inconsistency < 0.5; }

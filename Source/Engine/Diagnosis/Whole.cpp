@@ -58,6 +58,7 @@ public:
     /// What a model leaves; no channels where a law's memory runs away.
     struct Left {
         double chi = std::numeric_limits<double>::infinity();  ///< of all channels
+        double cost = std::numeric_limits<double>::infinity();
         std::vector<Channel> channels;
 
         bool areNoise() const
@@ -79,6 +80,7 @@ public:
         Left left;
         if (!sum)
             return left;
+        left.cost = sum->cost;
         left.chi = sum->cost / std::max(1.0, sum->rows);
         for (std::size_t c = 0; c < record_.channels.size(); ++c) {
             double cost = 0.0, rows = 0.0;
@@ -140,12 +142,20 @@ public:
                 if (thorough && test_.played && lost(then, now) > hardlyNeeded && fitExactly(leaner).usable())
                     then = left(leaner);
             }
-            one.vote = {lost(then, now), effectNamed(effect).linear() ? 0.0 : vote.inconsistency};
+            one.vote = votedBy(effect, vote, then, now);
             one.times = then.chi / now.chi;
             one.staysNoise = then.areNoise();
             one.leaner = std::move(leaner);
         }
         return tried;
+    }
+
+    /// The vote on an effect that was really taken out: what it explains is what is left more without it, not what the
+    /// derivatives say of that.
+    Vote votedBy(const std::string& effect, const Vote& vote, const Left& without, const Left& with) const
+    {
+        const double explained = std::max(without.cost - with.cost, 1e-300);
+        return {lost(without, with), effectNamed(effect).linear() ? 0.0 : vote.byLevel / explained, vote.byLevel};
     }
 
     /// Takes the effects out of which the others do not lose what `keeps` asks for, one at a time. What was found of
@@ -170,7 +180,7 @@ public:
                 if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
                     continue;
                 const auto then = left(leaner), now = left(model);
-                if (keeps(Tried {{lost(then, now), tried.vote.inconsistency}, {}, then.chi / now.chi, then.areNoise()}))
+                if (keeps(Tried {votedBy(effect, tried.vote, then, now), {}, then.chi / now.chi, then.areNoise()}))
                     continue;
             }
             model = std::move(leaner);
