@@ -3,6 +3,7 @@
 #include "Cli/Pnlss.h"
 #include "Engine/GreyBox/MixedImpedance.h"
 #include "Engine/GreyBox/MixedOrderPnlss.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 
 #include "Engine/Error.h"
 #include "Engine/Fractional/FractionalIdentify.h"

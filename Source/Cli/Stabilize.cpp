@@ -4,6 +4,7 @@
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Linear/Response.h"
 
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"

@@ -3,6 +3,8 @@
 #include "BlackBox/EveryClass.h"
 
 #include "Engine/Error.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
+#include "Engine/Polynomial/Narx/NarxRecursion.h"
 
 #include <catch2/catch.hpp>
 

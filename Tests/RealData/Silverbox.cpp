@@ -4,7 +4,7 @@
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Import/ImportMat.h"
 #include "Engine/Loudspeaker/ModelFile.h"
-#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Scratch.h"
 
 #include <Eigen/QR>

@@ -8,8 +8,10 @@
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Polynomial/Block/BlockModelFile.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 #include "Engine/Polynomial/Narx/NarxFile.h"
+#include "Engine/Polynomial/Narx/NarxRecursion.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 

@@ -2,6 +2,7 @@
 #include "Engine/Fractional/AlphaCurve.h"
 
 #include "Engine/Error.h"
+#include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Numerics/TallQr.h"
 
@@ -45,16 +46,6 @@ Sections carried(const Sections& sections, double alpha)
 }
 
 }  // namespace
-
-IdentifyOptions linearOptions(const FractionalOptions& options, double alpha)
-{
-    IdentifyOptions result;
-    result.order = options.order;
-    result.alpha = alpha;
-    result.thorough = options.thorough;
-    result.refinement = options.refinement;
-    return result;
-}
 
 void AlphaCurve::search(const Progress& progress)
 {

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Fractional/AlphaCurve.h"
+#include "Engine/Linear/Identify.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -110,15 +111,6 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
 }
 
 }  // namespace
-
-bool FractionalOptions::isValid(std::string* reason) const
-{
-    if (alpha && !(*alpha > 0.0 && *alpha < 2.0))
-        return refuse(reason, "alpha must lie between 0 and 2");
-    if (!(leastAlpha > 0.0 && leastAlpha < mostAlpha && mostAlpha < 2.0 && gridStep > 1e-3 && gridStep <= 0.5))
-        return refuse(reason, "alpha is searched between bounds that ascend between 0 and 2, in steps of 0.001 to 0.5");
-    return linearOptions(*this, alpha.value_or(1.0)).isValid(reason);
-}
 
 FractionalIdentification identifyFractional(const FrequencyData& data, const FractionalOptions& options,
                                             const Progress& progress)

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
+#include "Engine/Linear/LeastSection.h"
 #include "Engine/Linear/ResidualWhiteness.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"

@@ -4,7 +4,6 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Sections.h"
-#include "Engine/Linear/Stabilization.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

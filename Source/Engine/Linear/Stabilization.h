@@ -93,9 +93,4 @@ struct Stabilization {
 Stabilization stabilized(const StateSpace&, const FrequencyData& data, const StabilizeOptions& = {},
                          const Progress& = {});
 
-/// The model's own response where its poles show: `lines` frequencies, evenly on a logarithmic scale, from a tenth of
-/// the slowest pole to ten times the fastest or to half the sample rate.
-/// @param alpha  of a model in lambda = s^alpha
-FrequencyData sampled(const StateSpace&, int lines = 1000, double alpha = 1.0);
-
 }  // namespace excursion

@@ -13,10 +13,12 @@
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFit.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Polynomial/Hammerstein/HammersteinFit.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 #include "Engine/Polynomial/Narx/NarxFile.h"
 #include "Engine/Polynomial/Narx/NarxFit.h"
+#include "Engine/Polynomial/Narx/NarxRecursion.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Engine/Polynomial/Pnlss/Recursion.h"
@@ -112,7 +114,7 @@ FittedClass fitFractionalClass(const RankedTake& data, const Progress&)
 FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress)
 {
     HammersteinFitOptions fitting;
-    fitting.degree = data.options.degree;
+    fitting.degree = data.degree;
     const auto fit = fitHammerstein(data.take.measurement().sampleRate, data.records.estimation,
                                     data.records.validation, fitting, progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
@@ -123,8 +125,8 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
 FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
 {
     BlockModelFitOptions fitting;
-    fitting.degree = data.options.degree;
-    fitting.maximumIterations = data.options.iterations;
+    fitting.degree = data.degree;
+    fitting.maximumIterations = data.iterations;
     const auto fit = fitBlockModel(data.linear, data.records.estimation, data.records.validation, fitting, progress);
     auto description = ofOrder("", data.linear.order(), fitting.degree);
     for (const auto& step : fit.steps)
@@ -138,8 +140,8 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
 {
     NarxFitOptions fitting;
     fitting.outputLags = fitting.inputLags = data.order;
-    fitting.degree = data.options.degree;
-    fitting.maximumIterations = data.options.iterations;
+    fitting.degree = data.degree;
+    fitting.maximumIterations = data.iterations;
     const auto fit = fitNarx(data.take.measurement().sampleRate, data.records.estimation, data.records.validation,
                              fitting, progress);
     return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
@@ -153,7 +155,7 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     IdentifyOptions identifying;
     identifying.sampleRate = data.take.measurement().sampleRate;
     PnlssFitOptions fitting;
-    fitting.maximumIterations = data.options.iterations;
+    fitting.maximumIterations = data.iterations;
     fitting.enoughDb = data.records.enoughDb();
     PnlssFit best;
     double least = std::numeric_limits<double>::infinity();
@@ -170,12 +172,12 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     };
     // A pole that only the linear model needed may hold the search up, so a driver's three states are tried as well.
     std::vector<int> orders {data.order};
-    if (data.options.order == 0 && data.order != 3)
+    if (!data.orderGiven && data.order != 3)
         orders.push_back(3);
     std::vector<Pnlss> starts;
     for (const int order : orders) {
         identifying.order = order;
-        starts.push_back(withTerms(identify(data.response, identifying).model, data.options.degree));
+        starts.push_back(withTerms(identify(data.response, identifying).model, data.degree));
     }
     double done = 0.0;
     for (const auto search : {PnlssSearch::plain, PnlssSearch::guided, PnlssSearch::grown})
@@ -186,22 +188,22 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
         }
     return {
         [model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
-        ofOrder("", best.model.linear.order(), data.options.degree),
-        static_cast<int>(Recursion(best.model, true).parameters()), best.stable,
+        ofOrder("", best.model.linear.order(), data.degree), static_cast<int>(Recursion(best.model, true).parameters()),
+        best.stable,
         toJson(NamedPnlss {
             "pnlss", {std::string(name(data.input.quantity))}, {std::string(name(data.output.quantity))}, best.model})};
 }
 
 FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& progress)
 {
-    const auto start = fractionalStart(data, data.options.degree);
+    const auto start = fractionalStart(data, data.degree);
     const auto grid = gridOf(data, start);
     FractionalPnlssOptions fitting;
-    fitting.maximumIterations = std::min(data.options.iterations, 10);
+    fitting.maximumIterations = std::min(data.iterations, 10);
     fitting.costTolerance = 1e-3;
     const auto fit = fitFractionalPnlss(start, grid, data.records.estimation, data.records.validation, fitting,
                                         progress);
-    auto fitted = fractionalClass(fit.model, grid, data.options.degree,
+    auto fitted = fractionalClass(fit.model, grid, data.degree,
                                   static_cast<int>(FractionalRecursion(fit.model, grid, true, true).parameters()));
     fitted.stable = fit.stable;
     fitted.document = toJson(NamedFractionalPnlss {"fractional-pnlss",

@@ -9,6 +9,7 @@
 #include "Engine/Linear/Identify.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFit.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Signal/Fft.h"
 #include "Linear/Problem.h"
 

@@ -69,9 +69,4 @@ StateSpace expandedLinear(const FractionalPnlss&, const FractionalGrid&);
 /// Whether that is stable. Cells slower than the record stand at 1 up to rounding, and are not held against it.
 bool isStable(const FractionalPnlss&, const FractionalGrid&);
 
-/// The output, N x p, from rest, for an input of N samples, N x m, at the grid's sample rate: between samples it is
-/// interpolated band-limited. A model that runs away leaves the finite numbers. Throws Error (usage) where the input
-/// does not fit.
-Eigen::MatrixXd simulate(const FractionalPnlss&, const Eigen::MatrixXd& input, const FractionalGrid&);
-
 }  // namespace excursion

@@ -6,6 +6,7 @@
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "Engine/Numerics/Search.h"
-#include "Engine/Polynomial/Pnlss/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFitOptions.h"
 #include "Engine/Polynomial/Pnlss/Recursion.h"
+#include "Engine/Polynomial/PnlssRecord.h"
 
 #include <limits>
 #include <optional>
