@@ -79,7 +79,7 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
                    fit.stable,
                    fit,
                    fit.history,
-                   withError(fit.model.alpha, fit.alphaDeviation),
+                   withError(fit.model.alpha, fit.alphaStandardError),
                    {},
                    {}};
         named = {std::filesystem::path(options.response.path).stem().string(),

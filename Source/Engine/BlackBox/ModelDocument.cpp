@@ -143,7 +143,7 @@ struct Simulate {
     Eigen::MatrixXd operator()(const Fractional& model) const { return simulate(model.model, input, model.grid); }
     Eigen::MatrixXd operator()(const FractionalStateSpace& model) const
     {
-        const LadderOptions band {0.1 * sampleRate / static_cast<double>(input.rows()), sampleRate, 4.0};
+        const DiffusiveLadderOptions band {0.1 * sampleRate / static_cast<double>(input.rows()), sampleRate, 4.0};
         return simulateByLadder(model, input, sampleRate, band);
     }
 };

@@ -31,7 +31,7 @@ double deviance(const PartialFractionFit& fit, const FrequencyData& data)
 
 /// The poles at another alpha: lambda^(alpha'/alpha) is the same s. Pairs that would pass the negative axis stay just
 /// before it.
-Sections carried(const Sections& sections, double alpha)
+SecondOrderSections carried(const SecondOrderSections& sections, double alpha)
 {
     const double ratio = alpha / sections.alpha;
     auto roots = poles(sections);

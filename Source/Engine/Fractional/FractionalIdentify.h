@@ -18,7 +18,7 @@ struct AlphaChiSquared {
 struct FractionalIdentification {
     FractionalStateSpace model;
     /// standard error of alpha; 0 where alpha was given, NaN where it is not determined, as `warning` says
-    double alphaDeviation = 0.0;
+    double alphaStandardError = 0.0;
     /// as of LinearIdentification; chiSquared NaN without deviations
     double cost = 0.0, errorDb = 0.0, chiSquared = 0.0;
     double sectorMargin = 0.0;  ///< rad

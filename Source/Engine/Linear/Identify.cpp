@@ -75,7 +75,8 @@ std::vector<StateSpace> subspaceModels(const FrequencyData& data, const Identify
     return models;
 }
 
-void add(std::vector<PoleStart>& candidates, const char* start, const Sections& sections, const FrequencyData& data)
+void add(std::vector<PoleStart>& candidates, const char* start, const SecondOrderSections& sections,
+         const FrequencyData& data)
 {
     if (!sections.factors.allFinite())
         return;
@@ -84,7 +85,7 @@ void add(std::vector<PoleStart>& candidates, const char* start, const Sections& 
         candidates.push_back({start, std::move(fit)});
 }
 
-Sections fittedVectors(Sections sections, const FrequencyData& data, int times)
+SecondOrderSections fittedVectors(SecondOrderSections sections, const FrequencyData& data, int times)
 {
     for (int k = 0; k < times && sections.factors.allFinite(); ++k)
         sections = relocatePoles(sections, data);
@@ -92,7 +93,7 @@ Sections fittedVectors(Sections sections, const FrequencyData& data, int times)
 }
 
 /// The poles of a larger model, its least sections taken out one after the other.
-Sections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& options, double scale)
+SecondOrderSections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& options, double scale)
 {
     auto larger = options;
     larger.order = static_cast<int>(std::min<Index>(2 * order + 10, data.lines() / 8));

@@ -21,7 +21,7 @@ struct LinearIdentification {
     bool stable = false;  ///< by the region that belongs to sampleRate and alpha
     std::string start;    ///< where the model came from: "subspace", "vector fitting", "pruned", ..
     SearchSummary refinement;
-    std::optional<Sections> sections;  ///< of models with one input
+    std::optional<SecondOrderSections> sections;  ///< of models with one input
 };
 
 /// Linear identification of a frequency response [B 4.2, 4.3.2]: starts by subspace and by vector

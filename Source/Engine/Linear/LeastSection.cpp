@@ -13,7 +13,7 @@ namespace excursion {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-Sections withoutLeast(const PartialFractionFit& fit, const FrequencyData& data, bool odd)
+SecondOrderSections withoutLeast(const PartialFractionFit& fit, const FrequencyData& data, bool odd)
 {
     const auto& sections = fit.sections;
     const auto n = sections.order(), K = data.lines();

@@ -8,6 +8,6 @@ namespace excursion {
 /// The fit without the section that matters least: the one whose loss, the others' coefficients refitted, raises the
 /// cost least.
 /// @param odd  take out the lone real pole instead of a pair
-Sections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd);
+SecondOrderSections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd);
 
 }  // namespace excursion

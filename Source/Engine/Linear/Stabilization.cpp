@@ -156,7 +156,7 @@ void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeO
     result.model = realize(found.fit.sections, found.fit.C, found.fit.D);
     result.delay = found.delay;
     if (!options.seconds)
-        result.delayDeviation = found.deviation;
+        result.delayStandardError = found.standardError;
     result.reason = found.message;
     result.steps.push_back(stepOf("delayed", result.model, delayed(data, found.delay), 1.0));
 }

@@ -30,7 +30,7 @@ Complex DiffusiveLadder::integral(Complex s) const
     return sum;
 }
 
-bool LadderOptions::isValid(std::string* reason) const
+bool DiffusiveLadderOptions::isValid(std::string* reason) const
 {
     const bool valid = lowFrequency > 0.0 && highFrequency > lowFrequency && std::isfinite(highFrequency)
                        && cellsPerDecade >= 0.5 && cellsPerDecade <= 8.0;
@@ -40,7 +40,7 @@ bool LadderOptions::isValid(std::string* reason) const
                "a ladder needs a band that begins above 0 Hz and ends above its begin, and 0.5 to 8 cells a decade");
 }
 
-DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
+DiffusiveLadder ladderFor(double exponent, const DiffusiveLadderOptions& options)
 {
     std::string reason;
     if (!options.isValid(&reason))

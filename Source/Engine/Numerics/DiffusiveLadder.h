@@ -34,7 +34,7 @@ struct DiffusiveLadder {
 ///     n      1       1.5     2       3       4       5
 ///     error  2.8e-2  3.3e-3  3.8e-4  5.3e-6  7.3e-8  1.0e-9
 /// that of the rule itself times sin(pi a).
-struct LadderOptions {
+struct DiffusiveLadderOptions {
     double lowFrequency = 10.0, highFrequency = 20000.0;  ///< Hz
     double cellsPerDecade = 3.0;
 
@@ -42,6 +42,6 @@ struct LadderOptions {
 };
 
 /// Throws Error (usage) unless 0 < exponent < 1 and the options are valid.
-DiffusiveLadder ladderFor(double exponent, const LadderOptions&);
+DiffusiveLadder ladderFor(double exponent, const DiffusiveLadderOptions&);
 
 }  // namespace excursion

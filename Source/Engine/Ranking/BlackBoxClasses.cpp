@@ -77,7 +77,7 @@ FractionalGrid gridOf(const RankedTake& data, const FractionalPnlss& model)
 
 FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& grid, int degree, int parameters)
 {
-    const auto play = [model, grid](const PnlssRecord& record) {
+    const auto play = [model, grid](const InputOutputRecord& record) {
         FractionalRecursion::Trajectory run;
         if (!FractionalRecursion(model, grid, false, false)
                  .run(model, fineInput(record.input, grid.substeps, record.periodic, record.skip), 1e100, run))
@@ -93,7 +93,7 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
 FittedClass fitLinearClass(const RankedTake& data, const Progress&)
 {
     const auto n = data.linear.order();
-    return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); },
+    return {[model = data.linear](const InputOutputRecord& record) { return simulate(model, record.input); },
             ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear),
             toJson(NamedStateSpace {"linear",
                                     {std::string(name(data.input.quantity))},
@@ -117,7 +117,7 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
     fitting.degree = data.degree;
     const auto fit = fitHammerstein(data.take.measurement().sampleRate, data.records.estimation,
                                     data.records.validation, fitting, progress);
-    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
+    return {[model = fit.model](const InputOutputRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
             static_cast<int>(fit.model.parameters()), true, documentOf(data, "hammerstein", fit.model)};
 }
@@ -132,7 +132,7 @@ FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
     for (const auto& step : fit.steps)
         if (step.branch)
             description += ", " + std::string(name(*step.branch));
-    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); }, description,
+    return {[model = fit.model](const InputOutputRecord& record) { return simulate(model, record.input); }, description,
             static_cast<int>(fit.model.parameters()), fit.stable, documentOf(data, "block", fit.model)};
 }
 
@@ -144,7 +144,7 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
     fitting.maximumIterations = data.iterations;
     const auto fit = fitNarx(data.take.measurement().sampleRate, data.records.estimation, data.records.validation,
                              fitting, progress);
-    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
+    return {[model = fit.model](const InputOutputRecord& record) { return simulate(model, record.input); },
             std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree "
                 + std::to_string(fitting.degree),
             static_cast<int>(fit.model.parameters()), fit.stable, documentOf(data, "narx", fit.model)};
@@ -187,7 +187,7 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
             done += share;
         }
     return {
-        [model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
+        [model = best.model](const InputOutputRecord& record) { return simulate(model, record.input); },
         ofOrder("", best.model.linear.order(), data.degree), static_cast<int>(Recursion(best.model, true).parameters()),
         best.stable,
         toJson(NamedPnlss {

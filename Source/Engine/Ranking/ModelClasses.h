@@ -20,7 +20,7 @@ struct RankedTake {
     const Channel& input;
     const Channel& output;
     int level;
-    PnlssRecords records;
+    InputOutputRecords records;
     FrequencyData response;  ///< output over input
     int order;               ///< of the polynomial models
     bool orderGiven;         ///< else other orders may be tried as well
@@ -31,7 +31,7 @@ struct RankedTake {
 
 /// A fitted class: how it plays a record from rest (N x 1), and what it says of itself.
 struct FittedClass {
-    std::function<Eigen::MatrixXd(const PnlssRecord&)> play;
+    std::function<Eigen::MatrixXd(const InputOutputRecord&)> play;
     std::string description;
     int parameters = 0;
     bool stable = false;

@@ -45,7 +45,7 @@ const std::vector<Fitting>& fittings()
     return all;
 }
 
-double errorDb(const FittedClass& fitted, const std::vector<PnlssRecord>& records)
+double errorDb(const FittedClass& fitted, const std::vector<InputOutputRecord>& records)
 {
     std::vector<Eigen::MatrixXd> outputs;
     for (const auto& record : records)

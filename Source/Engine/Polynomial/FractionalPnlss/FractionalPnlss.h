@@ -39,7 +39,7 @@ std::vector<Eigen::MatrixXcd> respondLinear(const FractionalPnlss&, const std::v
 struct FractionalGrid {
     double sampleRate = 0.0;  ///< Hz, of inputs and outputs
     int substeps = 1;
-    LadderOptions band;
+    DiffusiveLadderOptions band;
 
     double step() const { return 1.0 / (sampleRate * substeps); }
 };

@@ -40,8 +40,8 @@ struct Way {
 /// The ways of one fit.
 class Fitting {
 public:
-    Fitting(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
-            const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+    Fitting(const std::vector<PnlssStart>& starts, const std::vector<InputOutputRecord>& estimation,
+            const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
         : start_(starts.front().model),
           estimation_(estimation),
           validation_(validation),
@@ -156,7 +156,7 @@ private:
 
     void grow(Way& way, int iterations)
     {
-        std::vector<PnlssRecord> parts;
+        std::vector<InputOutputRecord> parts;
         for (const auto& record : estimation_) {
             const auto rows = record.skip + (record.input.rows() - record.skip + 3) / 4;
             parts.push_back({record.input.topRows(rows), record.output.topRows(rows), record.skip, false});
@@ -221,14 +221,14 @@ private:
     }
 
     const Pnlss& start_;
-    const std::vector<PnlssRecord>&estimation_, &validation_;
+    const std::vector<InputOutputRecord>&estimation_, &validation_;
     const PnlssFitOptions& options_;
     SimulationError problem_;
     SearchOptions searching_;
     int iterations_ = 0;
 };
 
-void requireStart(const PnlssStart& start, const Pnlss& structure, const std::vector<PnlssRecord>& estimation)
+void requireStart(const PnlssStart& start, const Pnlss& structure, const std::vector<InputOutputRecord>& estimation)
 {
     std::string reason;
     const auto n = structure.linear.order();
@@ -247,7 +247,7 @@ void requireStart(const PnlssStart& start, const Pnlss& structure, const std::ve
 
 }  // namespace
 
-double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& records,
+double relativeErrorDb(const Pnlss& model, const std::vector<InputOutputRecord>& records,
                        const std::vector<VectorXd>& initialStates)
 {
     const Recursion recursion(model, false);
@@ -261,14 +261,16 @@ double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& recor
     return outputErrorDb(outputs, records);
 }
 
-PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& options,
+                  const Progress& progress)
 {
     return fitPnlss(std::vector<PnlssStart> {{start, {}}}, estimation, validation, options, progress);
 }
 
-PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& options,
+                  const Progress& progress)
 {
     std::string reason = "there is no start";
     if (starts.empty() || !options.isValid(&reason))

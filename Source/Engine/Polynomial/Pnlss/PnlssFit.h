@@ -5,7 +5,7 @@
 #include "Engine/Polynomial/Pnlss/Pnlss.h"
 #include "Engine/Polynomial/Pnlss/PnlssFitOptions.h"
 #include "Engine/Polynomial/Pnlss/ResidualTest.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Progress.h"
 
 #include <optional>
@@ -35,7 +35,7 @@ struct PnlssFit : SearchSummary {
 
 /// 20 log10(|model - measured| / |measured|) over all records and outputs, samples after `skip`; +infinity when the
 /// model runs away.
-double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
+double relativeErrorDb(const Pnlss&, const std::vector<InputOutputRecord>&,
                        const std::vector<Eigen::VectorXd>& initialStates = {});
 
 /// Levenberg-Marquardt on the simulation error [B 4.3.1, appendix C], columns scaled to unit length, singular
@@ -56,13 +56,13 @@ double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
 ///
 /// Grown: a quarter of a record lets errors of the model add up for a shorter time, and its error has fewer valleys.
 /// Weights of the spectrum come later.
-PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
 
 /// From several starts of one structure, such as linear models that were found in different ways (see LinearStarts.h):
 /// where one leads into a valley, another need not. Each is gone in the ways that the options name until one is good
 /// enough; then the best one goes on. Throws Error (usage) without a start, or where structures differ.
-PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
+PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
 
 }  // namespace excursion
