@@ -7,6 +7,7 @@
 #include "Engine/Signal/Fft.h"
 #include "Linear/Problem.h"
 #include "Polynomial/LinearStart.h"
+#include "Polynomial/QuadraticRecord.h"
 #include "Polynomial/RungeKutta.h"
 
 #include <algorithm>
@@ -236,29 +237,7 @@ TEST_CASE("The seed's loudspeaker is recovered to rounding from other inputs as 
         for (int seed = 1; seed <= 10; ++seed) {
             CAPTURE(tag, seed);
             Normal normal(seed);
-            // A flat random-phase multisine as long as the fixed problem's, from rest; the recursion is written out by
-            // itself.
-            const auto record = [&] {
-                constexpr Index N = 4096;
-                std::vector<std::complex<double>> spectrum(N / 2 + 1);
-                for (std::size_t k = 1; k < N / 2; ++k)
-                    // wrapped this often, a phase is uniform
-                    spectrum[k] = std::polar(1.0, 2.0 * std::numbers::pi * normal());
-                const auto period = inverseFft(spectrum, N);
-                Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), N);
-                u *= level * std::sqrt(static_cast<double>(N)) / u.norm();
-                Eigen::MatrixXd y(N, 1);
-                Eigen::Vector3d x = Eigen::Vector3d::Zero();
-                for (Index t = 0; t < N; ++t) {
-                    double products = 0.0;
-                    for (Index i = 0; i < 3; ++i)
-                        for (Index j = i; j < 3; ++j)
-                            products += x[i] * x[j];
-                    y(t, 0) = truth.C.row(0).dot(x) + truth.D(0, 0) * u(t, 0) + strength * products;
-                    x = (truth.A * x + truth.B * u(t, 0) + Eigen::Vector3d::Constant(strength * products)).eval();
-                }
-                return InputOutputRecord {u, y, 0, false};
-            };
+            const auto record = [&] { return quadraticRecord(truth, strength, level, normal); };
             const auto estimation = record(), validation = record();
             const auto found = recover(truth, estimation, validation);
             CHECK(found.fromTruth.estimationDb < -218.0);

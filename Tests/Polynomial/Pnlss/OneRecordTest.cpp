@@ -12,6 +12,7 @@
 #include "Engine/Polynomial/Pnlss/TangentTest.h"
 #include "Engine/Signal/Fft.h"
 #include "Linear/Problem.h"
+#include "Polynomial/QuadraticRecord.h"
 #include "Polynomial/RungeKutta.h"
 
 #include <complex>
@@ -41,27 +42,8 @@ StateSpace loudspeaker(double rate)
 /// It with all products of two states in every equation (4.4.1), one period of a random-phase multisine from rest.
 InputOutputRecord drawn(double rate, double strength, int seed)
 {
-    constexpr Index N = 4096;
-    const auto linear = loudspeaker(rate);
     Normal normal(static_cast<std::uint64_t>(seed));
-    std::vector<std::complex<double>> spectrum(N / 2 + 1);
-    for (std::size_t k = 1; k < N / 2; ++k)
-        // wrapped this often, a phase is uniform
-        spectrum[k] = std::polar(1.0, 2.0 * std::numbers::pi * normal());
-    const auto period = inverseFft(spectrum, N);
-    Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), N);
-    u *= (rate > 45000.0 ? 0.03 : 0.033) * std::sqrt(static_cast<double>(N)) / u.norm();
-    Eigen::MatrixXd y(N, 1);
-    Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    for (Index t = 0; t < N; ++t) {
-        double products = 0.0;
-        for (Index i = 0; i < 3; ++i)
-            for (Index j = i; j < 3; ++j)
-                products += x[i] * x[j];
-        y(t, 0) = linear.C.row(0).dot(x) + linear.D(0, 0) * u(t, 0) + strength * products;
-        x = (linear.A * x + linear.B * u(t, 0) + Eigen::Vector3d::Constant(strength * products)).eval();
-    }
-    return {u, y, 0, false};
+    return quadraticRecord(loudspeaker(rate), strength, rate > 45000.0 ? 0.03 : 0.033, normal);
 }
 
 /// Two thirds to fit, the last third to judge: as a take without periods is cut.
