@@ -147,7 +147,8 @@ TEST_CASE("The standard errors of a mixed-order impedance are the spread of its 
         const auto fit = fitMixedImpedance(data);
         REQUIRE(fit.converged());
         for (std::size_t j = 0; j < square.size(); ++j)
-            square[j] += std::pow((fit.model.values()[j] - driver.values()[j]) / fit.deviation.values()[j], 2) / draws;
+            square[j] += std::pow((fit.model.values()[j] - driver.values()[j]) / fit.standardErrors.values()[j], 2)
+                         / draws;
     }
     for (const double s : square)
         CHECK(s == Approx(1.0).margin(0.35));  // 3.5 standard deviations of chi^2 over 200
@@ -164,7 +165,7 @@ TEST_CASE("A mixed-order impedance is met exactly, with alpha free or given")
         CHECK(fit.errorDb < -200.0);
         for (std::size_t j = 0; j < 6; ++j)
             CHECK(fit.model.values()[j] == Approx(driver.values()[j]).epsilon(1e-9));
-        CHECK((fit.deviation.alpha > 0.0) == free);
+        CHECK((fit.standardErrors.alpha > 0.0) == free);
     }
 }
 
@@ -187,8 +188,8 @@ TEST_CASE("The fixed problem: an impedance with R + L s^1/2, at the noise")
     CHECK(mixed.converged());
     CHECK(mixed.errorDb < -39.6);  // the noise floor
     CHECK(mixed.chiSquared == Approx(400.0).margin(60.0));
-    CHECK(std::abs(mixed.model.alpha - 0.5) < 2.0 * mixed.deviation.alpha);
-    CHECK(mixed.deviation.alpha < 2e-3);
+    CHECK(std::abs(mixed.model.alpha - 0.5) < 2.0 * mixed.standardErrors.alpha);
+    CHECK(mixed.standardErrors.alpha < 2e-3);
     CHECK(2.0 * distanceToTruth([&](double f) { return mixed.model.at(f); }) < 22.5);  // 99.9 % of chi^2 of 6
 
     FractionalOptions options;
