@@ -77,9 +77,14 @@ void addImprove(CLI::App& app, Terminal& terminal)
     verb->add_option("TAKE", o->take,
                      "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")
         ->required();
-    verb->add_option("--effects,--with", o->with, "effects that the first model has already, separated by commas")
+    auto* effects = verb->add_option("--effects", o->with,
+                                     "effects that the first model has already, separated by commas")
+                        ->delimiter(',')
+                        ->type_name("EFFECT");
+    verb->add_option("--with", o->with, "the same, as it was called before")
         ->delimiter(',')
-        ->type_name("EFFECT");
+        ->excludes(effects)
+        ->group("");
     verb->add_option("--out", o->out, "folder for ladder.json, model.json and report.html")
         ->required()
         ->type_name("DIR");
