@@ -106,7 +106,8 @@ double numpySeconds()
     const std::string script = R"(
 import itertools, time
 import numpy as np
-ex = np.array([[c.count(i) for i in range(4)] for d in (2, 3) for c in itertools.combinations_with_replacement(range(4), d)])
+chosen = [c for d in (2, 3) for c in itertools.combinations_with_replacement(range(4), d)]
+ex = np.array([[c.count(i) for i in range(4)] for c in chosen])
 K = len(ex)
 A = np.array([[.8,.3,0],[-.3,.8,.1],[0,0,.5]]); E = np.full((3, K), .003); C = np.ones(3); F = np.full(K, .003)
 slope = [np.maximum(ex - np.eye(4, dtype=int)[j], 0) for j in range(3)]
@@ -120,7 +121,9 @@ for t in range(N):
     J[t, X.shape[1]:] = r
     X = (A + E @ dp) @ X + np.kron(np.eye(3), r)
 jacobian = (time.process_time() - t0) * 16384 / N
-t0 = time.process_time(); np.linalg.svd(np.tile(J, (8, 1)) + 1e-3 * rng.standard_normal((16384, J.shape[1])), full_matrices=False)
+t0 = time.process_time()
+tall = np.tile(J, (8, 1)) + 1e-3 * rng.standard_normal((16384, J.shape[1]))
+np.linalg.svd(tall, full_matrices=False)
 print(jacobian, time.process_time() - t0)
 )";
     const char* python = std::getenv("EXCURSION_PYTHON");

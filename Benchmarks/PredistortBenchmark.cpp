@@ -3,6 +3,7 @@
 // 48 kHz, oversampling 2: 4 % each for the predistorter, which plays what it reckons with (Effect::undone), and the
 // speaker, which plays all.
 #include "AllEffects.h"
+#include "CoreShare.h"
 
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/Speaker.h"
@@ -10,40 +11,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <vector>
 
 using namespace excursion;
-
-namespace {
-
-double coreNow()
-{
-    timespec time {};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// The share of a core, the least and the median of many stretches of a tenth of a second: others who use the machine
-/// make it larger, never smaller.
-template <class Engine>
-void measure(const char* name, Engine& engine, const std::vector<double>& input, double sampleRate, int oversampling)
-{
-    constexpr std::size_t block = 64;
-    const auto stretch = static_cast<std::size_t>(0.1 * sampleRate) / block * block;
-    std::vector<double> out(block), shares;
-    for (std::size_t n = 0; n + stretch <= input.size(); n += stretch) {
-        const double start = coreNow();
-        for (std::size_t k = 0; k < stretch; k += block)
-            engine.process(input.data() + n + k, out.data(), block);
-        shares.push_back(100.0 * (coreNow() - start) / (static_cast<double>(stretch) / sampleRate));
-    }
-    std::sort(shares.begin(), shares.end());
-    std::printf("%-12s %5.1f kHz, oversampling %d: %.2f %% of a core (median %.2f %%), %.0f x real time\n", name,
-                1e-3 * sampleRate, oversampling, shares.front(), shares[shares.size() / 2], 100.0 / shares.front());
-}
-
-}  // namespace
 
 int main()
 {
@@ -56,13 +26,14 @@ int main()
         stimulus.bandHigh = 8000.0;
         stimulus.rms = 3.0;
         const auto input = multisine(stimulus, chooseLines(stimulus), 0);
+        const auto how = "oversampling " + std::to_string(oversampling);
         Predistorter predistorter(model, {sampleRate, oversampling});
-        measure("predistorter", predistorter, input, sampleRate, oversampling);
+        measureShare("predistorter", predistorter, input, sampleRate, how);
         Predistorter guarded(model, {sampleRate, oversampling}, {1.0, 20e-3, 100.0, 1000.0});
-        measure("  with limits", guarded, input, sampleRate, oversampling);
+        measureShare("  with limits", guarded, input, sampleRate, how);
         Predistorter limiting(model, {sampleRate, oversampling}, {1.0, 1e-3, 3.0, 0.5});
-        measure("  limiting", limiting, input, sampleRate, oversampling);
+        measureShare("  limiting", limiting, input, sampleRate, how);
         Speaker speaker(model, {sampleRate, oversampling});
-        measure("speaker", speaker, input, sampleRate, oversampling);
+        measureShare("speaker", speaker, input, sampleRate, how);
     }
 }

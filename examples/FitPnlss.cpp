@@ -11,7 +11,7 @@
 using namespace excursion;
 
 // y(t+1) = 1.6 y(t) - 0.8 y(t-1) - 0.05 y(t)^3 + 0.2 u(t), which is no more than a polynomial in two states.
-PnlssRecord play(const std::vector<double>& period)
+InputOutputRecord play(const std::vector<double>& period)
 {
     const auto length = static_cast<Eigen::Index>(period.size());
     Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), length).replicate(2, 1),
@@ -31,7 +31,7 @@ int main()
     signal.shape = Shape::white;
     signal.rms = 0.8;
     const auto lines = chooseLines(signal);
-    std::vector<PnlssRecord> records;
+    std::vector<InputOutputRecord> records;
     for (int realization = 0; realization < 3; ++realization)
         records.push_back(play(multisine(signal, lines, realization)));
 
@@ -49,7 +49,7 @@ int main()
     // all monomials of degree 2 and 3
     const auto start = withTerms(identify(frequencyDataOf(response), options).model, 3);
 
-    const std::vector<PnlssRecord> estimation(records.begin(), records.begin() + 2), validation {records[2]};
+    const std::vector<InputOutputRecord> estimation(records.begin(), records.begin() + 2), validation {records[2]};
     const auto fit = fitPnlss(start, estimation, validation);
     std::cout << "linear model " << relativeErrorDb(start, validation) << " dB, with " << start.terms() << " monomials "
               << fit.validationDb << " dB, on a record that no fit saw; " << fit.iterations << " iterations\n";

@@ -2,6 +2,7 @@
 // The impedance of a loudspeaker on 200 frequencies becomes a linear model of order 3, from which its resonance and
 // losses are read.
 #include "Engine/Linear/Identify.h"
+#include "Engine/Linear/RationalLeastSquares.h"
 #include "Engine/Linear/Response.h"
 
 #include <cmath>
@@ -33,9 +34,17 @@ int main()
 
     IdentifyOptions options;
     options.order = 3;
-    const auto result = identify(frequencyDataOf(admittance), options);
+    const auto data = frequencyDataOf(admittance);
+    const auto result = identify(data, options);
     std::cout << "error " << result.errorDb << " dB, " << (result.stable ? "stable" : "not stable") << "; "
               << result.refinement.message << "\n";
+
+    // What linear least squares make of it (Levy 1959, invfreqz), which count the error more where the denominator is
+    // large.
+    const auto levy = fitRational(data, {.order = 3}).fit;
+    std::cout << "Levy's least squares: error "
+              << relativeErrorDb(admittance, frfOf(realize(levy.sections, levy.C, levy.D), admittance.frequency))
+              << " dB\n";
 
     // The zeros of the admittance are the poles of the impedance: 0, and the mechanical resonance.
     for (const auto zero : zeros(result.model)) {

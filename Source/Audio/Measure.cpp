@@ -58,7 +58,7 @@ public:
         auto frames = procedure_.frames();
         while (!procedure_.ended()) {
             std::this_thread::sleep_for(pollEvery);
-            procedure_.take(channels);
+            procedure_.readRecorded(channels);
             if (options.stop.stop_requested())
                 procedure_.stop();
             const auto now = Clock::now();
@@ -81,7 +81,7 @@ public:
                 options.report(status);
             }
         }
-        procedure_.take(channels);
+        procedure_.readRecorded(channels);
         open_ = false;
         stream_.stop();
         return true;

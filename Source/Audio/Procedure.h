@@ -97,7 +97,7 @@ public:
     Meter meter(std::size_t watched);
 
     /// One thread: appends what was recorded since the last call, one vector an input. @return the frames
-    std::size_t take(std::vector<std::vector<float>>& channels) { return ring_.read(channels); }
+    std::size_t readRecorded(std::vector<std::vector<float>>& channels) { return ring_.read(channels); }
 
     // Once it has ended:
     const Ending& ending() const { return ending_; }

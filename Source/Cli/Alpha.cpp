@@ -22,10 +22,10 @@ std::optional<double> alphaFrom(const std::string& text)
     return alpha;
 }
 
-std::string withError(double value, double deviation)
+std::string withError(double value, double standardError)
 {
     return significant(value, 5)
-           + (std::isfinite(deviation) && deviation > 0.0 ? " +- " + significant(deviation, 2) : "");
+           + (std::isfinite(standardError) && standardError > 0.0 ? " +- " + significant(standardError, 2) : "");
 }
 
 }  // namespace excursion::cli

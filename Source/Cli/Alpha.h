@@ -10,6 +10,6 @@ namespace excursion::cli {
 std::optional<double> alphaFrom(const std::string&);
 
 /// "0.5006 +- 0.001"; without the error where it is not known.
-std::string withError(double value, double deviation);
+std::string withError(double value, double standardError);
 
 }  // namespace excursion::cli

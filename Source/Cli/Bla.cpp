@@ -155,10 +155,10 @@ Found fromRecord(const Measurement& take, Quantity output, int segment)
     const auto growth = restGrowth(take, output, {.segment = segment});
     found.document["rest"] = {{"verdict", name(growth.verdict)},
                               {"slope", growth.slope},
-                              {"standardError", growth.standardError},
+                              {"standardError", numberOrNull(growth.standardError)},
                               {"rangeDb", growth.range},
                               {"excessDb", numberOrNull(growth.excessDb)},
-                              {"gainDb", growth.gainDb},
+                              {"gainDb", growth.gainDb ? Json(*growth.gainDb) : Json()},
                               {"segments", growth.segments},
                               {"sentence", growth.sentence()}};
     found.remarks.push_back(growth.sentence());

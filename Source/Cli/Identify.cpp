@@ -61,7 +61,7 @@ Json json(const OrderSweepEntry& entry)
     Json object {{"order", entry.order},
                  {"errorDb", entry.found.errorDb},
                  {"weightedErrorDb", decibelsOf(entry.found.cost)},
-                 {"likelihood", numberOrNull(entry.found.chiSquared)},
+                 {"chiSquared", numberOrNull(entry.found.chiSquared)},
                  {"mdl", entry.mdl},
                  {"validationDb", numberOrNull(entry.validationDb.value_or(std::numeric_limits<double>::quiet_NaN()))},
                  {"stable", entry.found.stable},
@@ -103,7 +103,7 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     std::vector<std::vector<std::string>> rows;
     Json orders = Json::array();
     for (const auto& e : sweep.entries) {
-        rows.push_back({std::to_string(e.order), withError(e.found.model.alpha, e.found.alphaDeviation),
+        rows.push_back({std::to_string(e.order), withError(e.found.model.alpha, e.found.alphaStandardError),
                         fixed(e.found.errorDb, 1), fixed(decibelsOf(e.found.cost), 1), significant(e.mdl, 6),
                         fixed(e.found.sectorMargin, 3), e.found.start});
         Json curve = Json::array();
@@ -111,10 +111,10 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
             curve.push_back(Json::array({point.alpha, point.chiSquared}));
         orders.push_back({{"order", e.order},
                           {"alpha", e.found.model.alpha},
-                          {"alphaDeviation", numberOrNull(e.found.alphaDeviation)},
+                          {"alphaStandardError", numberOrNull(e.found.alphaStandardError)},
                           {"errorDb", e.found.errorDb},
                           {"weightedErrorDb", decibelsOf(e.found.cost)},
-                          {"likelihood", numberOrNull(e.found.chiSquared)},
+                          {"chiSquared", numberOrNull(e.found.chiSquared)},
                           {"mdl", e.mdl},
                           {"sectorMargin", numberOrNull(e.found.sectorMargin)},
                           {"stable", e.found.stable},
@@ -170,12 +170,13 @@ void runMixed(const IdentifyArguments& options, const OpenResponse& open, const 
     document["lines"] = data.lines();
     std::vector<std::vector<std::string>> rows;
     for (std::size_t k = 0; k < names.size(); ++k) {
-        const double value = fit.model.values()[k], deviation = fit.deviation.values()[k];
-        rows.push_back({names[k][1], significant(value, 5), significant(deviation, 2), names[k][2]});
-        document[names[k][0]] = {{"value", value}, {"deviation", numberOrNull(deviation)}, {"unit", names[k][2]}};
+        const double value = fit.model.values()[k], standardError = fit.standardErrors.values()[k];
+        rows.push_back({names[k][1], significant(value, 5), significant(standardError, 2), names[k][2]});
+        document[names[k][0]] = {
+            {"value", value}, {"standardError", numberOrNull(standardError)}, {"unit", names[k][2]}};
     }
     document["errorDb"] = fit.errorDb;
-    document["likelihood"] = numberOrNull(fit.chiSquared);
+    document["chiSquared"] = numberOrNull(fit.chiSquared);
     document["converged"] = fit.converged();
     document["stopped"] = fit.message;
     terminal.say("impedance, " + std::to_string(data.lines())

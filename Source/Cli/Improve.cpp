@@ -23,7 +23,7 @@ namespace {
 
 struct ImproveArguments {
     std::string take, out;
-    std::vector<std::string> with;
+    std::vector<std::string> with, former;
 };
 
 /// The page is the last and the least: without it the ladder is still whole. It is drawn from the ladder as it was
@@ -77,14 +77,18 @@ void addImprove(CLI::App& app, Terminal& terminal)
     verb->add_option("TAKE", o->take,
                      "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")
         ->required();
-    verb->add_option("--with", o->with, "effects that the first model has already, separated by commas")
+    verb->add_option("--effects", o->with, "effects that the first model has already, separated by commas")
         ->delimiter(',')
         ->type_name("EFFECT");
+    verb->add_option("--with", o->former, "the same, as it was called before")->delimiter(',')->group("");
     verb->add_option("--out", o->out, "folder for ladder.json, model.json and report.html")
         ->required()
         ->type_name("DIR");
     verb->footer("Exit code 1: the take is not fit for use.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
+    verb->callback([o, &terminal] {
+        o->with.insert(o->with.end(), o->former.begin(), o->former.end());
+        run(*o, terminal);
+    });
 }
 
 }  // namespace excursion::cli

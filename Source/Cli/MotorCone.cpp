@@ -39,8 +39,8 @@ void identifyMotorAndCone(const MotorConeArguments& arguments, Terminal& termina
     document["motorErrorDb"] = found.motorErrorDb;
     document["coneErrorDb"] = found.coneErrorDb;
     document["errorDb"] = found.errorDb;
-    document["motorLikelihood"] = numberOrNull(found.motorChiSquared);
-    document["likelihood"] = numberOrNull(found.chiSquared);
+    document["motorChiSquared"] = numberOrNull(found.motorChiSquared);
+    document["chiSquared"] = numberOrNull(found.chiSquared);
     document["refined"] = found.refined;
     document["toldUpTo"] = found.toldUpTo;
     document["sentence"] = found.sentence;

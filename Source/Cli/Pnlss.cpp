@@ -321,8 +321,10 @@ void addPnlss(CLI::App& app, Terminal& terminal)
         masks.emplace_back(name(mask));
     verb->add_option("TAKE", o->response.path, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--order", o->order, "number of states")->check(CLI::Range(1, 100));
-    verb->add_option("--start", o->start,
-                     "begin the fit at this model: a linear one of identify, one that pnlss kept, or a driver")
+    verb->add_option(
+            "--start", o->start,
+            "begin the fit at this model: a linear one of identify, one that pnlss kept, a block model of rank, or a "
+            "driver")
         ->type_name("MODEL");
     verb->add_option("--alpha", o->alpha,
                      "states of fractional order alpha, a number below 1, or free: one that starts there and moves");

@@ -44,7 +44,7 @@ struct PnlssTake {
     Measurement take;
     const Channel* input = nullptr;
     const Channel* output = nullptr;
-    PnlssRecords records;
+    InputOutputRecords records;
 
     Eigen::MatrixXd wholeInput() const;
     bool periodic() const { return take.excitation && !take.excitation->lines.empty(); }

@@ -3,6 +3,7 @@
 #include "Cli/Pnlss.h"
 #include "Engine/GreyBox/MixedImpedance.h"
 #include "Engine/GreyBox/MixedOrderPnlss.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 
 #include "Engine/Error.h"
 #include "Engine/Fractional/FractionalIdentify.h"
@@ -78,7 +79,7 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
                    fit.stable,
                    fit,
                    fit.history,
-                   withError(fit.model.alpha, fit.alphaDeviation),
+                   withError(fit.model.alpha, fit.alphaStandardError),
                    {},
                    {}};
         named = {std::filesystem::path(options.response.path).stem().string(),

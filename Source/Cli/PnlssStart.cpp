@@ -6,6 +6,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Identify.h"
+#include "Engine/Polynomial/Block/BlockModelFile.h"
 #include "Engine/Polynomial/Pnlss/LinearStarts.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Ranking/TaylorExpansion.h"
@@ -54,6 +55,15 @@ Pnlss keptStart(const PnlssArguments& options, const PnlssTake& data)
         requirePorts(named.inputs, named.outputs, data, what);
         requireRate(named.model.linear.sampleRate, data, what);
         return named.model;
+    }
+    if (format == "excursion-block-model") {
+        if (options.chosenTerms)
+            throw Error(Error::Kind::usage,
+                        what + " has its monomials: leave --degree, --mask, --terms and --offset out.");
+        const auto named = readBlockModel(options.start);
+        requirePorts({named.input}, {named.output}, data, what);
+        requireRate(named.model.linear.sampleRate, data, what);
+        return closedLoop(named.model);
     }
     if (folder || format == "excursion-model" || format == "excursion-ladder") {
         if (data.input->quantity != Quantity::voltage)

@@ -4,6 +4,7 @@
 #include "Cli/OpenResponse.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
+#include "Engine/Linear/Response.h"
 
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
@@ -71,8 +72,8 @@ void print(const Stabilization& result, Terminal& terminal)
     terminal.table({"model", "order", "stable", "error dB", "weighted dB"}, rows);
     if (result.delay != 0.0)
         terminal.say("The model answers " + significant(1e6 * result.delay, 5) + " us later than the response"
-                     + (result.delayDeviation && std::isfinite(*result.delayDeviation)
-                            ? " (+- " + significant(1e6 * *result.delayDeviation, 2) + " us)."
+                     + (result.delayStandardError && std::isfinite(*result.delayStandardError)
+                            ? " (+- " + significant(1e6 * *result.delayStandardError, 2) + " us)."
                             : "."));
     terminal.say("Ended: " + result.reason + ".");
 }
@@ -122,7 +123,7 @@ void run(const StabilizeArguments& options, Terminal& terminal)
                                      {"errorDb", step.errorDb},
                                      {"weightedErrorDb", step.weightedErrorDb}});
     document["delay"] = result.delay;
-    document["delayDeviation"] = numberOrNull(result.delayDeviation.value_or(unknown));
+    document["delayStandardError"] = numberOrNull(result.delayStandardError.value_or(unknown));
     document["stopped"] = result.reason;
     document["stable"] = isStable(open);
     const auto kept = documentOf(open);

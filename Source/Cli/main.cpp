@@ -37,7 +37,8 @@ constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing
   excursion parameters ladder --out ts.csv    Thiele/Small parameters and more, for other programs
 
 No loudspeaker at hand? excursion virtual --seed 1 --out take draws one, with something hidden in it.
-A take is a folder (measurement.json and its WAV), or a file of another program, such as a .zma, .csv or .txt. Each verb has its own --help.)";
+A take is a folder (measurement.json and its WAV), or a file of another program, such as a .zma, .csv or .txt.
+Each verb has its own --help.)";
 
 constexpr auto footer =
     R"(Exit codes: 0 done, 1 done and the answer is no, 2 a wrong option, 3 a file or device that cannot be used,

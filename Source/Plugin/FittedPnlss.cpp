@@ -20,12 +20,12 @@ struct Work {
     const Measurement& take;
     const Identified& linear;
     const PnlssWish& wish;
-    PnlssRecords records;
+    InputOutputRecords records;
     bool periodic = false;
     std::vector<std::string> inputs, outputs;
 };
 
-void keepErrors(FittedPnlss& told, double estimationDb, double validationDb, const PnlssRecords& records)
+void keepErrors(FittedPnlss& told, double estimationDb, double validationDb, const InputOutputRecords& records)
 {
     told.estimationDb = estimationDb;
     if (!records.validation.empty())

@@ -80,7 +80,7 @@ void identifyFractional(Identified& one, const Progress& progress)
     const auto& chosen = sweep.entries[sweep.chosen].found;
     one.base = chosen.model.form;
     one.alpha = chosen.model.alpha;
-    one.alphaDeviation = chosen.alphaDeviation;
+    one.alphaStandardError = chosen.alphaStandardError;
     one.sentence = chosen.warning;
     if (sweep.entries.size() < 2)
         return;
@@ -197,8 +197,8 @@ std::string shortWordsOf(const Identified& one)
                 + (one.stable ? ", stable" : ", not stable");
     if (fractional(one)) {
         text += ", \u03b1 "
-                + (one.alphaDeviation > 0.0 ? withError(one.alpha, one.alphaDeviation, "")
-                                            : engineering(one.alpha, "", 3));
+                + (one.alphaStandardError > 0.0 ? withError(one.alpha, one.alphaStandardError, "")
+                                                : engineering(one.alpha, "", 3));
     }
     if (one.delay != 0.0)
         text += ", " + engineering(std::abs(one.delay), "s", 3) + (one.delay > 0.0 ? " late" : " early");

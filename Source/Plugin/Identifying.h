@@ -48,7 +48,7 @@ struct Identified {
     std::string name;       ///< of the take
     StateSpace base;        ///< as it was identified; of fractional order in lambda = s^alpha
     StateSpace model;       ///< as it was shaped
-    double alpha = 1.0, alphaDeviation = 0.0;
+    double alpha = 1.0, alphaStandardError = 0.0;
     double delay = 0.0;  ///< s: the model has the response times exp(-j w delay)
     Frf shown;           ///< its response without that delay, on the measured frequencies
     double errorDb = 0.0;

@@ -7,7 +7,7 @@
 #include "Plots/BatchPlots.h"
 #include "Plots/Words.h"
 #include "Report/Page.h"
-#include "Report/Sections.h"
+#include "Report/Chapters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plots/Plots.h"
-#include "Report/Sections.h"
+#include "Report/Chapters.h"
 
 namespace excursion {
 

@@ -65,15 +65,15 @@ void addSweep(Page& page, const JsonField& document)
         if (!entry.has("curve") || entry.at("curve").items().size() < 2)
             continue;
         Plot curve;
-        curve.title = "Likelihood against \u03b1, order " + fixedText(errors.order.back(), 0);
+        curve.title = "\u03c7\u00b2 against \u03b1, order " + fixedText(errors.order.back(), 0);
         curve.x = {"\u03b1", "", false, 0.0, 0.0, {}};
-        curve.y = {"V over its least", "", true, 0.0, 0.0, {}};
-        Series series {"V", Role::model, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+        curve.y = {"\u03c7\u00b2 over its least", "", true, 0.0, 0.0, {}};
+        Series series {"\u03c7\u00b2", Role::model, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
         double least = std::numeric_limits<double>::infinity();
         for (const auto& point : entry.at("curve").items()) {
             const auto pair = point.numbers();
             if (pair.size() != 2)
-                point.refuse("alpha and V");
+                point.refuse("alpha and chi squared");
             series.x.push_back(pair[0]);
             series.y.push_back(pair[1]);
             least = std::min(least, pair[1]);

@@ -2,7 +2,7 @@
 #include "Report/Report.h"
 
 #include "Engine/Document/DraftFile.h"
-#include "Report/Sections.h"
+#include "Report/Chapters.h"
 
 namespace excursion {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plots/Plots.h"
 #include "Plots/Words.h"
-#include "Report/Sections.h"
+#include "Report/Chapters.h"
 
 #include <algorithm>
 

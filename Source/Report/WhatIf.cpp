@@ -4,7 +4,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Plots/Plots.h"
 #include "Plots/Words.h"
-#include "Report/Sections.h"
+#include "Report/Chapters.h"
 
 #include <algorithm>
 #include <cmath>

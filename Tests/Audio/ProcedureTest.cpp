@@ -64,7 +64,7 @@ struct Bench {
             if (procedure.ended())
                 --after;
         }
-        procedure.take(recorded);
+        procedure.readRecorded(recorded);
     }
 
     void block(std::size_t frames)

@@ -3,6 +3,8 @@
 #include "BlackBox/EveryClass.h"
 
 #include "Engine/Error.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
+#include "Engine/Polynomial/Narx/NarxRecursion.h"
 
 #include <catch2/catch.hpp>
 
@@ -92,7 +94,7 @@ TEST_CASE("The stimulus of records comes back when it is played", "[form]")
 {
     const auto stimulus = pinkStimulus(3.0);
     const auto period = playedAs(stimulus, 48000.0, 16384, 8);
-    PnlssRecord record;
+    InputOutputRecord record;
     record.input = Eigen::Map<const Eigen::VectorXd>(period.data(), 16384);
     record.output = record.input;
     record.periodic = true;

@@ -132,6 +132,27 @@ TEST_CASE("pnlss of one record arrives at its noise or says that it did not, and
     REQUIRE(led.code == 0);
     CHECK(nlohmann::json::parse(led.out).at("arrived") == true);
 
+    // A block model without a bend is that linear model, and its loop can bend.
+    const std::vector<double> straight {0.0, 0.0};
+    const nlohmann::json block {{"format", "excursion-block-model"},
+                                {"version", 1},
+                                {"name", "straight"},
+                                {"linear", nlohmann::json::parse(bytesOf(linear))},
+                                {"hammerstein", straight},
+                                {"wiener", straight},
+                                {"feedback", straight},
+                                {"offset", 0.0}};
+    const auto loop = (scratch / "block.json").string();
+    std::ofstream(loop) << block;
+    const auto looped = runProgram(scratch.folder(), {"pnlss", take, "--start", loop, "--json"});
+    INFO(looped.err);
+    REQUIRE(looped.code == 0);
+    const auto closed = nlohmann::json::parse(looped.out);
+    CHECK(closed.at("history").front().get<double>()
+          == Approx(nlohmann::json::parse(led.out).at("history").front().get<double>()).margin(1.0));
+    CHECK(closed.at("estimationDb").get<double>() < closed.at("history").front().get<double>() - 10.0);
+
+    refusedWith(2, {"pnlss", take, "--start", loop, "--degree", "3"}, scratch, "leave --degree");
     refusedWith(2, {"pnlss", take, "--start", kept, "--degree", "3"}, scratch, "leave --degree");
     refusedWith(2, {"pnlss", take, "--start", kept, "--order", "3"}, scratch, "leave --order out");
     refusedWith(2, {"pnlss", take, "--start", kept, "--alpha", "0.5"}, scratch, "--alpha");

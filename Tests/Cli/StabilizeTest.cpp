@@ -60,7 +60,7 @@ TEST_CASE("stabilize brings an unstable model back, by each of its methods, and 
         CHECK(steps.back().at("weightedErrorDb").get<double>() < best + 0.5);
         CHECK(nlohmann::json::parse(bytesOf(out)) == document.at("model"));
         CHECK(document.at("model").at("order") == (method == "project" ? 3 : 5));
-        CHECK(document.at("delayDeviation").is_number() == (method == "delay"));
+        CHECK(document.at("delayStandardError").is_number() == (method == "delay"));
         if (method != "delay")
             CHECK_FALSE(document.at("model").contains("delay"));
         // What is stable already is left alone.

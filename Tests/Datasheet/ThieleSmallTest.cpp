@@ -45,6 +45,14 @@ Model withNumbers(Model model, const std::string& effect, const std::vector<doub
     return model;
 }
 
+const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>& figures, std::string_view symbol)
+{
+    const auto found = std::find_if(figures.begin(), figures.end(),
+                                    [&](const DatasheetFigure& figure) { return figure.symbol == symbol; });
+    REQUIRE(found != figures.end());
+    return *found;
+}
+
 double valueOf(const std::vector<DatasheetFigure>& figures, const char* symbol)
 {
     return figureNamed(figures, symbol).value;

@@ -88,7 +88,7 @@ TEST_CASE("An exact response of fractional order is met to rounding, below and a
         const auto found = identifyFractional(data, options);
         CHECK(found.errorDb < -230.0);
         CHECK(found.stable);
-        CHECK(found.alphaDeviation == 0.0);
+        CHECK(found.alphaStandardError == 0.0);
         CHECK(found.warning.empty());
         // In its eigenvalues: that of 5/(l + 20) is the one farthest out.
         const double unit = std::pow(200.0 * pi, alpha);
@@ -117,9 +117,9 @@ TEST_CASE("The standard error of alpha is the spread of its estimates", "[slow]"
         options.mostAlpha = 0.9;
         const auto found = identifyFractional(data, options);
         REQUIRE(found.warning.empty());
-        CHECK(found.alphaDeviation > 1e-4);
-        CHECK(found.alphaDeviation < 1e-2);
-        sum += std::pow((found.model.alpha - 0.6) / found.alphaDeviation, 2);
+        CHECK(found.alphaStandardError > 1e-4);
+        CHECK(found.alphaStandardError < 1e-2);
+        sum += std::pow((found.model.alpha - 0.6) / found.alphaStandardError, 2);
     }
     CHECK(sum > 10.0);  // 0.5 and 99.9 % of chi^2
     CHECK(sum < 51.0);
@@ -131,8 +131,8 @@ TEST_CASE("The standard error of alpha is the spread of its estimates", "[slow]"
     const auto known = identifyFractional(data, options);
     data.deviation.resize(0, 0);
     const auto blind = identifyFractional(data, options);
-    CHECK(std::abs(blind.model.alpha - 0.6) < 4.0 * blind.alphaDeviation);
-    CHECK(blind.alphaDeviation < 4.0 * known.alphaDeviation);
+    CHECK(std::abs(blind.model.alpha - 0.6) < 4.0 * blind.alphaStandardError);
+    CHECK(blind.alphaStandardError < 4.0 * known.alphaStandardError);
 }
 
 TEST_CASE("The standard errors of a mixed-order impedance are the spread of its estimates", "[slow]")
@@ -147,7 +147,8 @@ TEST_CASE("The standard errors of a mixed-order impedance are the spread of its 
         const auto fit = fitMixedImpedance(data);
         REQUIRE(fit.converged());
         for (std::size_t j = 0; j < square.size(); ++j)
-            square[j] += std::pow((fit.model.values()[j] - driver.values()[j]) / fit.deviation.values()[j], 2) / draws;
+            square[j] += std::pow((fit.model.values()[j] - driver.values()[j]) / fit.standardErrors.values()[j], 2)
+                         / draws;
     }
     for (const double s : square)
         CHECK(s == Approx(1.0).margin(0.35));  // 3.5 standard deviations of chi^2 over 200
@@ -164,7 +165,7 @@ TEST_CASE("A mixed-order impedance is met exactly, with alpha free or given")
         CHECK(fit.errorDb < -200.0);
         for (std::size_t j = 0; j < 6; ++j)
             CHECK(fit.model.values()[j] == Approx(driver.values()[j]).epsilon(1e-9));
-        CHECK((fit.deviation.alpha > 0.0) == free);
+        CHECK((fit.standardErrors.alpha > 0.0) == free);
     }
 }
 
@@ -187,8 +188,8 @@ TEST_CASE("The fixed problem: an impedance with R + L s^1/2, at the noise")
     CHECK(mixed.converged());
     CHECK(mixed.errorDb < -39.6);  // the noise floor
     CHECK(mixed.chiSquared == Approx(400.0).margin(60.0));
-    CHECK(std::abs(mixed.model.alpha - 0.5) < 2.0 * mixed.deviation.alpha);
-    CHECK(mixed.deviation.alpha < 2e-3);
+    CHECK(std::abs(mixed.model.alpha - 0.5) < 2.0 * mixed.standardErrors.alpha);
+    CHECK(mixed.standardErrors.alpha < 2e-3);
     CHECK(2.0 * distanceToTruth([&](double f) { return mixed.model.at(f); }) < 22.5);  // 99.9 % of chi^2 of 6
 
     FractionalOptions options;
@@ -212,11 +213,11 @@ TEST_CASE("With alpha free the fixed problem tells 1/2 at order 5, and that orde
     const auto& five = sweep.entries[0].found;
     CHECK(five.stable);
     CHECK(five.warning.empty());
-    CHECK(std::abs(five.model.alpha - 0.5) < 2.0 * five.alphaDeviation);
-    CHECK(five.alphaDeviation < 0.03);
+    CHECK(std::abs(five.model.alpha - 0.5) < 2.0 * five.alphaStandardError);
+    CHECK(five.alphaStandardError < 0.03);
     const auto& six = sweep.entries[1].found;
     CHECK(six.warning.find("alpha is not determined") != std::string::npos);
-    CHECK(std::isnan(six.alphaDeviation));
+    CHECK(std::isnan(six.alphaStandardError));
     CHECK(sweep.warning.find("order 6 explains the data as well with alpha from 0.") != std::string::npos);
 }
 

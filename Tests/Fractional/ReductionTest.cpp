@@ -4,6 +4,7 @@
 #include "Engine/Fractional/FractionalIdentify.h"
 #include "Engine/Fractional/FractionalReduction.h"
 #include "Engine/Fractional/FractionalStabilization.h"
+#include "Engine/Linear/Identify.h"
 #include "Engine/Linear/PoleZero.h"
 #include "Engine/Linear/RootDistance.h"
 #include "Linear/Problem.h"

@@ -39,12 +39,18 @@ std::vector<std::string> fuzz::seeds()
 {
     return {
         R"({"format": "excursion-measurement", "version": 1, "sampleRate": 48000.0, "audio": "take.wav",
- "channels": [{"quantity": "voltage", "unit": "V", "fullScale": 16.0}, {"quantity": "current", "unit": "mA", "fullScale": 4.0}],
- "excitation": {"kind": "multisine", "period": 1024, "settlePeriods": 1, "periods": 2, "realizations": 3, "levels": [0.3, 1.2, 2.7],
+ "channels": [{"quantity": "voltage", "unit": "V", "fullScale": 16.0},
+ {"quantity": "current", "unit": "mA", "fullScale": 4.0}],
+ "excitation": {"kind": "multisine", "period": 1024, "settlePeriods": 1, "periods": 2, "realizations": 3,
+ "levels": [0.3, 1.2, 2.7],
   "grid": "odd-random", "shape": "pink", "band": [11.7, 3668.8], "lines": [5, 9, 11]},
  "driver": {"name": "midbass", "coneArea": 0.0103, "microphoneDistance": 0.112}})",
-        R"({"format": "excursion-measurement", "version": 1, "sampleRate": 44100, "audio": "a.wav", "channels": [{"quantity": "force", "unit": "V", "fullScale": 1}]})",
-        R"({"format": "excursion-measurement", "version": 1, "sampleRate": 48000, "audio": "a.wav", "channels": [{"quantity": "voltage", "unit": "V", "fullScale": 8}],
- "excitation": {"kind": "sweep", "band": [20, 20000], "seconds": 7.98, "fades": [0.1, 0.01], "silence": 1, "repeats": 2, "levels": [0.5, 1.5]}})",
-        R"({"format":"excursion-measurement","version":1,"sampleRate":1e4,"audio":"a.wav","channels":[{"quantity":"voltage","unit":"V","fullScale":1}],"excitation":{"kind":"noise"}})"};
+        R"({"format": "excursion-measurement", "version": 1, "sampleRate": 44100, "audio": "a.wav",
+ "channels": [{"quantity": "force", "unit": "V", "fullScale": 1}]})",
+        R"({"format": "excursion-measurement", "version": 1, "sampleRate": 48000, "audio": "a.wav",
+ "channels": [{"quantity": "voltage", "unit": "V", "fullScale": 8}],
+ "excitation": {"kind": "sweep", "band": [20, 20000], "seconds": 7.98, "fades": [0.1, 0.01],
+ "silence": 1, "repeats": 2, "levels": [0.5, 1.5]}})",
+        R"({"format":"excursion-measurement","version":1,"sampleRate":1e4,"audio":"a.wav",
+ "channels":[{"quantity":"voltage","unit":"V","fullScale":1}],"excitation":{"kind":"noise"}})"};
 }

@@ -25,12 +25,18 @@ std::vector<std::string> fuzz::seeds()
 {
     const std::string base =
         R"({"format": "excursion-model", "version": 1, "name": "m", "base": {"id": "electrodynamic", "parameters": [
- {"name": "Re", "value": 4.27, "unit": "ohm", "standardError": 0.001, "free": true}, {"name": "Le", "value": 0.000243, "unit": "H", "standardError": null, "free": true},
- {"name": "Bl", "value": 5.4, "unit": "N/A", "standardError": 0.002, "free": true}, {"name": "m", "value": 0.011, "unit": "kg", "standardError": 1e-5, "free": true},
- {"name": "Rms", "value": 1.87, "unit": "N s/m", "standardError": 0.003, "free": true}, {"name": "K", "value": 1415.0, "unit": "N/m", "standardError": 1.9, "free": true}]},)";
+ {"name": "Re", "value": 4.27, "unit": "ohm", "standardError": 0.001, "free": true},
+ {"name": "Le", "value": 0.000243, "unit": "H", "standardError": null, "free": true},
+ {"name": "Bl", "value": 5.4, "unit": "N/A", "standardError": 0.002, "free": true},
+ {"name": "m", "value": 0.011, "unit": "kg", "standardError": 1e-5, "free": true},
+ {"name": "Rms", "value": 1.87, "unit": "N s/m", "standardError": 0.003, "free": true},
+ {"name": "K", "value": 1415.0, "unit": "N/m", "standardError": 1.9, "free": true}]},)";
     return {base + R"("effects": [{"id": "stiffness", "extent": {"displacement": 0.0024,
- "velocity": 0.77, "current": 1.8, "lowFrequency": 14.6, "highFrequency": 3665.0, "degree": 2, "scale": 1402.5}, "parameters": [
- {"name": "c1", "value": -20.1, "unit": "N/m", "standardError": 1.3, "free": true}, {"name": "c2", "value": 176.7, "unit": "N/m", "standardError": 1.5, "free": true}]}],
- "path": {"parameters": [{"name": "Sd", "value": 0.0103, "unit": "m^2", "standardError": 5e-6, "free": true}, {"name": "tau", "value": 0.0003, "unit": "s",
+ "velocity": 0.77, "current": 1.8, "lowFrequency": 14.6, "highFrequency": 3665.0, "degree": 2, "scale": 1402.5},
+ "parameters": [
+ {"name": "c1", "value": -20.1, "unit": "N/m", "standardError": 1.3, "free": true},
+ {"name": "c2", "value": 176.7, "unit": "N/m", "standardError": 1.5, "free": true}]}],
+ "path": {"parameters": [{"name": "Sd", "value": 0.0103, "unit": "m^2", "standardError": 5e-6, "free": true},
+ {"name": "tau", "value": 0.0003, "unit": "s",
  "standardError": 4e-8, "free": true}], "microphoneDistance": 0.112}, "covariance": null})"};
 }

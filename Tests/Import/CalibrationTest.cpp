@@ -117,9 +117,11 @@ TEST_CASE("A calibration is the same when written and read again; what is wrong 
 {
     const Scratch s;
     const auto good = R"({"format": "excursion-calibration", "version": 1, "channels": [
-        {"channel": 3, "quantity": "pressure", "fullScale": 20.5, "unit": "Pa", "referenceFrequency": 250, "curve": "mic.cal"},
+        {"channel": 3, "quantity": "pressure", "fullScale": 20.5, "unit": "Pa", "referenceFrequency": 250,
+         "curve": "mic.cal"},
         {"channel": 1, "quantity": "voltage", "fullScale": 4.1, "unit": "V", "relativeError": 0.001, "divider": 11},
-        {"channel": 2, "quantity": "current", "fullScale": 4.1, "senseResistor": 0.22, "sign": -1, "something": "else"}]})";
+        {"channel": 2, "quantity": "current", "fullScale": 4.1, "senseResistor": 0.22, "sign": -1,
+         "something": "else"}]})";
     const auto calibration = readCalibration(s.file("cal.json", good));
     REQUIRE(calibration.channels.size() == 3);
     CHECK(calibration.find(2)->quantityAtFullScale(Quantity::current, "") == Approx(-4.1 / 0.22));

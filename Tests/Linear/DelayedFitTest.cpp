@@ -75,11 +75,11 @@ TEST_CASE("With noise the delay lies where its standard error says", "[slow]")
         options.most = 1.0 / rate;
         const auto found = fitDelayed(late(lag, 0.02, static_cast<std::uint64_t>(seed)), options);
         REQUIRE(found.converged());
-        const double error = (found.delay + lag) / found.deviation;
+        const double error = (found.delay + lag) / found.standardError;
         CHECK(std::abs(error) < 4.0);
         squares += error * error;
         sum += error;
-        deviations += found.deviation * rate / trials;
+        deviations += found.standardError * rate / trials;
     }
     INFO("rms " << std::sqrt(squares / trials) << ", mean " << sum / trials << ", standard error " << deviations
                 << " samples");
@@ -107,8 +107,8 @@ TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, a
     INFO("free order 6 " << unstable.errorDb << " dB, stable " << unstable.stable << "; order 4 " << stable.errorDb
                          << " dB; with delay " << 10.0 * std::log10(found.fit.cost) << " dB at " << found.delay * rate
                          << " samples");
-    CHECK(std::abs(found.delay * rate - 0.6427) < 4.0 * found.deviation * rate);
-    CHECK(found.deviation * rate < 0.002);
+    CHECK(std::abs(found.delay * rate - 0.6427) < 4.0 * found.standardError * rate);
+    CHECK(found.standardError * rate < 0.002);
     CHECK(10.0 * std::log10(found.fit.cost) < -39.5);
     CHECK(stable.errorDb > -35.0);
 
@@ -117,7 +117,7 @@ TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, a
     byDelay.method = StabilizingMethod::delay;
     const auto stabilization = stabilized(unstable.model, data, byDelay);
     INFO("order 6: " << stabilization.steps[1].errorDb << " dB at " << stabilization.delay * rate << " +- "
-                     << *stabilization.delayDeviation * rate << " samples, " << stabilization.reason);
+                     << *stabilization.delayStandardError * rate << " samples, " << stabilization.reason);
     REQUIRE(stabilization.steps.size() == 2);
     CHECK_FALSE(stabilization.steps[0].stable);
     CHECK(stabilization.steps[1].stable);
@@ -130,7 +130,7 @@ TEST_CASE("A lead that makes the free fit unstable is taken back by the delay, a
     const auto given = stabilized(unstable.model, data, byDelay);
     CHECK(given.delay == 0.6427 / rate);
     CHECK(given.steps[1].errorDb < -39.5);
-    CHECK_FALSE(given.delayDeviation);
+    CHECK_FALSE(given.delayStandardError);
 }
 
 TEST_CASE("fitAtDelay takes the delay it is given, and senseless options are refused")

@@ -71,7 +71,6 @@ TEST_CASE("The bilinear transform keeps the response at warped frequencies, and 
         const auto continuous = respond(model, {f})[0];
         const auto warped = respond(discrete, {warpedFrequency(f, rate)})[0];
         CHECK((continuous - warped).norm() < 1e-12 * continuous.norm());
-        CHECK(unwarpedFrequency(warpedFrequency(f, rate), rate) == Approx(f).epsilon(1e-12));
     }
     // s -> (2 fs + s)/(2 fs - s) of the poles
     for (const auto& s : {Complex(-10, 200), Complex(-70, 0)}) {
@@ -111,7 +110,7 @@ TEST_CASE("Zeros are where the response vanishes, at infinity none")
     refused(Error::Kind::usage, "as many inputs", [] { zeros(twoOutputs()); });
 }
 
-TEST_CASE("A simulation is the sum of powers, and a periodic state repeats")
+TEST_CASE("A simulation is the sum of powers")
 {
     StateSpace model;
     model.sampleRate = 100.0;
@@ -125,12 +124,9 @@ TEST_CASE("A simulation is the sum of powers, and a periodic state repeats")
         CHECK(y(t, 0) == Approx(3.0 + 4.0 * (1.0 - std::pow(0.75, t))).epsilon(1e-13));
     Eigen::MatrixXd u(7, 1);
     u << 1, -2, 0.5, 3, 0, 0, -1;
-    const auto x0 = periodicState(model, u);
-    const auto one = simulate(model, u, x0);
-    const auto two = simulate(model, u.replicate(2, 1), x0);
-    CHECK((two.bottomRows(7) - one).norm() < 1e-13);
-    model.A(0, 0) = 1.0;
-    refused(Error::Kind::numerical, "steady state", [&] { periodicState(model, u); });
+    const Eigen::VectorXd x0 = Eigen::VectorXd::Constant(1, 4.0);  // what the first samples have left
+    const auto whole = simulate(model, step.topRows(7) + u, x0);
+    CHECK((whole - simulate(model, step.topRows(7), x0) - simulate(model, u)).norm() < 1e-13);
     refused(Error::Kind::usage, "continuous", [&] { simulate(twoOutputs(), u); });
 }
 

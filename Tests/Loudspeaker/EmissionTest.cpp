@@ -37,7 +37,6 @@ TEST_CASE("A tone from a moving source arrives phase-modulated, as the root of i
         tone[n] = std::cos(turn * high * t);
     }
     const Arrival arrival(lateness, rate);
-    REQUIRE(arrival.varies());
     const auto heard = arrival.heard(tone);
     double worst = 0.0;
     for (std::size_t n = 0; n < N; ++n)
@@ -45,7 +44,7 @@ TEST_CASE("A tone from a moving source arrives phase-modulated, as the root of i
             worst,
             std::abs(heard[n] - std::cos(turn * high * leaving(static_cast<double>(n) / rate, depth, turn * low))));
     CHECK(worst < 2e-6);
-    CHECK_FALSE(Arrival(std::vector<double>(N, 0.0), rate).varies());
+    CHECK(Arrival(std::vector<double>(N, 0.0), rate).heard(tone) == tone);
 }
 
 TEST_CASE("The phase of a tone heard under a moving cone swings by w x / c", "[emission]")

@@ -2,8 +2,8 @@
 #include "Loudspeaker/EffectBench.h"
 
 #include "Engine/Loudspeaker/OutputError.h"
-#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/StartState.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Signal/Fft.h"
 
 #include <catch2/catch.hpp>

@@ -4,8 +4,8 @@
 
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/ModelFile.h"
-#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Numerics/Exponential.h"
 #include "Engine/Numerics/StateUnits.h"
 

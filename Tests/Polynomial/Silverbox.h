@@ -38,13 +38,13 @@ struct Silverbox {
         output.array() -= output.mean();
     }
 
-    PnlssRecord record(Eigen::Index from, Eigen::Index to, Eigen::Index skip) const
+    InputOutputRecord record(Eigen::Index from, Eigen::Index to, Eigen::Index skip) const
     {
         return {input.segment(from, to - from), output.segment(from, to - from), skip, false};
     }
-    PnlssRecord multisines() const { return record(40580, 80000, 200); }
-    PnlssRecord lastMultisine() const { return record(118800, 127400, 200); }
-    PnlssRecord arrow() const { return record(0, 40000, 1000); }
+    InputOutputRecord multisines() const { return record(40580, 80000, 200); }
+    InputOutputRecord lastMultisine() const { return record(118800, 127400, 200); }
+    InputOutputRecord arrow() const { return record(0, 40000, 1000); }
 };
 
 }  // namespace excursion::test

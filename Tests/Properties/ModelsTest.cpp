@@ -7,6 +7,7 @@
 #include "Engine/Polynomial/Block/BlockModel.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammerstein.h"
 #include "Engine/Polynomial/Narx/Narx.h"
+#include "Engine/Polynomial/Narx/NarxRecursion.h"
 #include "Engine/Polynomial/Volterra/VolterraSeries.h"
 #include "Linear/Problem.h"
 #include "Properties/Property.h"

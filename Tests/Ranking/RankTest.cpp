@@ -6,6 +6,7 @@
 #include "Engine/Estimate/Bla.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Polynomial/Pnlss/PnlssFit.h"
+#include "Engine/Polynomial/TakeRecords.h"
 #include "Engine/Ranking/Agreement.h"
 #include "Engine/Ranking/Rank.h"
 

@@ -3,6 +3,7 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Ranking/TaylorExpansion.h"
 #include "Predistortion/Drivers.h"
 

@@ -9,7 +9,7 @@
 #include "Report/Draw.h"
 #include "Report/Gnuplot.h"
 #include "Report/Report.h"
-#include "Report/Sections.h"
+#include "Report/Chapters.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Error.h"
 #include "Engine/Take/ExcitationPlan.h"
+#include "SomeMultisine.h"
 
 #include <catch2/catch.hpp>
 
@@ -10,33 +11,12 @@
 #include <numeric>
 
 using namespace excursion;
-
-namespace {
-
-MultisineOptions multisineOf(Grid grid, Shape shape)
-{
-    MultisineOptions o;
-    o.period = 4096;
-    o.grid = grid;
-    o.shape = shape;
-    o.bandLow = 30;
-    o.bandHigh = 12000;
-    o.rms = 2.5;
-    o.seed = 42;
-    return o;
-}
-
-double rms(const std::vector<double>& x)
-{
-    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size()));
-}
-
-}  // namespace
+using namespace excursion::test;
 
 TEST_CASE("An excitation plan plays levels, realizations and periods in order")
 {
     ExcitationPlanOptions o;
-    o.multisine = multisineOf(Grid::oddRandom, Shape::pink);
+    o.multisine = someMultisine(Grid::oddRandom, Shape::pink);
     o.levels = {0.5, 2.0};
     o.realizations = 3;
     o.settlePeriods = 1;
@@ -70,7 +50,7 @@ TEST_CASE("An excitation plan plays levels, realizations and periods in order")
 TEST_CASE("A plan says what it cannot be: levels that do not ascend, counts out of bounds, a length beyond all memory")
 {
     ExcitationPlanOptions good;
-    good.multisine = multisineOf(Grid::full, Shape::white);
+    good.multisine = someMultisine(Grid::full, Shape::white);
     CHECK(good.isValid());
     const auto refuses = [&](const auto& change) {
         auto options = good;

@@ -129,7 +129,7 @@ def improve(
         document = call.run(
             "improve",
             [call.take(take)],
-            {"--with": with_effects if len(with_effects) > 0 else None, "--out": place},
+            {"--effects": with_effects if len(with_effects) > 0 else None, "--out": place},
             FORMAT,
         )
         return Ladder(document, (call.folder / place / "report.html").read_text(encoding="utf-8"))

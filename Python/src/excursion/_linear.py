@@ -29,7 +29,7 @@ class Identification(Result):
 
     def table(self) -> pd.DataFrame:
         """Over the order: ``errorDb``, ``weightedErrorDb``, ``mdl``, ``validationDb``, ``stable`` and more; of a
-        fractional model also ``alpha`` and its standard error ``alphaDeviation``."""
+        fractional model also ``alpha`` and its standard error ``alphaStandardError``."""
         return table(
             [{key: value for key, value in one.items() if key != "curve"} for one in self.document["orders"]], "order"
         )

@@ -8,8 +8,10 @@
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Polynomial/Block/BlockModelFile.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 #include "Engine/Polynomial/Narx/NarxFile.h"
+#include "Engine/Polynomial/Narx/NarxRecursion.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 
@@ -141,7 +143,7 @@ struct Simulate {
     Eigen::MatrixXd operator()(const Fractional& model) const { return simulate(model.model, input, model.grid); }
     Eigen::MatrixXd operator()(const FractionalStateSpace& model) const
     {
-        const LadderOptions band {0.1 * sampleRate / static_cast<double>(input.rows()), sampleRate, 4.0};
+        const DiffusiveLadderOptions band {0.1 * sampleRate / static_cast<double>(input.rows()), sampleRate, 4.0};
         return simulateByLadder(model, input, sampleRate, band);
     }
 };

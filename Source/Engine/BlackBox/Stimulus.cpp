@@ -43,7 +43,7 @@ bool Stimulus::isValid(std::string* reason) const
     return true;
 }
 
-Stimulus stimulusOf(const std::vector<PnlssRecord>& records, double sampleRate)
+Stimulus stimulusOf(const std::vector<InputOutputRecord>& records, double sampleRate)
 {
     Stimulus result;
     std::map<int, double> bands;

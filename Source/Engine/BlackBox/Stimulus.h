@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Document/JsonField.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -30,7 +30,7 @@ struct Stimulus {
 
 /// Of the judged parts of the inputs, N x 1; a band whose density is 60 dB below the largest one is noise, and not
 /// counted. Throws Error (data) where the inputs are silent.
-Stimulus stimulusOf(const std::vector<PnlssRecord>&, double sampleRate);
+Stimulus stimulusOf(const std::vector<InputOutputRecord>&, double sampleRate);
 
 /// One period of a multisine of random phases with these bands, on odd lines of which every fourth or so is left out,
 /// so that distortion shows on the others: its rms is that of the stimulus where the bands lie below half the rate.

@@ -203,7 +203,7 @@ LossyForm fitted(const FormKind& kind, const Target& target)
     for (std::size_t k = 0; k < target.omega.size(); ++k)
         form.worstDb = std::max(
             form.worstDb,
-            std::abs(20.0 * std::log10(std::abs((target.Re + kind.law(best, target.omega[k])) / target.whole[k]))));
+            std::abs(20.0 * std::log10(std::abs((target.Re + impedanceOf(form, target.omega[k])) / target.whole[k]))));
     return form;
 }
 

@@ -145,12 +145,4 @@ std::vector<DatasheetFigure> thieleSmall(const ScaledModel& given)
     return figures;
 }
 
-const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>& figures, std::string_view symbol)
-{
-    for (const auto& figure : figures)
-        if (figure.symbol == symbol)
-            return figure;
-    throw std::out_of_range(std::string(symbol));
-}
-
 }  // namespace excursion

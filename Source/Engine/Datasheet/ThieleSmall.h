@@ -43,7 +43,4 @@ struct DatasheetFigure {
 /// @throws Error (data) when the linear model has no resonance of the cone
 std::vector<DatasheetFigure> thieleSmall(const ScaledModel&);
 
-/// The figure of that symbol; throws std::out_of_range.
-const DatasheetFigure& figureNamed(const std::vector<DatasheetFigure>&, std::string_view symbol);
-
 }  // namespace excursion

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 namespace excursion {
@@ -61,37 +63,84 @@ struct Slope {
     bool surelyBelow(double bound) const { return value + 2.0 * standardError < bound; }
 };
 
-/// Of ln P against ln S, of the portions from `first` on.
-Slope slopeOf(const std::vector<Portion>& portions, std::size_t first)
+struct Point {
+    double x, y;
+};
+
+/// (ln S, ln P) of the portions from `first` on, about their mean.
+std::vector<Point> pointsOf(std::span<const Portion> portions, std::size_t first)
 {
-    const auto count = static_cast<double>(portions.size() - first);
-    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
-    for (std::size_t k = first; k < portions.size(); ++k) {
-        x += std::log(portions[k].told) / count;
-        y += std::log(portions[k].rest) / count;
+    std::vector<Point> points;
+    Point mean {0.0, 0.0};
+    for (const auto& portion : portions.subspan(first)) {
+        points.push_back({std::log(portion.told), std::log(portion.rest)});
+        mean.x += points.back().x;
+        mean.y += points.back().y;
     }
-    for (std::size_t k = first; k < portions.size(); ++k) {
-        const double dx = std::log(portions[k].told) - x, dy = std::log(portions[k].rest) - y;
-        xx += dx * dx;
-        xy += dx * dy;
-        yy += dy * dy;
+    for (auto& point : points) {
+        point.x -= mean.x / static_cast<double>(points.size());
+        point.y -= mean.y / static_cast<double>(points.size());
     }
-    Slope slope;
-    slope.value = xy / xx;
-    slope.standardError = std::sqrt(std::max(yy - slope.value * xy, 0.0) / (count - 2.0) / xx);
-    return slope;
+    return points;
 }
 
-RestGrowth::Verdict verdictOf(const Slope& all, const Slope& louder)
+/// Of the line through points. Where they all have the same x it says nothing.
+Slope slopeOf(const std::vector<Point>& points)
+{
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (const auto& [x, y] : points) {
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    if (!(xx > 0.0))
+        return {0.0, std::numeric_limits<double>::infinity()};
+    const double slope = xy / xx;
+    return {slope, std::sqrt(std::max(yy - slope * xy, 0.0) / (static_cast<double>(points.size()) - 2.0) / xx)};
+}
+
+/// By how much the slope rises over a range of x, by the parabola through the same points.
+Slope riseOf(const std::vector<Point>& points, double range)
+{
+    const auto count = static_cast<double>(points.size());
+    double xx = 0.0, xxx = 0.0;
+    for (const auto& [x, y] : points) {
+        xx += x * x;
+        xxx += x * x * x;
+    }
+    const double slope = slopeOf(points).value;
+    double qq = 0.0, qy = 0.0, left = 0.0;
+    for (const auto& [x, y] : points) {
+        const double q = x * x - xx / count - xxx / xx * x, above = y - slope * x;  // what a line leaves of both
+        qq += q * q;
+        qy += q * above;
+        left += above * above;
+    }
+    if (!(qq > 0.0))
+        return {0.0, std::numeric_limits<double>::infinity()};
+    const double bend = qy / qq;
+    return {2.0 * range * bend, 2.0 * range * std::sqrt(std::max(left - bend * qy, 0.0) / (count - 3.0) / qq)};
+}
+
+RestGrowth::Verdict verdictOf(const Slope& all, const Slope& louder, const Slope& rise)
 {
     using enum RestGrowth::Verdict;
     if (all.surelyAbove(1.2) || louder.surelyAbove(1.2))
         return distortion;
     if (all.surelyBelow(0.5) && !louder.surelyAbove(0.5))
         return noise;
-    if (std::abs(all.value - 1.0) < 0.5 && all.surelyAbove(0.0))
+    // Noise below and distortion above it may have the slope 1 between them.
+    if (std::abs(all.value - 1.0) < 0.5 && all.surelyAbove(0.0) && rise.surelyBelow(1.0))
         return linear;
     return untold;
+}
+
+/// 20 log10; empty where there is no positive ratio.
+std::optional<double> gainDbOf(double loud, double quiet)
+{
+    if (!(loud > 0.0 && quiet > 0.0))
+        return std::nullopt;
+    return 2.0 * decibelsOf(loud / quiet);
 }
 
 }  // namespace
@@ -109,22 +158,26 @@ std::string_view name(RestGrowth::Verdict verdict)
 std::string RestGrowth::sentence() const
 {
     const auto growth = "it grows with the power " + fixedText(slope, 1) + " of the signal's";
-    const auto gain = " Loud passages have " + fixedText(std::abs(gainDb), 2) + " dB "
-                      + (gainDb < 0.0 ? "less" : "more") + " gain than quiet ones.";
+    const auto gain = !gainDb ? std::string()
+                              : " Loud passages have " + fixedText(std::abs(*gainDb), 2) + " dB "
+                                    + (*gainDb < 0.0 ? "less" : "more") + " gain than quiet ones.";
+    const auto amount = std::isfinite(excessDb) ? ", " + fixedText(excessDb, 1) + " dB of the output" : std::string();
+    const auto unsure = std::string("Whether it is noise or distortion cannot be told");
     switch (verdict) {
     case Verdict::noise: return "Mostly noise: " + growth + ", so it hardly follows the signal.";
     case Verdict::distortion:
-        return "Distortion, " + fixedText(excessDb, 1) + " dB of the output: " + growth
-               + " or more where it is loud, and what is linear with the power 1." + gain;
+        return "Distortion" + amount + ": " + growth + " or more where it is loud, and what is linear with the power 1."
+               + gain;
     case Verdict::linear:
         return "Neither noise nor distortion: " + growth + ", as what is linear does; longer segments may explain it."
                + gain;
     default:
-        return segments < static_cast<int>(fewestSegments)
-                   ? "Whether it is noise or distortion cannot be told of " + std::to_string(segments) + " segments."
-               : range < leastRange ? "Whether it is noise or distortion cannot be told: the level changes by "
-                                          + fixedText(range, 1) + " dB alone."
-                                    : "Whether it is noise or distortion cannot be told: " + growth + ".";
+        if (segments < static_cast<int>(fewestSegments))
+            return unsure + " of " + std::to_string(segments) + " segments.";
+        if (range < leastRange)
+            return unsure + ": the level changes by " + fixedText(range, 1) + " dB alone.";
+        return unsure + ": " + growth
+               + (bends ? ", and faster where it is loud, as noise with distortion above it does." : ".");
     }
 }
 
@@ -146,7 +199,7 @@ RestGrowth restGrowth(std::span<const double> input, std::span<const double> out
         Portion portion {product(followed, followed), product(e, e), product(y, y)};
         if (portion.told > 0.0) {
             portion.gain = product(e, followed) / portion.told;
-            portion.rest -= portion.gain * portion.gain * portion.told;
+            portion.rest = std::max(portion.rest - portion.gain * portion.gain * portion.told, 0.0);
         }
         sum.rest += portion.rest;
         sum.all += portion.all;
@@ -155,7 +208,8 @@ RestGrowth restGrowth(std::span<const double> input, std::span<const double> out
     }
     RestGrowth growth;
     growth.segments = static_cast<int>(portions.size());
-    growth.restDb = growth.excessDb = decibelsOf(sum.rest / sum.all);
+    if (sum.rest > 0.0 && sum.all > 0.0)
+        growth.restDb = growth.excessDb = decibelsOf(sum.rest / sum.all);
     if (portions.size() < fewestSegments)
         return growth;
     std::sort(portions.begin(), portions.end(), [](const auto& a, const auto& b) { return a.told < b.told; });
@@ -167,13 +221,15 @@ RestGrowth restGrowth(std::span<const double> input, std::span<const double> out
         quietGain += portions[k].gain / static_cast<double>(fifth);
         loudGain += portions[portions.size() - 1 - k].gain / static_cast<double>(fifth);
     }
-    growth.gainDb = 2.0 * decibelsOf(std::max(loudGain, 0.0) / std::max(quietGain, 1e-9));
+    growth.gainDb = gainDbOf(loudGain, quietGain);
     growth.excessDb = decibelsOf(std::max(sum.rest - quiet * static_cast<double>(portions.size()), 0.0) / sum.all);
-    const auto all = slopeOf(portions, 0);
+    const auto points = pointsOf(portions, 0);
+    const auto all = slopeOf(points), rise = riseOf(points, 0.1 * std::numbers::ln10 * growth.range);
     growth.slope = all.value;
     growth.standardError = all.standardError;
+    growth.bends = rise.surelyAbove(0.0);
     if (growth.range >= leastRange)
-        growth.verdict = verdictOf(all, slopeOf(portions, portions.size() / 2));
+        growth.verdict = verdictOf(all, slopeOf(pointsOf(portions, portions.size() / 2)), rise);
     return growth;
 }
 

@@ -3,8 +3,11 @@
 
 #include "Engine/Estimate/Welch.h"
 
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace excursion {
 
@@ -18,21 +21,24 @@ namespace excursion {
 /// by least squares over the segments. Noise does not follow the signal, b = 0. Whatever is linear follows it, b = 1:
 /// what rings longer than a segment of welch(), or a response that drifts. Distortion of order n grows as n, so b = 2
 /// or more, and less where noise lies below it. The louder half of the segments, where noise matters least, is asked as
-/// well.
+/// well. Noise with distortion above it may have b = 1 on the whole, but then b rises with the level: a parabola in ln
+/// S tells by how much over `range`.
 struct RestGrowth {
     enum class Verdict {
         noise,       ///< b is below 1/2 by two standard errors
         distortion,  ///< b is above 1 by two standard errors and 0.2, of all or of the louder half
-        linear,      ///< b is 1 within 0.5, surely above 0
+        linear,      ///< b is 1 within 0.5, above 0 by two standard errors, and rises by less than 1, by two as well
         untold       ///< the level changes by less than 10 dB, segments are fewer than 12, or nothing of that is sure
     };
     Verdict verdict = Verdict::untold;
-    double slope = 0.0, standardError = 0.0;  ///< b
+    double slope = 0.0, standardError = 0.0;  ///< b; an infinite error where all segments are equally loud
+    bool bends = false;                       ///< b rises with the level, by two standard errors
     double range = 0.0;                       ///< dB between the quietest and the loudest tenth of S_s
     /// power of the rest over that of the output: all of it, and that in excess of what the quietest fifth leaves,
-    /// which is the distortion at least where that is the verdict
-    double restDb = 0.0, excessDb = 0.0;
-    double gainDb = 0.0;  ///< 1 + c of the loudest fifth of the segments over that of the quietest
+    /// which is the distortion at least where that is the verdict; -infinity where nothing is left
+    double restDb = -std::numeric_limits<double>::infinity(), excessDb = restDb;
+    /// 1 + c of the loudest fifth of the segments over that of the quietest; empty where one of them is not above 0
+    std::optional<double> gainDb;
     int segments = 0;
 
     std::string sentence() const;

@@ -2,6 +2,7 @@
 #include "Engine/Fractional/AlphaCurve.h"
 
 #include "Engine/Error.h"
+#include "Engine/Linear/Identify.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Numerics/TallQr.h"
 
@@ -30,7 +31,7 @@ double deviance(const PartialFractionFit& fit, const FrequencyData& data)
 
 /// The poles at another alpha: lambda^(alpha'/alpha) is the same s. Pairs that would pass the negative axis stay just
 /// before it.
-Sections carried(const Sections& sections, double alpha)
+SecondOrderSections carried(const SecondOrderSections& sections, double alpha)
 {
     const double ratio = alpha / sections.alpha;
     auto roots = poles(sections);
@@ -45,16 +46,6 @@ Sections carried(const Sections& sections, double alpha)
 }
 
 }  // namespace
-
-IdentifyOptions linearOptions(const FractionalOptions& options, double alpha)
-{
-    IdentifyOptions result;
-    result.order = options.order;
-    result.alpha = alpha;
-    result.thorough = options.thorough;
-    result.refinement = options.refinement;
-    return result;
-}
 
 void AlphaCurve::search(const Progress& progress)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Fractional/FractionalIdentify.h"
+#include "Engine/Fractional/FractionalOptions.h"
 #include "Engine/Linear/PartialFractionFit.h"
 
 #include <limits>
@@ -49,8 +49,5 @@ private:
 /// derivatives by poles, C and D. Differences of V would ask for searches that all end in the same minimum to many
 /// digits. Without deviations 1/sigma is weightsOf().
 double curvatureInAlpha(const PartialFractionFit&, const FrequencyData&);
-
-/// The linear identification that one alpha asks for.
-IdentifyOptions linearOptions(const FractionalOptions&, double alpha);
 
 }  // namespace excursion

@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Fractional/AlphaCurve.h"
+#include "Engine/Linear/Identify.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -94,31 +95,23 @@ FractionalIdentification freeAlpha(const FrequencyData& data, const FractionalOp
     // curvatureInAlpha() does not divide by.
     const double left = known ? best.V : best.V * weightsOf(data).cwiseProduct(data.value.cwiseAbs()).squaredNorm();
     const double spread = known ? std::max(1.0, left / freedom) : left / freedom;
-    result.alphaDeviation = inside && second > 0.0 ? std::sqrt(spread / second) : notKnown;
+    result.alphaStandardError = inside && second > 0.0 ? std::sqrt(spread / second) : notKnown;
     const auto [low, high] = rangeOf(result.curve, best.V / unit);
     if (!inside)
         result.warning = "The error falls towards the end of the search at alpha " + decimals(best.alpha)
                          + ", so alpha is not determined.";
-    else if (!std::isfinite(result.alphaDeviation) || high > best.alpha + 3.0 * result.alphaDeviation + options.gridStep
-             || low < best.alpha - 3.0 * result.alphaDeviation - options.gridStep)
+    else if (!std::isfinite(result.alphaStandardError)
+             || high > best.alpha + 3.0 * result.alphaStandardError + options.gridStep
+             || low < best.alpha - 3.0 * result.alphaStandardError - options.gridStep)
         result.warning =
             "At order " + std::to_string(options.order) + " any alpha from " + decimals(low) + " to " + decimals(high)
             + " explains the data within two standard errors, so alpha is not determined; a lower order may tell.";
     if (!result.warning.empty())
-        result.alphaDeviation = notKnown;
+        result.alphaStandardError = notKnown;
     return result;
 }
 
 }  // namespace
-
-bool FractionalOptions::isValid(std::string* reason) const
-{
-    if (alpha && !(*alpha > 0.0 && *alpha < 2.0))
-        return refuse(reason, "alpha must lie between 0 and 2");
-    if (!(leastAlpha > 0.0 && leastAlpha < mostAlpha && mostAlpha < 2.0 && gridStep > 1e-3 && gridStep <= 0.5))
-        return refuse(reason, "alpha is searched between bounds that ascend between 0 and 2, in steps of 0.001 to 0.5");
-    return linearOptions(*this, alpha.value_or(1.0)).isValid(reason);
-}
 
 FractionalIdentification identifyFractional(const FrequencyData& data, const FractionalOptions& options,
                                             const Progress& progress)
@@ -165,7 +158,7 @@ FractionalSweep sweepFractional(const FrequencyData& data, const std::vector<int
     const bool deviations = data.deviation.size() != 0;
     const double least = deviations ? chosen.found.chiSquared : freedomOf(data, chosen.order);
     const double alpha = chosen.found.model.alpha,
-                 away = std::isfinite(chosen.found.alphaDeviation) ? 3.0 * chosen.found.alphaDeviation : 0.0;
+                 away = std::isfinite(chosen.found.alphaStandardError) ? 3.0 * chosen.found.alphaStandardError : 0.0;
     for (const auto& entry : sweep.entries) {
         const double unit = deviations ? 1.0
                                        : entry.found.cost / freedomOf(data, entry.order) * freedomOf(data, chosen.order)

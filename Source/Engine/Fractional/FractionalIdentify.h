@@ -1,34 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Fractional/FractionalOptions.h"
 #include "Engine/Fractional/FractionalStateSpace.h"
-#include "Engine/Linear/Identify.h"
+#include "Engine/Linear/FrequencyData.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace excursion {
-
-/// Identification of a commensurate fractional model from a frequency response [B 5.3]: that of Engine/Linear in
-/// lambda = s^alpha, on lambda_k = (j w_k)^alpha. [B 5.3] takes powers of lambda_k and no weights, and finds models
-/// that are unstable; here the lines are weighted by their standard deviation, the polynomials are orthonormal on them,
-/// the start is refined to maximum likelihood, and its poles stay out of Matignon's sector.
-///
-/// With alpha free, the likelihood with everything else at its best is a curve in alpha alone: V(alpha) = sum
-/// |e|^2/sigma^2 = -ln L. It is searched on a grid, each point with starts of its own, then by golden section about the
-/// lowest point, with poles carried from one alpha to the next as lambda^(alpha'/alpha). Its curvature is Fisher's
-/// information, taken from the Jacobian: deviation = (d2V/dalpha2)^(-1/2). Where the model leaves more than the noise,
-/// or no standard deviations are known, the noise is what is left, over K - P/2 complex values of P parameters.
-struct FractionalOptions {
-    int order = 5;
-    std::optional<double> alpha;                                ///< empty: free
-    double leastAlpha = 0.2, mostAlpha = 1.2, gridStep = 0.05;  ///< where a free alpha is looked for
-    bool thorough = true;                                       ///< as IdentifyOptions::thorough
-    PoleRefinementOptions refinement;
-
-    bool isValid(std::string* reason = nullptr) const;
-};
 
 /// V of the best model at one alpha.
 struct AlphaChiSquared {
@@ -38,7 +18,7 @@ struct AlphaChiSquared {
 struct FractionalIdentification {
     FractionalStateSpace model;
     /// standard error of alpha; 0 where alpha was given, NaN where it is not determined, as `warning` says
-    double alphaDeviation = 0.0;
+    double alphaStandardError = 0.0;
     /// as of LinearIdentification; chiSquared NaN without deviations
     double cost = 0.0, errorDb = 0.0, chiSquared = 0.0;
     double sectorMargin = 0.0;  ///< rad
@@ -51,6 +31,17 @@ struct FractionalIdentification {
     std::string warning;
 };
 
+/// Identification of a commensurate fractional model from a frequency response [B 5.3]: that of Engine/Linear in
+/// lambda = s^alpha, on lambda_k = (j w_k)^alpha. [B 5.3] takes powers of lambda_k and no weights, and finds models
+/// that are unstable; here the lines are weighted by their standard deviation, the polynomials are orthonormal on them,
+/// the start is refined to maximum likelihood, and its poles stay out of Matignon's sector.
+///
+/// With alpha free, the likelihood with everything else at its best is a curve in alpha alone: V(alpha) = sum
+/// |e|^2/sigma^2 = -ln L. It is searched on a grid, each point with starts of its own, then by golden section about the
+/// lowest point, with poles carried from one alpha to the next as lambda^(alpha'/alpha). Its curvature is Fisher's
+/// information, taken from the Jacobian: deviation = (d2V/dalpha2)^(-1/2). Where the model leaves more than the noise,
+/// or no standard deviations are known, the noise is what is left, over K - P/2 complex values of P parameters.
+///
 /// Throws Error (usage, data, numerical) as identify() does, and for an alpha or a search outside of (0, 2).
 FractionalIdentification identifyFractional(const FrequencyData&, const FractionalOptions&, const Progress& = {});
 

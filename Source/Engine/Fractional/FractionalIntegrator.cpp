@@ -56,7 +56,7 @@ std::complex<double> FractionalIntegrator::response(std::complex<double> z) cons
     return sum;
 }
 
-FractionalIntegrator integratorFor(double alpha, double step, const LadderOptions& band)
+FractionalIntegrator integratorFor(double alpha, double step, const DiffusiveLadderOptions& band)
 {
     if (!(alpha > 0.0 && alpha <= 1.0) || !(step > 0.0))
         throw Error(Error::Kind::usage,
@@ -93,7 +93,7 @@ FractionalIntegrator integratorFor(double alpha, double step, const LadderOption
     return integrator;
 }
 
-FractionalIntegrator integratorSlope(double alpha, double step, const LadderOptions& band)
+FractionalIntegrator integratorSlope(double alpha, double step, const DiffusiveLadderOptions& band)
 {
     const double h = 1e-5 * std::min(alpha, 1.0 - alpha);
     if (!(h > 0.0))

@@ -28,10 +28,10 @@ struct FractionalIntegrator {
 
 /// @param step  T, s @param band  of the ladder; not used for alpha = 1
 /// Throws Error (usage) unless 0 < alpha <= 1 and T is above 0.
-FractionalIntegrator integratorFor(double alpha, double step, const LadderOptions& band);
+FractionalIntegrator integratorFor(double alpha, double step, const DiffusiveLadderOptions& band);
 
 /// Its derivative by alpha, member by member, from central differences of closed forms (some nine digits). For 0 <
 /// alpha < 1.
-FractionalIntegrator integratorSlope(double alpha, double step, const LadderOptions& band);
+FractionalIntegrator integratorSlope(double alpha, double step, const DiffusiveLadderOptions& band);
 
 }  // namespace excursion

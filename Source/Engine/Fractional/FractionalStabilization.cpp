@@ -2,6 +2,7 @@
 #include "Engine/Fractional/FractionalStabilization.h"
 
 #include "Engine/Error.h"
+#include "Engine/Linear/Response.h"
 
 namespace excursion {
 

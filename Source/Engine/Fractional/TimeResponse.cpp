@@ -96,7 +96,7 @@ std::vector<MatrixXd> impulseResponse(const FractionalStateSpace& model, const s
     return modalResponse(model, times, model.alpha);
 }
 
-StateSpace expanded(const FractionalStateSpace& model, const LadderOptions& band)
+StateSpace expanded(const FractionalStateSpace& model, const DiffusiveLadderOptions& band)
 {
     require(model, "The model has no ladder");
     const auto& form = model.form;
@@ -145,7 +145,7 @@ StateSpace expanded(const FractionalStateSpace& model, const LadderOptions& band
 }
 
 MatrixXd simulateByLadder(const FractionalStateSpace& model, const MatrixXd& input, double sampleRate,
-                          const LadderOptions& band)
+                          const DiffusiveLadderOptions& band)
 {
     requireInput(model, input, sampleRate);
     if (input.rows() == 0)

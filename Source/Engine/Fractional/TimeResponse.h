@@ -23,13 +23,13 @@ std::vector<Eigen::MatrixXd> impulseResponse(const FractionalStateSpace&, const 
 /// It has n (cells + 1) states, n more above 1, and at any frequency the response of the fractional model with lambda
 /// off by the ladder's error. It keeps what is stable in reach of the band; alpha = 1 is passed as it is.
 /// @param band  should reach from below 1/(duration) to beyond the rates that matter
-StateSpace expanded(const FractionalStateSpace&, const LadderOptions& band);
+StateSpace expanded(const FractionalStateSpace&, const DiffusiveLadderOptions& band);
 
 /// Simulations at a sample rate; input N x m, output N x p.
 
 /// By the expanded model, its response to a line between samples exact.
 Eigen::MatrixXd simulateByLadder(const FractionalStateSpace&, const Eigen::MatrixXd& input, double sampleRate,
-                                 const LadderOptions& band);
+                                 const DiffusiveLadderOptions& band);
 
 /// By Gruenwald and Letnikov's difference, all of the past remembered: (T^-alpha I - A) x_n = B u_n - T^-alpha
 /// sum_{j>=1} w_j x_{n-j}. Error of order T, time of order N^2: a reference that shares nothing with the others.

@@ -210,7 +210,7 @@ MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpeda
     for (Index k = 0; k < free; ++k)  // of the logarithm, to the parameter's own unit
         standardError[error.place(k)] = std::sqrt(spread) * inverse.row(k).norm() * fit.model.values()[error.place(k)];
     const auto& e = standardError;
-    fit.deviation = {e[0], e[1], e[2], e[3], e[4], e[5]};
+    fit.standardErrors = {e[0], e[1], e[2], e[3], e[4], e[5]};
     double left = 0.0;
     for (Index k = 0; k < data.lines(); ++k)
         left += std::norm(fit.model.at(data.frequency[static_cast<std::size_t>(k)]) - data.value(k, 0));

@@ -47,8 +47,8 @@ struct MixedImpedanceOptions {
 /// model leaves more than the noise, or no standard deviations are known, the noise is what is left over.
 struct MixedImpedanceFit : SearchSummary {
     MixedImpedance model;
-    MixedImpedance deviation;  ///< standard error of each parameter; of a given alpha 0
-    double errorDb = 0.0;      ///< unweighted relative rms error [B 4.26]
+    MixedImpedance standardErrors;  ///< of each parameter; of a given alpha 0
+    double errorDb = 0.0;           ///< unweighted relative rms error [B 4.26]
     /// sum |e|^2/sigma^2, about 1 a line when all but noise is explained; NaN without deviations
     double chiSquared = 0.0;
 };

@@ -70,9 +70,4 @@ double warpedFrequency(double frequency, double sampleRate)
     return sampleRate / std::numbers::pi * std::atan(std::numbers::pi * frequency / sampleRate);
 }
 
-double unwarpedFrequency(double frequency, double sampleRate)
-{
-    return sampleRate / std::numbers::pi * std::tan(std::numbers::pi * frequency / sampleRate);
-}
-
 }  // namespace excursion

@@ -22,9 +22,7 @@ StateSpace toDiscrete(const StateSpace&, double sampleRate);
 /// pole at z = -1.
 StateSpace toContinuous(const StateSpace&);
 
-/// The frequency (Hz) at which the discrete model has the response that the continuous one has at `frequency`, and
-/// back.
-double warpedFrequency(double frequency, double sampleRate);    ///< fs/pi atan(pi f / fs)
-double unwarpedFrequency(double frequency, double sampleRate);  ///< fs/pi tan(pi f / fs)
+/// The frequency (Hz) at which the discrete model has the response that the continuous one has at `frequency`.
+double warpedFrequency(double frequency, double sampleRate);  ///< fs/pi atan(pi f / fs)
 
 }  // namespace excursion

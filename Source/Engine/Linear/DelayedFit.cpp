@@ -107,7 +107,7 @@ DelayColumn delayColumn(const PartialFractionFit& fit, const FrequencyData& late
     return column;
 }
 
-double deviationOf(const DelayColumn& column, const PartialFractionFit& fit, const FrequencyData& data)
+double standardErrorOf(const DelayColumn& column, const PartialFractionFit& fit, const FrequencyData& data)
 {
     const auto n = fit.sections.order(), p = data.outputs;
     const double free = static_cast<double>(2 * data.lines() * p - n - p * (n + 1) - 1);
@@ -123,13 +123,13 @@ void descend(DelayedFit& result, const FrequencyData& data, const DelayedFitOpti
     while (result.iterations < largestSteps) {
         const auto late = delayed(data, result.delay);
         const auto column = delayColumn(result.fit, late);
-        result.deviation = deviationOf(column, result.fit, data);
+        result.standardError = standardErrorOf(column, result.fit, data);
         if (!(std::abs(column.length) > 1e-12 * std::sqrt(static_cast<double>(data.lines())))) {
             result.end(Termination::undetermined);
             return;
         }
         double step = -unit * column.along / column.length;
-        if (std::abs(step) < std::max(1e-3 * result.deviation, 1e-10 * unit)) {
+        if (std::abs(step) < std::max(1e-3 * result.standardError, 1e-10 * unit)) {
             result.end(Termination::valuesSettled);
             return;
         }
@@ -187,7 +187,7 @@ DelayedFit fitAtDelay(const FrequencyData& data, double seconds, const DelayedFi
     result.delay = seconds;
     static_cast<SearchSummary&>(result) = *fit;
     result.fit = fit->fit;
-    result.deviation = deviationOf(delayColumn(result.fit, late), result.fit, data);
+    result.standardError = standardErrorOf(delayColumn(result.fit, late), result.fit, data);
     return result;
 }
 
@@ -203,7 +203,7 @@ DelayedFit fitDelayed(const FrequencyData& data, const DelayedFitOptions& option
     const auto quick = identification(options, false);
     const auto refinement = stableRefinement(options);
     const auto delayAt = [&](int k) { return least + (most - least) * k / (options.scan - 1); };
-    std::optional<Sections> neighbour;
+    std::optional<SecondOrderSections> neighbour;
     for (int k = 0; k < options.scan; ++k) {
         progress.at(0.8 * k / options.scan, "trying delays");
         const auto late = delayed(data, delayAt(k));

@@ -39,7 +39,7 @@ struct DelayedFitOptions {
 struct DelayedFit : SearchSummary {
     double delay = 0.0;  ///< s: the model has the response times exp(-j w delay)
     /// s, standard error, poles, C and D being unknown too; infinite when the data does not tell
-    double deviation = 0.0;
+    double standardError = 0.0;
     PartialFractionFit fit;
     /// delay and cost of the first look; infinite where no model was found
     std::vector<std::pair<double, double>> scanned;

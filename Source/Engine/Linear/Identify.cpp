@@ -4,13 +4,10 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/LargeOrderStarts.h"
+#include "Engine/Linear/LeastSection.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
-#include "Engine/Numerics/TallQr.h"
 #include "Engine/Signal/Level.h"
-#include "Engine/Validity.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +75,8 @@ std::vector<StateSpace> subspaceModels(const FrequencyData& data, const Identify
     return models;
 }
 
-void add(std::vector<PoleStart>& candidates, const char* start, const Sections& sections, const FrequencyData& data)
+void add(std::vector<PoleStart>& candidates, const char* start, const SecondOrderSections& sections,
+         const FrequencyData& data)
 {
     if (!sections.factors.allFinite())
         return;
@@ -87,7 +85,7 @@ void add(std::vector<PoleStart>& candidates, const char* start, const Sections& 
         candidates.push_back({start, std::move(fit)});
 }
 
-Sections fittedVectors(Sections sections, const FrequencyData& data, int times)
+SecondOrderSections fittedVectors(SecondOrderSections sections, const FrequencyData& data, int times)
 {
     for (int k = 0; k < times && sections.factors.allFinite(); ++k)
         sections = relocatePoles(sections, data);
@@ -95,7 +93,7 @@ Sections fittedVectors(Sections sections, const FrequencyData& data, int times)
 }
 
 /// The poles of a larger model, its least sections taken out one after the other.
-Sections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& options, double scale)
+SecondOrderSections prunedTo(int order, const FrequencyData& data, const IdentifyOptions& options, double scale)
 {
     auto larger = options;
     larger.order = static_cast<int>(std::min<Index>(2 * order + 10, data.lines() / 8));
@@ -154,56 +152,6 @@ LinearIdentification fromFit(const PartialFractionFit& fit, const FrequencyData&
 }
 
 }  // namespace
-
-bool IdentifyOptions::isValid(std::string* reason) const
-{
-    if (order < 0 || order > 400)
-        return refuse(reason, "the order must lie between 0 and 400");
-    if (!(sampleRate >= 0.0) || !std::isfinite(sampleRate))
-        return refuse(reason, "the sample rate must be 0, for continuous time, or above");
-    if (!(alpha > 0.0 && alpha < 2.0) || (alpha != 1.0 && sampleRate != 0.0))
-        return refuse(reason, "the order of differentiation must lie between 0 and 2, and be 1 in discrete time");
-    return refinement.isValid(reason);
-}
-
-Sections withoutLeast(const PartialFractionFit& fit, const FrequencyData& data, bool odd)
-{
-    const auto& sections = fit.sections;
-    const auto n = sections.order(), K = data.lines();
-    auto result = sections;
-    if (odd && sections.odd()) {
-        result.factors.conservativeResize(n - 1);
-        return result;
-    }
-    if (sections.pairs() == 0)
-        return sections;
-    // Least squares without the columns S costs c_S^T ((R^T R)^-1_SS)^-1 c_S more.
-    const auto lambda = evaluationPoints(data.frequency, sections.sampleRate, sections.alpha);
-    const auto basis = partialFractions(sections, lambda);
-    const MatrixXd weights = weightsOf(data);
-    Eigen::VectorXd loss = Eigen::VectorXd::Zero(sections.pairs());
-    for (Index o = 0; o < data.outputs; ++o) {
-        MatrixXd rows = MatrixXd::Zero(2 * K, n + 1);
-        rows.col(0).head(K) = weights.col(o);  // the constant stays: it goes first
-        rows.block(0, 1, K, n) = weights.col(o).asDiagonal() * basis.real();
-        rows.block(K, 1, K, n) = weights.col(o).asDiagonal() * basis.imag();
-        TallQr qr(n + 1);
-        qr.fold(rows);
-        const MatrixXd inverse = qr.R().triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n + 1, n + 1));
-        for (Index i = 0; i < sections.pairs(); ++i) {
-            const Eigen::Matrix2d covariance = inverse.middleRows(2 * i + 1, 2)
-                                               * inverse.middleRows(2 * i + 1, 2).transpose();
-            const Eigen::Vector2d c = fit.C.block(o, 2 * i, 1, 2).transpose();
-            const double increase = c.dot(covariance.inverse() * c);
-            loss[i] += std::isfinite(increase) ? increase : 0.0;
-        }
-    }
-    Index least = 0;
-    loss.minCoeff(&least);
-    result.factors.resize(n - 2);
-    result.factors << sections.factors.head(2 * least), sections.factors.tail(n - 2 * least - 2);
-    return result;
-}
 
 LinearIdentification judged(StateSpace model, const FrequencyData& data, double alpha)
 {

@@ -2,35 +2,14 @@
 #pragma once
 
 #include "Engine/Linear/FrequencyData.h"
+#include "Engine/Linear/IdentifyOptions.h"
 #include "Engine/Linear/PartialFractionFit.h"
 #include "Engine/Linear/StateSpace.h"
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace excursion {
-
-/// Linear identification of a frequency response [B 4.2, 4.3.2]: starts by subspace and by vector
-/// fitting, refined to maximum likelihood, the best one kept.
-///
-/// A continuous-time model is identified by subspace through the bilinear transform, at several warpings, since what
-/// part of the unit circle the poles fill decides how well they are seen; the refinement works directly in s with
-/// scaled frequency. In lambda = s^alpha the same transform serves; its points then lie on an arc beside the circle,
-/// which the orthogonal powers do not mind.
-struct IdentifyOptions {
-    int order = 4;
-    double sampleRate = 0.0;  ///< Hz; 0: a model of continuous time
-    /// order of differentiation, of models of continuous time: the model is one in lambda = s^alpha [B 5.3]
-    double alpha = 1.0;
-    bool refine = true;  ///< maximum likelihood after the starts
-    /// below the true order, where no start reaches the noise: more of them, also by pruning a larger model
-    bool thorough = true;
-
-    PoleRefinementOptions refinement;
-
-    bool isValid(std::string* reason = nullptr) const;
-};
 
 struct LinearIdentification {
     StateSpace model;
@@ -42,17 +21,20 @@ struct LinearIdentification {
     bool stable = false;  ///< by the region that belongs to sampleRate and alpha
     std::string start;    ///< where the model came from: "subspace", "vector fitting", "pruned", ..
     SearchSummary refinement;
-    std::optional<Sections> sections;  ///< of models with one input
+    std::optional<SecondOrderSections> sections;  ///< of models with one input
 };
 
+/// Linear identification of a frequency response [B 4.2, 4.3.2]: starts by subspace and by vector
+/// fitting, refined to maximum likelihood, the best one kept.
+///
+/// A continuous-time model is identified by subspace through the bilinear transform, at several warpings, since what
+/// part of the unit circle the poles fill decides how well they are seen; the refinement works directly in s with
+/// scaled frequency. In lambda = s^alpha the same transform serves; its points then lie on an arc beside the circle,
+/// which the orthogonal powers do not mind.
+///
 /// Throws Error (usage, data) for options or data that make no sense, (numerical) when no start gave a model.
 /// Models with several inputs are those of the subspace method; their refinement is left out, and `refinement` says so.
 LinearIdentification identify(const FrequencyData&, const IdentifyOptions&, const Progress& = {});
-
-/// The fit without the section that matters least: the one whose loss, the others' coefficients refitted, raises the
-/// cost least.
-/// @param odd  take out the lone real pole instead of a pair
-Sections withoutLeast(const PartialFractionFit&, const FrequencyData&, bool odd);
 
 /// Errors, chi-squared and stability of any model on data.
 /// @param alpha  of a model in s^alpha

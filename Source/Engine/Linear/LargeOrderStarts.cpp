@@ -3,6 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
+#include "Engine/Linear/LeastSection.h"
 #include "Engine/Linear/ResidualWhiteness.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
@@ -65,7 +66,7 @@ private:
 
     /// Keeps these poles, refined by a few steps, and to the end where they explain all but noise. @returns whether
     /// they do
-    bool add(const char* name, Sections sections)
+    bool add(const char* name, SecondOrderSections sections)
     {
         if (!sections.factors.allFinite())
             return false;
@@ -105,7 +106,7 @@ private:
         return range;
     }
 
-    Sections polesOf(const ObservabilityRange& range, Index order) const
+    SecondOrderSections polesOf(const ObservabilityRange& range, Index order) const
     {
         auto model = dynamicsOf(range, order, 1, false);
         if (options_.sampleRate == 0.0)
@@ -128,7 +129,7 @@ private:
         return false;
     }
 
-    void keepLarger(const Sections& sections)
+    void keepLarger(const SecondOrderSections& sections)
     {
         if (!sections.factors.allFinite())
             return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Linear/Identify.h"
+#include "Engine/Linear/IdentifyOptions.h"
 
 #include <string>
 #include <vector>

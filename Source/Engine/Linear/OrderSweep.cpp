@@ -2,6 +2,7 @@
 #include "Engine/Linear/OrderSweep.h"
 
 #include "Engine/Error.h"
+#include "Engine/Linear/LeastSection.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>

@@ -29,7 +29,7 @@ constexpr double rounding = 1e-15;
 
 /// What does not change in a search: points, weighted responses, and their power.
 struct Problem {
-    Problem(const FrequencyData& data, const Sections& sections)
+    Problem(const FrequencyData& data, const SecondOrderSections& sections)
         : lambda(evaluationPoints(data.frequency, sections.sampleRate, sections.alpha)),
           weights(weightsOf(data)),
           value(data.value.cwiseProduct(weights)),
@@ -43,7 +43,7 @@ struct Problem {
     double power;
 };
 
-Problem problemOf(const FrequencyData& data, const Sections& sections)
+Problem problemOf(const FrequencyData& data, const SecondOrderSections& sections)
 {
     std::string reason;
     if (!data.isValid(&reason))
@@ -70,7 +70,7 @@ double solveOutput(const MatrixXd& R, const MatrixXd& permitted, Index o, Partia
     return (q - top * y).squaredNorm();
 }
 
-PartialFractionFit emptyFit(const Sections& sections, Index outputs)
+PartialFractionFit emptyFit(const SecondOrderSections& sections, Index outputs)
 {
     PartialFractionFit fit;
     fit.sections = sections;
@@ -88,7 +88,7 @@ void placePermitted(const MatrixXd& rows, const MatrixXd& permitted, MatrixXd& f
         folded.leftCols(permitted.cols()) = rows * permitted;
 }
 
-PartialFractionFit fitAt(const Sections& sections, const Problem& problem)
+PartialFractionFit fitAt(const SecondOrderSections& sections, const Problem& problem)
 {
     const auto n = sections.order(), K = problem.lambda.size();
     auto fit = emptyFit(sections, problem.value.cols());
@@ -172,13 +172,13 @@ private:
 
 }  // namespace
 
-PartialFractionFit fitPartialFractions(const Sections& sections, const FrequencyData& data)
+PartialFractionFit fitPartialFractions(const SecondOrderSections& sections, const FrequencyData& data)
 {
     return fitAt(sections, problemOf(data, sections));
 }
 
-Sections spreadPoles(Index order, const FrequencyData& data, double sampleRate, double scale, bool logarithmic,
-                     double alpha)
+SecondOrderSections spreadPoles(Index order, const FrequencyData& data, double sampleRate, double scale,
+                                bool logarithmic, double alpha)
 {
     std::vector<Complex> roots;
     const double high = data.frequency.back();
@@ -200,7 +200,7 @@ Sections spreadPoles(Index order, const FrequencyData& data, double sampleRate, 
     return sectionsOf(roots, sampleRate, scale, alpha);
 }
 
-Sections relocatePoles(const Sections& sections, const FrequencyData& data)
+SecondOrderSections relocatePoles(const SecondOrderSections& sections, const FrequencyData& data)
 {
     const auto problem = problemOf(data, sections);
     const auto n = sections.order(), K = problem.lambda.size();
@@ -255,8 +255,8 @@ SearchOptions searchFor(const PoleRefinementOptions& options)
     return searching;
 }
 
-PoleRefinement refinePoles(const Sections& start, const FrequencyData& data, const PoleRefinementOptions& options,
-                           const Progress& progress)
+PoleRefinement refinePoles(const SecondOrderSections& start, const FrequencyData& data,
+                           const PoleRefinementOptions& options, const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))

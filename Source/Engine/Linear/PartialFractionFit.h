@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Linear/FrequencyData.h"
-#include "Engine/Linear/Sections.h"
+#include "Engine/Linear/SecondOrderSections.h"
 #include "Engine/Numerics/Search.h"
 #include "Engine/Progress.h"
 
@@ -14,23 +14,23 @@ namespace excursion {
 /// the poles given, C and D are linear least squares; both searches below use that and look for the poles alone.
 
 struct PartialFractionFit {
-    Sections sections;
+    SecondOrderSections sections;
     Eigen::MatrixXd C;  ///< p x n
     Eigen::VectorXd D;
     double cost = 0.0;  ///< sum of |w (model - measured)|^2 over that of |w measured|^2
 };
 
 /// The best C and D for given poles. @throws Error (data) when there are several inputs, or the data is not valid
-PartialFractionFit fitPartialFractions(const Sections&, const FrequencyData&);
+PartialFractionFit fitPartialFractions(const SecondOrderSections&, const FrequencyData&);
 
 /// One relocation of relaxed vector fitting (Gustavsen & Semlyen 1999; Gustavsen 2006), for any number of outputs: G
 /// sigma and sigma are fitted as partial fractions over the present poles, and the zeros of sigma, mirrored where
 /// unstable, become the poles.
-Sections relocatePoles(const Sections&, const FrequencyData&);
+SecondOrderSections relocatePoles(const SecondOrderSections&, const FrequencyData&);
 
 /// Lightly damped poles spread over the band of the data, to start relocations from.
-Sections spreadPoles(Eigen::Index order, const FrequencyData&, double sampleRate, double scale, bool logarithmic,
-                     double alpha = 1.0);
+SecondOrderSections spreadPoles(Eigen::Index order, const FrequencyData&, double sampleRate, double scale,
+                                bool logarithmic, double alpha = 1.0);
 
 struct PoleRefinementOptions {
     int maximumIterations = 50;
@@ -53,7 +53,7 @@ struct PoleRefinement : SearchSummary {
 /// and D eliminated by variable projection (Golub & Pereyra 1973, in Kaufman's approximation 1975). Jacobians are
 /// analytic; every least-squares problem is solved by orthogonal transformations.
 /// @param start  stable, when that is asked for
-PoleRefinement refinePoles(const Sections& start, const FrequencyData&, const PoleRefinementOptions& = {},
+PoleRefinement refinePoles(const SecondOrderSections& start, const FrequencyData&, const PoleRefinementOptions& = {},
                            const Progress& = {});
 
 }  // namespace excursion

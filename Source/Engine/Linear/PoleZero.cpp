@@ -3,8 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
-#include "Engine/Linear/Sections.h"
-#include "Engine/Linear/Stabilization.h"
+#include "Engine/Linear/SecondOrderSections.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -143,7 +142,7 @@ std::vector<Factor> factorsOf(const std::vector<Complex>& roots)
 StateSpace section(const Factor& zeros, const Factor& poles, double sampleRate)
 {
     const double scale = poles.size > 0.0 ? poles.size : 1.0;
-    Sections sections;
+    SecondOrderSections sections;
     sections.sampleRate = sampleRate;
     sections.scale = scale;
     // realize() takes mu with A = scale mu + 1 in discrete time as well.

@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Identify.h"
+#include "Engine/Linear/LeastSection.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"

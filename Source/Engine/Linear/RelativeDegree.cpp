@@ -7,7 +7,7 @@ namespace excursion {
 namespace {
 
 /// The rows that (C, D) is at right angles to, d x (n + 1).
-Eigen::MatrixXd markovRows(const Sections& sections)
+Eigen::MatrixXd markovRows(const SecondOrderSections& sections)
 {
     const auto n = sections.order(), d = static_cast<Eigen::Index>(sections.relativeDegree);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(d, n + 1);
@@ -30,7 +30,7 @@ Eigen::MatrixXd markovRows(const Sections& sections)
 
 }  // namespace
 
-Eigen::MatrixXd permittedCoefficients(const Sections& sections)
+Eigen::MatrixXd permittedCoefficients(const SecondOrderSections& sections)
 {
     const auto n = sections.order(), d = static_cast<Eigen::Index>(sections.relativeDegree);
     if (d == 0)
@@ -39,7 +39,7 @@ Eigen::MatrixXd permittedCoefficients(const Sections& sections)
     return Eigen::MatrixXd(qr.householderQ()).rightCols(n + 1 - d);
 }
 
-Eigen::MatrixXd coefficientSlopes(const Sections& sections, const Eigen::VectorXd& c)
+Eigen::MatrixXd coefficientSlopes(const SecondOrderSections& sections, const Eigen::VectorXd& c)
 {
     const auto n = sections.order(), d = static_cast<Eigen::Index>(sections.relativeDegree);
     if (d < 3)

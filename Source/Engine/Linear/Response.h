@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Estimate/Frf.h"
+#include "Engine/Linear/FrequencyData.h"
 #include "Engine/Linear/StateSpace.h"
 
 namespace excursion {
@@ -36,6 +37,11 @@ std::vector<Eigen::MatrixXcd> respond(const StateSpace&, const std::vector<doubl
 
 /// The response of one input and output, as an Frf without variances.
 Frf frfOf(const StateSpace&, const std::vector<double>& frequency, Eigen::Index output = 0, Eigen::Index input = 0);
+
+/// The model's own response where its poles show: `lines` frequencies, evenly on a logarithmic scale, from a tenth of
+/// the slowest pole to ten times the fastest or to half the sample rate.
+/// @param alpha  of a model in lambda = s^alpha
+FrequencyData sampled(const StateSpace&, int lines = 1000, double alpha = 1.0);
 
 /// 20 log10(|model - measured| / |measured|), rms over the lines of the Frf [B 4.26].
 double relativeErrorDb(const Frf& measured, const Frf& model);

@@ -3,8 +3,6 @@
 
 #include "Engine/Error.h"
 
-#include <Eigen/LU>
-
 namespace excursion {
 namespace {
 
@@ -41,25 +39,6 @@ MatrixXd simulate(const StateSpace& model, const MatrixXd& input, const VectorXd
         x.swap(next);
     }
     return output;
-}
-
-VectorXd periodicState(const StateSpace& model, const MatrixXd& input)
-{
-    require(model, input);
-    VectorXd x = VectorXd::Zero(model.order());
-    for (Eigen::Index t = 0; t < input.rows(); ++t)
-        x = model.A * x + model.B * input.row(t).transpose();
-    MatrixXd power = MatrixXd::Identity(model.order(), model.order()), square = model.A;
-    for (Eigen::Index left = input.rows(); left > 0; left /= 2) {
-        if (left % 2 != 0)
-            power = power * square;
-        square = square * square;
-    }
-    const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd::Identity(model.order(), model.order()) - power);
-    if (model.order() > 0 && !(lu.rcond() > 1e-14))
-        throw Error(Error::Kind::numerical,
-                    "The model has no steady state for this period: one of its poles keeps what it holds.");
-    return lu.solve(x);
 }
 
 }  // namespace excursion

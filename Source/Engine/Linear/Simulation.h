@@ -10,9 +10,4 @@ namespace excursion {
 /// Throws Error (usage) for a model of continuous time or shapes that do not fit.
 Eigen::MatrixXd simulate(const StateSpace&, const Eigen::MatrixXd& input, const Eigen::VectorXd& initial = {});
 
-/// The state from which a periodic input, N x m, one period, gives a periodic response: x = (I - A^N)^-1 (state after
-/// one period from rest).
-/// Throws Error (numerical) when the model has a pole whose N-th power is 1.
-Eigen::VectorXd periodicState(const StateSpace&, const Eigen::MatrixXd& input);
-
 }  // namespace excursion

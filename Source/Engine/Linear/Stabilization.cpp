@@ -156,7 +156,7 @@ void addDelay(Stabilization& result, const FrequencyData& data, const StabilizeO
     result.model = realize(found.fit.sections, found.fit.C, found.fit.D);
     result.delay = found.delay;
     if (!options.seconds)
-        result.delayDeviation = found.deviation;
+        result.delayStandardError = found.standardError;
     result.reason = found.message;
     result.steps.push_back(stepOf("delayed", result.model, delayed(data, found.delay), 1.0));
 }
@@ -271,37 +271,6 @@ Stabilization stabilized(const StateSpace& model, const FrequencyData& data, con
         result.steps.push_back(stepOf("refitted", result.model, data, options.alpha));
     }
     return result;
-}
-
-FrequencyData sampled(const StateSpace& model, int lines, double alpha)
-{
-    double slow = std::numeric_limits<double>::infinity(), fast = 0.0;
-    for (auto pole : poles(model)) {
-        const double size = model.continuous() ? std::pow(std::abs(pole), 1.0 / alpha)
-                                               : std::abs(pole - 1.0) * model.sampleRate;
-        if (size > 0.0) {
-            slow = std::min(slow, size);
-            fast = std::max(fast, size);
-        }
-    }
-    if (fast == 0.0)
-        slow = fast = model.continuous() ? 1.0 : model.sampleRate;
-    const double high = model.continuous() ? 10.0 * fast / (2.0 * std::numbers::pi) : 0.5 * model.sampleRate;
-    const double low = std::min(0.1 * slow / (2.0 * std::numbers::pi), 0.1 * high);
-    FrequencyData data;
-    data.inputs = model.inputs();
-    data.outputs = model.outputs();
-    for (int k = 0; k < std::max(lines, 2); ++k)
-        data.frequency.push_back(low * std::pow(high / low, static_cast<double>(k) / (std::max(lines, 2) - 1)));
-    const Resolvent resolvent(model);
-    data.value.resize(static_cast<Index>(data.frequency.size()), data.inputs * data.outputs);
-    for (Index k = 0; k < data.lines(); ++k)
-        data.value.row(
-            k) = resolvent
-                     .response(evaluationPoint(data.frequency[static_cast<std::size_t>(k)], model.sampleRate, alpha))
-                     .reshaped()
-                     .transpose();
-    return data;
 }
 
 }  // namespace excursion

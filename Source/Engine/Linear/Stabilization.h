@@ -29,8 +29,8 @@ namespace excursion {
 StateSpace mirroredByAllPass(const StateSpace&);
 
 /// The same in lambda = s^alpha, of models with one input and output: unstable poles are reflected at the border of the
-/// sector, |arg| = theta = alpha pi/2 [B 6.2.6], as mirrored(Sections) does; zeros and gain stay. There is no
-/// all-pass any more: for p = rho e^(j phi), phi in [0, theta], the reflection p' is as far from the upper ray as p
+/// sector, |arg| = theta = alpha pi/2 [B 6.2.6], as mirrored(SecondOrderSections) does; zeros and gain stay. There is
+/// no all-pass any more: for p = rho e^(j phi), phi in [0, theta], the reflection p' is as far from the upper ray as p
 /// was, but its conjugate is not. That changes the magnitude at lambda = r e^(j theta) by
 ///     |lambda - conj(p)| / |lambda - conj(p')|
 ///         = ((r^2 + rho^2 - 2 r rho cos(theta + phi)) / (r^2 + rho^2 - 2 r rho cos(3 theta - phi)))^1/2,
@@ -79,7 +79,7 @@ struct StabilizationStep {
 struct Stabilization {
     StateSpace model;
     double delay = 0.0;                             ///< s: the model has the response times exp(-j w delay)
-    std::optional<double> delayDeviation;           ///< standard error, where the delay was looked for
+    std::optional<double> delayStandardError;       ///< standard error, where the delay was looked for
     std::optional<Decomposition> parts;             ///< where the model was decomposed
     std::vector<StabilizationStep> steps;           ///< in the order in which they were taken
     std::string reason = "nothing was stabilized";  ///< how it ended
@@ -92,10 +92,5 @@ struct Stabilization {
 /// decomposed() does.
 Stabilization stabilized(const StateSpace&, const FrequencyData& data, const StabilizeOptions& = {},
                          const Progress& = {});
-
-/// The model's own response where its poles show: `lines` frequencies, evenly on a logarithmic scale, from a tenth of
-/// the slowest pole to ten times the fastest or to half the sample rate.
-/// @param alpha  of a model in lambda = s^alpha
-FrequencyData sampled(const StateSpace&, int lines = 1000, double alpha = 1.0);
 
 }  // namespace excursion

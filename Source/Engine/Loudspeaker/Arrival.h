@@ -28,9 +28,6 @@ public:
     /// @param sampleRate  Hz
     Arrival(std::span<const double> lateness, double sampleRate);
 
-    /// Whether it differs from one instant to the other at all.
-    bool varies() const { return !left_.empty(); }
-
     /// A record of the same period, heard: x(s(t)). As it is when the lateness is zero throughout.
     std::vector<double> heard(std::span<const double> samples) const;
 

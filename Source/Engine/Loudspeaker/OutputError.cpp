@@ -2,9 +2,9 @@
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include "Engine/Loudspeaker/Sensors.h"
-#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Loudspeaker/StartState.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Numerics/Parallel.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Arrival.h"
-#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 
 #include <Eigen/Core>
 

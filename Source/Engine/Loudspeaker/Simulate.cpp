@@ -1,160 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Simulate.h"
 
-#include "Engine/Loudspeaker/ExponentialStep.h"
-#include "Engine/Loudspeaker/Plausible.h"
-#include "Engine/Loudspeaker/Radiator.h"
-#include "Engine/Loudspeaker/SensitivityStep.h"
+#include "Engine/Error.h"
 #include "Engine/Loudspeaker/Sensors.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Signal/Level.h"
-#include "Engine/Signal/Resample.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace excursion {
-
-Drive::Drive(std::span<const double> samples, double sampleRate, int substeps)
-    : length_(samples.size()),
-      substeps_(substeps),
-      step_(1.0 / (sampleRate * substeps)),
-      fine_(upsample(samples, 2 * substeps))
-{
-}
-
-std::array<double, 7> Drive::polynomial(std::size_t halfStep) const
-{
-    // Lagrange's polynomial through s = -1, -1/2, ..., 2, by the inverse of its Vandermonde matrix.
-    constexpr int count = 7;
-    static const auto inverse = [] {
-        Eigen::Matrix<double, count, count> vandermonde;
-        for (int row = 0; row < count; ++row)
-            for (int column = 0; column < count; ++column)
-                vandermonde(row, column) = std::pow(0.5 * (row - 2), column);
-        return vandermonde.inverse().eval();
-    }();
-    const auto last = static_cast<std::ptrdiff_t>(fine_.size()) - 1;
-    Eigen::Matrix<double, count, 1> value;
-    for (int k = 0; k < count; ++k) {
-        const auto n = static_cast<std::ptrdiff_t>(halfStep) + k - 2;
-        const auto inside = [&](std::ptrdiff_t at) {
-            return fine_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))];
-        };
-        value[k] = n < 0      ? 2.0 * inside(0) - inside(-n)
-                   : n > last ? 2.0 * inside(last) - inside(2 * last - n)
-                              : inside(n);
-    }
-    std::array<double, count> result;
-    Eigen::Map<Eigen::Matrix<double, count, 1>>(result.data()).noalias() = inverse * value;
-    return result;
-}
-
-const std::vector<double>& Trajectory::operator[](Trace trace) const
-{
-    const std::array<const std::vector<double>*, traceCount> all {&current, &displacement, &velocity, &acceleration,
-                                                                  &flow,    &lateness,     &spot};
-    return *all[static_cast<std::size_t>(trace)];
-}
-
-bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start)
-{
-    ExponentialStep motion(model, drive.step());
-    Radiator radiator(model);
-    const Plausible plausible(model);
-    if (start.size() > 0)
-        motion.begin(start);
-    Eigen::VectorXd before;
-    for (auto* trace :
-         {&out.current, &out.displacement, &out.velocity, &out.acceleration, &out.flow, &out.lateness, &out.spot}) {
-        trace->clear();
-        trace->reserve(drive.length() - first);
-    }
-    std::size_t half = 0;
-    for (std::size_t n = 0; n < drive.length(); ++n) {
-        const bool kept = n >= first;
-        if (kept) {
-            out.current.push_back(motion.current());
-            out.displacement.push_back(motion.displacement());
-            out.velocity.push_back(motion.velocity());
-            motion.state(before);
-        }
-        for (int s = 0; s < drive.substeps(); ++s, half += 2) {
-            const double acceleration = motion.step(drive.polynomial(half));
-            if (s > 0 || !kept)
-                continue;
-            const auto sound = radiator.at(before.data(), acceleration);
-            out.acceleration.push_back(acceleration);
-            out.flow.push_back(sound.flow);
-            out.lateness.push_back(sound.lateness);
-            out.spot.push_back(sound.spot);
-        }
-        if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
-            return false;
-    }
-    return true;
-}
-
-bool differentiate(const Model& model, std::span<const Eigen::Index> active, const Drive& drive, std::size_t first,
-                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
-{
-    const auto count = static_cast<Eigen::Index>(active.size());
-    SensitivityStep motion(model, drive.step(), active);
-    const bool radiates = std::any_of(observed.begin(), observed.end(),
-                                      [](Trace trace) { return trace >= Trace::flow; });
-    Radiator radiator(model, radiates ? active : std::span<const Eigen::Index> {});
-    const Plausible plausible(model);
-    if (start.value.size() > 0) {
-        Eigen::MatrixXd slopes(count, start.value.size());
-        for (std::size_t k = 0; k < active.size(); ++k)
-            slopes.row(static_cast<Eigen::Index>(k)) = start.gradient.col(active[k]).transpose();
-        motion.begin(start.value, slopes);
-    }
-    out.assign(observed.size(), Eigen::MatrixXd(count, static_cast<Eigen::Index>(drive.length() - first)));
-    Eigen::MatrixXd before, emitted(count, 3);
-    Eigen::VectorXd from;
-    std::size_t half = 0;
-    for (std::size_t n = 0; n < drive.length(); ++n) {
-        const auto column = static_cast<Eigen::Index>(n - first);
-        const bool kept = n >= first;
-        if (kept) {
-            for (std::size_t q = 0; q < observed.size(); ++q)
-                if (observed[q] < Trace::acceleration)
-                    out[q].col(column) = motion.slopes().col(static_cast<Eigen::Index>(observed[q]));
-            if (radiates) {
-                motion.slopesByState(before);
-                motion.state(from);
-            }
-        }
-        for (int s = 0; s < drive.substeps(); ++s, half += 2) {
-            motion.step(drive.polynomial(half));
-            if (s > 0 || !kept)
-                continue;
-            if (radiates)
-                radiator.differentiate(from.data(), motion.acceleration(), before, motion.accelerationSlopes(),
-                                       emitted);
-            for (std::size_t q = 0; q < observed.size(); ++q)
-                if (observed[q] == Trace::acceleration)
-                    out[q].col(column) = motion.accelerationSlopes();
-                else if (observed[q] > Trace::acceleration)
-                    out[q].col(column) = emitted.col(static_cast<Eigen::Index>(observed[q])
-                                                     - static_cast<Eigen::Index>(Trace::flow));
-        }
-        if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
-            return false;
-    }
-    return true;
-}
-
-int stableSubsteps(const Model& model, double sampleRate, double limit)
-{
-    return std::clamp(
-        static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (limit * sampleRate))), 1,
-        64);
-}
 
 bool SimulationOptions::isValid(std::string* reason) const
 {

@@ -2,6 +2,7 @@
 #include "Engine/Numerics/DiffusiveLadder.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/LadderCells.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -12,31 +13,6 @@ namespace excursion {
 
 using Complex = std::complex<double>;
 using std::numbers::pi;
-
-namespace {
-
-/// Three moments of a tail with weights R_k = p_k^a, matched by a constant and one cell.
-struct Tail {
-    double constant, rate, resistance;
-};
-
-/// Below `edge`, s/(s + p) = 1 - p/s + p^2/s^2 - ..: sum_{k>=1} (edge q^-k)^(a+n) over n = 0, 1, 2.
-Tail tailBelow(double edge, double a, double step)
-{
-    const auto moment = [&](double n) { return std::pow(edge, a + n) / std::expm1((a + n) * step); };
-    const double rate = moment(2) / moment(1), resistance = moment(1) / rate;
-    return {moment(0) - resistance, rate, resistance};
-}
-
-/// Above, s/(s + p) = s/p - s^2/p^2 + ..: sum_{k>=1} (edge q^k)^(a-n) over n = 1, 2, 3. The constant is that of s.
-Tail tailAbove(double edge, double a, double step)
-{
-    const auto moment = [&](double n) { return std::pow(edge, a - n) / std::expm1((n - a) * step); };
-    const double rate = moment(2) / moment(3), resistance = moment(2) * rate * rate;
-    return {moment(1) - resistance / rate, rate, resistance};
-}
-
-}  // namespace
 
 Complex DiffusiveLadder::power(Complex s) const
 {
@@ -54,7 +30,7 @@ Complex DiffusiveLadder::integral(Complex s) const
     return sum;
 }
 
-bool LadderOptions::isValid(std::string* reason) const
+bool DiffusiveLadderOptions::isValid(std::string* reason) const
 {
     const bool valid = lowFrequency > 0.0 && highFrequency > lowFrequency && std::isfinite(highFrequency)
                        && cellsPerDecade >= 0.5 && cellsPerDecade <= 8.0;
@@ -64,7 +40,7 @@ bool LadderOptions::isValid(std::string* reason) const
                "a ladder needs a band that begins above 0 Hz and ends above its begin, and 0.5 to 8 cells a decade");
 }
 
-DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
+DiffusiveLadder ladderFor(double exponent, const DiffusiveLadderOptions& options)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -85,14 +61,14 @@ DiffusiveLadder ladderFor(double exponent, const LadderOptions& options)
     ladder.rates.resize(inner + 2);
     for (Eigen::Index k = 0; k < inner; ++k)
         ladder.rates[k + 1] = std::exp(start + step * static_cast<double>(k));
-    const auto below = tailBelow(ladder.rates[1], exponent, step),
-               above = tailAbove(ladder.rates[inner], exponent, step);
+    const auto below = ladderBelow(start - step, exponent, step),
+               above = ladderAbove(start + step * static_cast<double>(inner), exponent, step);
     ladder.rates[0] = below.rate;
     ladder.rates[inner + 1] = above.rate;
     ladder.resistances = ladder.rates.array().pow(exponent);
     ladder.resistances[0] = below.resistance;
     ladder.resistances[inner + 1] = above.resistance;
-    const double factor = std::sin(pi * exponent) / pi * step;
+    const double factor = ladderFactor(1.0, exponent, step);
     ladder.resistances *= factor;
     ladder.resistance = factor * below.constant;
     ladder.inductance = factor * above.constant;

@@ -13,10 +13,8 @@ namespace excursion {
 ///     s^a ~ R + L s + sum_k R_k s/(s + p_k),     0 < a < 1,
 /// and as s^(a-1) = s^a / s the integral with it,
 ///     s^(a-1) ~ L + R/s + sum_k R_k/(s + p_k).
-/// It comes from s^a = (sin(pi a)/pi) int_0^inf p^a s/(s + p) d ln p by the trapezoidal rule at p_k = p_0 q^k, of which
-///     R_k = (sin(pi a)/pi) p_k^a ln q,     relative error 2 exp(-pi^2/ln q): a factor of 73 with each cell a decade.
-/// The rule's tails, below and above the cells kept, are series in p/s and s/p whose first three moments (geometric
-/// series) R, L and one more cell on each side match; cells beyond the band make up for the rest, some 10 000 times
+/// Rates and R_k are those of LadderCells.h, whose relative error falls by a factor of 73 with each cell a decade. R, L
+/// and one more cell on each side stand for the tails; cells beyond the band make up for the rest, some 10 000 times
 /// less a decade. All numbers are positive: a passive network.
 struct DiffusiveLadder {
     double exponent = 0.5;        ///< a
@@ -36,7 +34,7 @@ struct DiffusiveLadder {
 ///     n      1       1.5     2       3       4       5
 ///     error  2.8e-2  3.3e-3  3.8e-4  5.3e-6  7.3e-8  1.0e-9
 /// that of the rule itself times sin(pi a).
-struct LadderOptions {
+struct DiffusiveLadderOptions {
     double lowFrequency = 10.0, highFrequency = 20000.0;  ///< Hz
     double cellsPerDecade = 3.0;
 
@@ -44,6 +42,6 @@ struct LadderOptions {
 };
 
 /// Throws Error (usage) unless 0 < exponent < 1 and the options are valid.
-DiffusiveLadder ladderFor(double exponent, const LadderOptions&);
+DiffusiveLadder ladderFor(double exponent, const DiffusiveLadderOptions&);
 
 }  // namespace excursion

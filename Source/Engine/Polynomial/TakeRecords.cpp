@@ -30,9 +30,9 @@ double scatterOf(const Measurement& take, const Channel& output, int level, int 
 
 }  // namespace
 
-PnlssRecords recordsOf(const Measurement& take, const Channel& input, const Channel& output, int wantedLevel)
+InputOutputRecords recordsOf(const Measurement& take, const Channel& input, const Channel& output, int wantedLevel)
 {
-    PnlssRecords records;
+    InputOutputRecords records;
     if (!take.excitation || take.excitation->lines.empty()) {
         const auto N = static_cast<Eigen::Index>(take.length()), cut = N * 2 / 3;
         const auto u = columnOf(input.samples), y = columnOf(output.samples);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Take/Measurement.h"
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace excursion {
 
-struct PnlssRecords {
-    std::vector<PnlssRecord> estimation, validation;
+struct InputOutputRecords {
+    std::vector<InputOutputRecord> estimation, validation;
     /// of the averaged periods, by their scatter, relative to the output: the floor of every error; of several periods
     /// only
     std::optional<double> noiseDb;
@@ -24,6 +24,6 @@ struct PnlssRecords {
 /// without periods the last third, led in by what comes before.
 /// @param level  index into Excitation::levels; below 0: the last
 /// Throws Error (data) as periodicExcitation() does.
-PnlssRecords recordsOf(const Measurement&, const Channel& input, const Channel& output, int level = -1);
+InputOutputRecords recordsOf(const Measurement&, const Channel& input, const Channel& output, int level = -1);
 
 }  // namespace excursion

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/Cone.h"
 
-#include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Predistortion/Cubic.h"
 
 #include <cmath>

@@ -20,7 +20,7 @@ struct MotionPoint {
     double i = 0.0;  ///< A, the current with which the linear driver gets there
 };
 
-/// What the driver would do if it were linear: the linear part of the model (Linearize.h), dz/dt = A z + B u, solved
+/// What the driver would do if it were linear: the linear part of the model (SmallSignal.h), dz/dt = A z + B u, solved
 /// exactly from sample to sample for an input that is the cubic through the latest four samples,
 ///     z(n) = exp(A T) z(n-1) + sum_{k=0..3} g_k u(n-k).
 /// Position, velocity, acceleration and jerk are read from the same state, so that each is the derivative of the one
@@ -42,7 +42,7 @@ public:
 
     const MotionPoint& motion() const { return point_; }  ///< at the latest sample
     Eigen::Map<const Eigen::VectorXd> state() const { return {state_.data(), static_cast<Eigen::Index>(order_)}; }
-    /// The state of Linearize.h per state that is kept here: z = basis state.
+    /// The state of SmallSignal.h per state that is kept here: z = basis state.
     const Eigen::MatrixXd& basis() const { return basis_; }
 
 private:

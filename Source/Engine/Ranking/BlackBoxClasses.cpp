@@ -13,10 +13,12 @@
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFile.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFit.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Polynomial/Hammerstein/HammersteinFit.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
 #include "Engine/Polynomial/Narx/NarxFile.h"
 #include "Engine/Polynomial/Narx/NarxFit.h"
+#include "Engine/Polynomial/Narx/NarxRecursion.h"
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Pnlss/PnlssFit.h"
 #include "Engine/Polynomial/Pnlss/Recursion.h"
@@ -75,7 +77,7 @@ FractionalGrid gridOf(const RankedTake& data, const FractionalPnlss& model)
 
 FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& grid, int degree, int parameters)
 {
-    const auto play = [model, grid](const PnlssRecord& record) {
+    const auto play = [model, grid](const InputOutputRecord& record) {
         FractionalRecursion::Trajectory run;
         if (!FractionalRecursion(model, grid, false, false)
                  .run(model, fineInput(record.input, grid.substeps, record.periodic, record.skip), 1e100, run))
@@ -91,7 +93,7 @@ FittedClass fractionalClass(const FractionalPnlss& model, const FractionalGrid& 
 FittedClass fitLinearClass(const RankedTake& data, const Progress&)
 {
     const auto n = data.linear.order();
-    return {[model = data.linear](const PnlssRecord& record) { return simulate(model, record.input); },
+    return {[model = data.linear](const InputOutputRecord& record) { return simulate(model, record.input); },
             ofOrder("", n, 1), static_cast<int>(2 * n + 1), isStable(data.linear),
             toJson(NamedStateSpace {"linear",
                                     {std::string(name(data.input.quantity))},
@@ -112,10 +114,10 @@ FittedClass fitFractionalClass(const RankedTake& data, const Progress&)
 FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress)
 {
     HammersteinFitOptions fitting;
-    fitting.degree = data.options.degree;
+    fitting.degree = data.degree;
     const auto fit = fitHammerstein(data.take.measurement().sampleRate, data.records.estimation,
                                     data.records.validation, fitting, progress);
-    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
+    return {[model = fit.model](const InputOutputRecord& record) { return simulate(model, record.input); },
             "degree " + std::to_string(fit.model.degree()) + ", " + std::to_string(fit.model.length()) + " taps",
             static_cast<int>(fit.model.parameters()), true, documentOf(data, "hammerstein", fit.model)};
 }
@@ -123,14 +125,14 @@ FittedClass fitHammersteinClass(const RankedTake& data, const Progress& progress
 FittedClass fitBlockClass(const RankedTake& data, const Progress& progress)
 {
     BlockModelFitOptions fitting;
-    fitting.degree = data.options.degree;
-    fitting.maximumIterations = data.options.iterations;
+    fitting.degree = data.degree;
+    fitting.maximumIterations = data.iterations;
     const auto fit = fitBlockModel(data.linear, data.records.estimation, data.records.validation, fitting, progress);
     auto description = ofOrder("", data.linear.order(), fitting.degree);
     for (const auto& step : fit.steps)
         if (step.branch)
             description += ", " + std::string(name(*step.branch));
-    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); }, description,
+    return {[model = fit.model](const InputOutputRecord& record) { return simulate(model, record.input); }, description,
             static_cast<int>(fit.model.parameters()), fit.stable, documentOf(data, "block", fit.model)};
 }
 
@@ -138,11 +140,11 @@ FittedClass fitNarxClass(const RankedTake& data, const Progress& progress)
 {
     NarxFitOptions fitting;
     fitting.outputLags = fitting.inputLags = data.order;
-    fitting.degree = data.options.degree;
-    fitting.maximumIterations = data.options.iterations;
+    fitting.degree = data.degree;
+    fitting.maximumIterations = data.iterations;
     const auto fit = fitNarx(data.take.measurement().sampleRate, data.records.estimation, data.records.validation,
                              fitting, progress);
-    return {[model = fit.model](const PnlssRecord& record) { return simulate(model, record.input); },
+    return {[model = fit.model](const InputOutputRecord& record) { return simulate(model, record.input); },
             std::to_string(fit.model.outputLags) + " and " + std::to_string(fit.model.inputLags) + " lags, degree "
                 + std::to_string(fitting.degree),
             static_cast<int>(fit.model.parameters()), fit.stable, documentOf(data, "narx", fit.model)};
@@ -153,7 +155,7 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     IdentifyOptions identifying;
     identifying.sampleRate = data.take.measurement().sampleRate;
     PnlssFitOptions fitting;
-    fitting.maximumIterations = data.options.iterations;
+    fitting.maximumIterations = data.iterations;
     fitting.enoughDb = data.records.enoughDb();
     PnlssFit best;
     double least = std::numeric_limits<double>::infinity();
@@ -170,12 +172,12 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
     };
     // A pole that only the linear model needed may hold the search up, so a driver's three states are tried as well.
     std::vector<int> orders {data.order};
-    if (data.options.order == 0 && data.order != 3)
+    if (!data.orderGiven && data.order != 3)
         orders.push_back(3);
     std::vector<Pnlss> starts;
     for (const int order : orders) {
         identifying.order = order;
-        starts.push_back(withTerms(identify(data.response, identifying).model, data.options.degree));
+        starts.push_back(withTerms(identify(data.response, identifying).model, data.degree));
     }
     double done = 0.0;
     for (const auto search : {PnlssSearch::plain, PnlssSearch::guided, PnlssSearch::grown})
@@ -185,23 +187,23 @@ FittedClass fitPnlssClass(const RankedTake& data, const Progress& progress)
             done += share;
         }
     return {
-        [model = best.model](const PnlssRecord& record) { return simulate(model, record.input); },
-        ofOrder("", best.model.linear.order(), data.options.degree),
-        static_cast<int>(Recursion(best.model, true).parameters()), best.stable,
+        [model = best.model](const InputOutputRecord& record) { return simulate(model, record.input); },
+        ofOrder("", best.model.linear.order(), data.degree), static_cast<int>(Recursion(best.model, true).parameters()),
+        best.stable,
         toJson(NamedPnlss {
             "pnlss", {std::string(name(data.input.quantity))}, {std::string(name(data.output.quantity))}, best.model})};
 }
 
 FittedClass fitFractionalPnlssClass(const RankedTake& data, const Progress& progress)
 {
-    const auto start = fractionalStart(data, data.options.degree);
+    const auto start = fractionalStart(data, data.degree);
     const auto grid = gridOf(data, start);
     FractionalPnlssOptions fitting;
-    fitting.maximumIterations = std::min(data.options.iterations, 10);
+    fitting.maximumIterations = std::min(data.iterations, 10);
     fitting.costTolerance = 1e-3;
     const auto fit = fitFractionalPnlss(start, grid, data.records.estimation, data.records.validation, fitting,
                                         progress);
-    auto fitted = fractionalClass(fit.model, grid, data.options.degree,
+    auto fitted = fractionalClass(fit.model, grid, data.degree,
                                   static_cast<int>(FractionalRecursion(fit.model, grid, true, true).parameters()));
     fitted.stable = fit.stable;
     fitted.document = toJson(NamedFractionalPnlss {"fractional-pnlss",

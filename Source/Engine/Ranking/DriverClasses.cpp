@@ -22,7 +22,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
         if (&component != &model.components.front())
             description += (description.empty() ? "" : ", ") + component.effect->title();
     const auto play = [model, rate = data.take.measurement().sampleRate,
-                       output = data.output.quantity](const PnlssRecord& record) -> Eigen::MatrixXd {
+                       output = data.output.quantity](const InputOutputRecord& record) -> Eigen::MatrixXd {
         const Eigen::VectorXd u = record.input.col(0);
         const auto played = simulate(model, std::span<const double>(u.data(), static_cast<std::size_t>(u.size())), rate,
                                      {});

@@ -2,7 +2,10 @@
 #pragma once
 
 #include "Engine/Progress.h"
-#include "Engine/Ranking/Rank.h"
+#include "Engine/Ranking/RankedModel.h"
+
+#include <optional>
+#include <string>
 
 namespace excursion {
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Linear/FrequencyData.h"
-#include "Engine/Polynomial/FractionalPnlss/FractionalPnlss.h"
-#include "Engine/Ranking/Rank.h"
+#include "Engine/Linear/StateSpace.h"
+#include "Engine/Polynomial/TakeRecords.h"
+#include "Engine/Progress.h"
 
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <string>
 
 namespace excursion {
 
@@ -17,16 +20,18 @@ struct RankedTake {
     const Channel& input;
     const Channel& output;
     int level;
-    PnlssRecords records;
+    InputOutputRecords records;
     FrequencyData response;  ///< output over input
-    RankOptions options;
-    int order;          ///< of the polynomial models
-    StateSpace linear;  ///< of the best order, in discrete time
+    int order;               ///< of the polynomial models
+    bool orderGiven;         ///< else other orders may be tried as well
+    int degree;              ///< of monomials and powers
+    int iterations;          ///< of each search in the time domain, at most
+    StateSpace linear;       ///< of the best order, in discrete time
 };
 
 /// A fitted class: how it plays a record from rest (N x 1), and what it says of itself.
 struct FittedClass {
-    std::function<Eigen::MatrixXd(const PnlssRecord&)> play;
+    std::function<Eigen::MatrixXd(const InputOutputRecord&)> play;
     std::string description;
     int parameters = 0;
     bool stable = false;

@@ -45,7 +45,7 @@ const std::vector<Fitting>& fittings()
     return all;
 }
 
-double errorDb(const FittedClass& fitted, const std::vector<PnlssRecord>& records)
+double errorDb(const FittedClass& fitted, const std::vector<InputOutputRecord>& records)
 {
     std::vector<Eigen::MatrixXd> outputs;
     for (const auto& record : records)
@@ -165,8 +165,9 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
     const auto sweep = sweepOrders(response, sweeping);
     const auto linear = sweep.entries[sweep.chosen].found.model;
     const int order = options.order > 0 ? options.order : std::min(4, static_cast<int>(linear.order()));
-    const RankedTake data {given,    input,   *output, level, recordsOf(take, input, *output, level),
-                           response, options, order,   linear};
+    const RankedTake data {given,    input, *output,           level,          recordsOf(take, input, *output, level),
+                           response, order, options.order > 0, options.degree, options.iterations,
+                           linear};
 
     Ranking ranking;
     ranking.input = input.quantity;

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "Engine/Check/PreparedTake.h"
-#include "Engine/Polynomial/TakeRecords.h"
 #include "Engine/Progress.h"
-
-#include <nlohmann/json.hpp>
+#include "Engine/Ranking/RankedModel.h"
+#include "Engine/Take/Measurement.h"
 
 #include <optional>
 #include <string>
@@ -22,37 +21,6 @@ struct RankOptions {
     std::vector<std::string> classes;  ///< names of modelClasses(); empty: all
 
     bool isValid(std::string* reason = nullptr) const;
-};
-
-/// What it is worth to turn a class around, see linearizationOf(). Distortion is the power of what is not the linear
-/// part's output, over that.
-struct RankedLinearization {
-    double beforeDb = 0.0;  ///< as the model was fitted
-    double modelDb = 0.0;   ///< left of it on the model itself
-    double leftDb = 0.0;    ///< left of it on the take, with what the model does not explain
-    double load = 0.0;  ///< share of a core that predistorting one channel takes, in blocks of 64, at the take's rate
-    double latency = 0.0;  ///< s
-    std::string trouble;   ///< why it is not turned around, one sentence; the figures then mean nothing
-    double gainDb() const { return beforeDb - leftDb; }
-};
-
-/// One class of models, fitted to the take and judged on records that it has not seen.
-struct RankedModel {
-    std::string name;           ///< of modelClasses()
-    std::string description;    ///< "order 3, degree 3", "Bl(x), K(x)"
-    int parameters = 0;         ///< that the fit moved
-    double estimationDb = 0.0;  ///< relative rms error of a simulation [B 4.26]; +infinity: it ran away
-    double validationDb = 0.0;  ///< the same; NaN without validation records
-    /// core time to simulate over the signal's length; the physical driver's run with half the step, which tells its
-    /// accuracy, included
-    double load = 0.0;
-    double fitSeconds = 0.0;
-    bool stable = false;  ///< around rest, and no record made it run away
-    /// of the model, with the stimulus of its fit, as `predistort` plays it; null of the linear fractional class
-    nlohmann::ordered_json document = nullptr;
-    /// a sentence where the class could not be fitted; the figures then mean nothing
-    std::string trouble;
-    RankedLinearization linearization;
 };
 
 struct Ranking {

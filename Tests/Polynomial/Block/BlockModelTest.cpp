@@ -3,7 +3,7 @@
 // them.
 #include "Engine/Polynomial/Block/BlockModelFile.h"
 #include "Engine/Polynomial/Block/BlockModelFit.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Linear/Problem.h"
 #include "Polynomial/LinearStart.h"
 #include "Polynomial/Silverbox.h"
@@ -100,7 +100,7 @@ Eigen::VectorXd duffing(const Eigen::VectorXd& u, double fs, double k2, double k
 template <class System>
 BlockModelFit fitted(const System& system, double amplitude, double fs, Normal& normal, double noise)
 {
-    std::vector<PnlssRecord> records;
+    std::vector<InputOutputRecord> records;
     std::vector<Eigen::VectorXd> inputs, outputs;
     for (int r = 0; r < 3; ++r) {
         Eigen::VectorXd u(1024);
@@ -228,7 +228,7 @@ TEST_CASE("A hardening spring is seen as feedback")
         Eigen::VectorXd u(2048);
         for (auto& x : u)
             x = amplitude * normal();
-        return PnlssRecord {u, system(u), 256, false};
+        return InputOutputRecord {u, system(u), 256, false};
     };
     const std::vector estimation {fresh()}, validation {fresh()};
     PnlssFitOptions options;
@@ -272,7 +272,7 @@ TEST_CASE("A linear system needs no branch, and an unstable or useless linear pa
     auto unstable = G.model();
     unstable.A *= 1.3;
     const auto no = [&](Error::Kind kind, const char* what, const StateSpace& linear,
-                        const std::vector<PnlssRecord>& records, const BlockModelFitOptions& options) {
+                        const std::vector<InputOutputRecord>& records, const BlockModelFitOptions& options) {
         refused(kind, what, [&] { fitBlockModel(linear, records, {}, options); });
     };
     no(Error::Kind::usage, "not stable", unstable, {{u, u, 0, false}}, {});

@@ -9,6 +9,7 @@
 #include "Engine/Linear/Identify.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlssFit.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Signal/Fft.h"
 #include "Linear/Problem.h"
 
@@ -243,7 +244,7 @@ TEST_CASE("A fractional polynomial model explains a driver with semi-inductance 
     speaker.stiffness = spring.scaledTo(0.2, far);
     const auto take = bench::measure(speaker, setup);
     const auto frf = bla(take, Quantity::current, 0).frf;
-    std::vector<PnlssRecord> estimation, validation;
+    std::vector<InputOutputRecord> estimation, validation;
     const auto column = [](const std::vector<double>& x) {
         return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
     };
@@ -289,9 +290,9 @@ TEST_CASE("A fractional polynomial model explains a driver with semi-inductance 
         integerDb = std::min(integerDb, integer.validationDb);
     }
     const double noiseDb = setup.noiseDb - 10.0 * std::log10(2.0);
-    CAPTURE(fit.validationDb, integerDb, fit.model.alpha, fit.alphaDeviation);
+    CAPTURE(fit.validationDb, integerDb, fit.model.alpha, fit.alphaStandardError);
     CHECK(fit.stable);
     CHECK(fit.validationDb < noiseDb + 3.0);
     CHECK(integerDb > noiseDb + 10.0);
-    CHECK(std::abs(fit.model.alpha - 0.6) < 3.0 * fit.alphaDeviation + 1e-3);
+    CHECK(std::abs(fit.model.alpha - 0.6) < 3.0 * fit.alphaStandardError + 1e-3);
 }

@@ -3,7 +3,7 @@
 #include "Engine/Polynomial/Hammerstein/HammersteinFit.h"
 #include "Engine/Polynomial/Hammerstein/HammersteinSweep.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Signal/Multisine.h"
 #include "Linear/Problem.h"
@@ -238,7 +238,7 @@ TEST_CASE("Any record gives the model: exactly where it is one, to the noise whe
     };
     const auto record = [&](Index N, Index skip) {
         const auto u = drawn(N);
-        return PnlssRecord {u, simulate(truth, u), skip, false};
+        return InputOutputRecord {u, simulate(truth, u), skip, false};
     };
     const auto exact = fitHammerstein(8000.0, {record(700, 0), record(500, 30)}, {record(300, 30)}, {.length = 50});
     CHECK(exact.validationDb < -150.0);
@@ -282,7 +282,7 @@ TEST_CASE("Branches with a long memory are found by iteration")
         Eigen::MatrixXd u(N, 1);
         for (auto& x : u.reshaped())
             x = 0.5 * normal();
-        return PnlssRecord {u, simulate(truth, u), skip, false};
+        return InputOutputRecord {u, simulate(truth, u), skip, false};
     };
     const auto fit = fitHammerstein(8000.0, {drawn(16000, 0), drawn(9000, 2100)}, {drawn(6000, 500)},
                                     {.degree = 2, .length = 2100, .regularization = 1e-12});
@@ -322,7 +322,7 @@ TEST_CASE("Branches with a long memory are found by iteration")
 TEST_CASE("Records that no parallel Hammerstein model can be fitted to are refused")
 {
     const Eigen::MatrixXd u = Eigen::VectorXd::LinSpaced(50, -1.0, 1.0);
-    const auto no = [&](Error::Kind kind, const char* what, const std::vector<PnlssRecord>& records,
+    const auto no = [&](Error::Kind kind, const char* what, const std::vector<InputOutputRecord>& records,
                         const HammersteinFitOptions& options) {
         refused(kind, what, [&] { fitHammerstein(1000.0, records, {}, options); });
     };

@@ -4,7 +4,7 @@
 #include "Engine/Polynomial/Narx/NarxFile.h"
 #include "Engine/Polynomial/Narx/NarxFit.h"
 #include "Engine/Polynomial/Narx/NarxRecursion.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Linear/Problem.h"
 #include "Polynomial/Silverbox.h"
 
@@ -117,7 +117,7 @@ TEST_CASE("The terms of a NARX system are found among a hundred, one after the o
     Normal normal(3);
     const auto record = [&](Index N) {
         const auto u = white(N, 0.4, normal);
-        return PnlssRecord {u, recursion(u), 0, false};
+        return InputOutputRecord {u, recursion(u), 0, false};
     };
     const auto fit = fitNarx(1000.0, {record(800), record(500)}, {record(400)},
                              {.outputLags = 3, .inputLags = 3, .degree = 3});
@@ -152,7 +152,7 @@ TEST_CASE("Refinement takes away the bias that noise in the past outputs makes")
         const auto u = white(N, 0.4, normal);
         Eigen::MatrixXd y = recursion(u);
         y += white(N, noise * y.norm() / std::sqrt(static_cast<double>(N)), normal);
-        return PnlssRecord {u, y, 20, false};
+        return InputOutputRecord {u, y, 20, false};
     };
     const std::vector estimation {record(4000, 0.03)}, validation {record(2000, 0.03)}, clean {record(2000, 0.0)};
     NarxFitOptions options {.outputLags = 2, .inputLags = 1, .degree = 3, .maximumTerms = 12, .maximumIterations = 0};
@@ -185,7 +185,7 @@ TEST_CASE("Records and options that no NARX model can be fitted to are refused")
 {
     Normal normal(9);
     const auto u = white(50, 1.0, normal);
-    const auto no = [&](Error::Kind kind, const char* what, const std::vector<PnlssRecord>& records,
+    const auto no = [&](Error::Kind kind, const char* what, const std::vector<InputOutputRecord>& records,
                         const NarxFitOptions& options) {
         refused(kind, what, [&] { fitNarx(1000.0, records, {}, options); });
     };

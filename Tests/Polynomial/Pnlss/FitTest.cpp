@@ -7,6 +7,7 @@
 #include "Engine/Signal/Fft.h"
 #include "Linear/Problem.h"
 #include "Polynomial/LinearStart.h"
+#include "Polynomial/QuadraticRecord.h"
 #include "Polynomial/RungeKutta.h"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ struct Recovery {
     PnlssFit fromTruth, fromResponse;
 };
 
-Recovery recover(const StateSpace& truth, const PnlssRecord& estimation, const PnlssRecord& validation)
+Recovery recover(const StateSpace& truth, const InputOutputRecord& estimation, const InputOutputRecord& validation)
 {
     PnlssFitOptions options;
     options.linearFree = false;
@@ -236,29 +237,7 @@ TEST_CASE("The seed's loudspeaker is recovered to rounding from other inputs as 
         for (int seed = 1; seed <= 10; ++seed) {
             CAPTURE(tag, seed);
             Normal normal(seed);
-            // A flat random-phase multisine as long as the fixed problem's, from rest; the recursion is written out by
-            // itself.
-            const auto record = [&] {
-                constexpr Index N = 4096;
-                std::vector<std::complex<double>> spectrum(N / 2 + 1);
-                for (std::size_t k = 1; k < N / 2; ++k)
-                    // wrapped this often, a phase is uniform
-                    spectrum[k] = std::polar(1.0, 2.0 * std::numbers::pi * normal());
-                const auto period = inverseFft(spectrum, N);
-                Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), N);
-                u *= level * std::sqrt(static_cast<double>(N)) / u.norm();
-                Eigen::MatrixXd y(N, 1);
-                Eigen::Vector3d x = Eigen::Vector3d::Zero();
-                for (Index t = 0; t < N; ++t) {
-                    double products = 0.0;
-                    for (Index i = 0; i < 3; ++i)
-                        for (Index j = i; j < 3; ++j)
-                            products += x[i] * x[j];
-                    y(t, 0) = truth.C.row(0).dot(x) + truth.D(0, 0) * u(t, 0) + strength * products;
-                    x = (truth.A * x + truth.B * u(t, 0) + Eigen::Vector3d::Constant(strength * products)).eval();
-                }
-                return PnlssRecord {u, y, 0, false};
-            };
+            const auto record = [&] { return quadraticRecord(truth, strength, level, normal); };
             const auto estimation = record(), validation = record();
             const auto found = recover(truth, estimation, validation);
             CHECK(found.fromTruth.estimationDb < -218.0);
@@ -280,7 +259,7 @@ TEST_CASE(
         return;
     const Index N = 8192;
     std::vector<Eigen::VectorXd> u, y;
-    std::vector<PnlssRecord> records;
+    std::vector<InputOutputRecord> records;
     for (Index r = 0; r < 3; ++r) {  // two periods of each realization, averaged
         u.emplace_back(0.5 * (rows.block(2 * r * N, 2, N, 1) + rows.block((2 * r + 1) * N, 2, N, 1)));
         y.emplace_back(0.5 * (rows.block(2 * r * N, 3, N, 1) + rows.block((2 * r + 1) * N, 3, N, 1)));
@@ -326,7 +305,7 @@ TEST_CASE("Other drivers with four nonlinear laws are explained down to their no
             return heard;
         };
         std::vector<Eigen::VectorXd> u, y;
-        std::vector<PnlssRecord> records;
+        std::vector<InputOutputRecord> records;
         for (int realization = 0; realization < 3; ++realization) {
             std::vector<std::complex<double>> spectrum(N / 2 + 1);
             for (std::size_t line = 5; line <= N / 4; ++line)
@@ -370,7 +349,7 @@ TEST_CASE("The Silverbox is explained to a quarter of a millivolt")
             return Eigen::MatrixXd(Eigen::Map<const Eigen::VectorXd>(
                 take.channels[static_cast<std::size_t>(channel)].samples.data() + from, static_cast<Index>(to - from)));
         };
-        return PnlssRecord {cut(0), cut(1), skip, false};
+        return InputOutputRecord {cut(0), cut(1), skip, false};
     };
     // Nine multisines, then the tenth, then the arrow, whose record begins amid a transient.
     const std::vector estimation {record(40580, 118800, 200)}, last {record(118800, 127400, 200)},
@@ -391,7 +370,7 @@ TEST_CASE("The Silverbox is explained to a quarter of a millivolt")
     options.search = PnlssSearch::plain;
     options.maximumIterations = 10;  // more bend the model for what the arrow, which goes further, does not do
     const auto fit = fitPnlss(start, estimation, {}, options);
-    const auto millivolts = [&](const std::vector<PnlssRecord>& records) {
+    const auto millivolts = [&](const std::vector<InputOutputRecord>& records) {
         const auto rows = records[0].output.rows() - records[0].skip;
         return 1e3 * std::pow(10.0, relativeErrorDb(fit.model, records) / 20.0)
                * records[0].output.bottomRows(rows).norm() / std::sqrt(static_cast<double>(rows));

@@ -52,7 +52,7 @@ Eigen::VectorXd simulated(const Pnlss& m, const Eigen::VectorXd& u)
 }
 
 /// A steady period of noise in, and what comes out with noise added.
-PnlssRecord periodOf(const Pnlss& truth, Index N, double noiseDb, Normal& normal)
+InputOutputRecord periodOf(const Pnlss& truth, Index N, double noiseDb, Normal& normal)
 {
     Eigen::VectorXd u(N);
     for (auto& x : u)

@@ -12,6 +12,7 @@
 #include "Engine/Polynomial/Pnlss/TangentTest.h"
 #include "Engine/Signal/Fft.h"
 #include "Linear/Problem.h"
+#include "Polynomial/QuadraticRecord.h"
 #include "Polynomial/RungeKutta.h"
 
 #include <complex>
@@ -39,36 +40,17 @@ StateSpace loudspeaker(double rate)
 }
 
 /// It with all products of two states in every equation (4.4.1), one period of a random-phase multisine from rest.
-PnlssRecord drawn(double rate, double strength, int seed)
+InputOutputRecord drawn(double rate, double strength, int seed)
 {
-    constexpr Index N = 4096;
-    const auto linear = loudspeaker(rate);
     Normal normal(static_cast<std::uint64_t>(seed));
-    std::vector<std::complex<double>> spectrum(N / 2 + 1);
-    for (std::size_t k = 1; k < N / 2; ++k)
-        // wrapped this often, a phase is uniform
-        spectrum[k] = std::polar(1.0, 2.0 * std::numbers::pi * normal());
-    const auto period = inverseFft(spectrum, N);
-    Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(period.data(), N);
-    u *= (rate > 45000.0 ? 0.03 : 0.033) * std::sqrt(static_cast<double>(N)) / u.norm();
-    Eigen::MatrixXd y(N, 1);
-    Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    for (Index t = 0; t < N; ++t) {
-        double products = 0.0;
-        for (Index i = 0; i < 3; ++i)
-            for (Index j = i; j < 3; ++j)
-                products += x[i] * x[j];
-        y(t, 0) = linear.C.row(0).dot(x) + linear.D(0, 0) * u(t, 0) + strength * products;
-        x = (linear.A * x + linear.B * u(t, 0) + Eigen::Vector3d::Constant(strength * products)).eval();
-    }
-    return {u, y, 0, false};
+    return quadraticRecord(loudspeaker(rate), strength, rate > 45000.0 ? 0.03 : 0.033, normal);
 }
 
 /// Two thirds to fit, the last third to judge: as a take without periods is cut.
-PnlssFit fitted(const PnlssRecord& record, double rate, int order, int degree, TermMask mask)
+PnlssFit fitted(const InputOutputRecord& record, double rate, int order, int degree, TermMask mask)
 {
     const Index N = record.input.rows(), cut = 2 * N / 3;
-    const PnlssRecord estimation {record.input.topRows(cut), record.output.topRows(cut), 0, false};
+    const InputOutputRecord estimation {record.input.topRows(cut), record.output.topRows(cut), 0, false};
     std::vector<PnlssStart> starts;
     for (const auto& linear : linearStarts(estimation, rate, order))
         starts.push_back({withTerms(linear.model, degree, mask), {linear.initial}});
@@ -84,7 +66,7 @@ bool saysArrived(const PnlssFit& fit)
 }
 
 /// A hardening oscillator from the middle of a motion, with noise of `db` on its position.
-PnlssRecord oscillation(const Eigen::VectorXd& u, double rate, double db, Normal& normal)
+InputOutputRecord oscillation(const Eigen::VectorXd& u, double rate, double db, Normal& normal)
 {
     const double w = 2.0 * std::numbers::pi * 60.0;
     const auto slope = [w](const Eigen::Vector2d& z, double force) {
@@ -233,7 +215,7 @@ TEST_CASE("Noise of any colour passes for noise")
         double state = 0.0;
         for (auto& value : y.reshaped())
             value += 1e-3 * (state = memory * state + normal());
-        const PnlssRecord record {u, y, 0, false};
+        const InputOutputRecord record {u, y, 0, false};
         const auto error = relativeErrorDb(withTerms(truth, 2), {record});
         const auto left = untoldNoise(withTerms(truth, 2), {record}, {});
         CAPTURE(memory, error);
@@ -265,7 +247,7 @@ TEST_CASE("A force that the model lacks is told apart from noise, though its mot
     for (auto& value : noise.reshaped())
         value = state = 0.8 * state + normal();
     noise *= std::pow(10.0, db / 20.0) * y.norm() / noise.norm();
-    const PnlssRecord record {u, y + noise, 0, false};
+    const InputOutputRecord record {u, y + noise, 0, false};
     const auto error = relativeErrorDb(model, {record});
     const auto left = untoldNoise(model, {record}, {});
     REQUIRE(left.has_value());
@@ -285,7 +267,7 @@ TEST_CASE("A fit is chosen where it was fitted, and what was held out tells whet
     const auto truth = loudspeaker(rate);
     Normal normal(3);
     const Eigen::MatrixXd u = noiseOf(300, 1.0, normal), y = simulate(truth, u);
-    const std::vector<PnlssRecord> loud {{10.0 * u, 10.0 * y, 0, false}}, quiet {{u, y, 100, false}};
+    const std::vector<InputOutputRecord> loud {{10.0 * u, 10.0 * y, 0, false}}, quiet {{u, y, 100, false}};
     // The same relative error of a signal 20 dB below is one 20 dB below.
     const double shape = 10.0 * std::log10((y.squaredNorm() / 300.0) / (y.bottomRows(200).squaredNorm() / 200.0));
     CHECK(heldOutDb(-50.0, loud, -50.0, quiet) == Approx(-20.0 - shape).margin(1e-9));
@@ -309,7 +291,7 @@ TEST_CASE("Several starts must be of one structure")
 {
     const auto truth = loudspeaker(8000.0);
     const Eigen::MatrixXd u = Eigen::MatrixXd::Ones(50, 1);
-    const std::vector<PnlssRecord> records {{u, u, 0, false}};
+    const std::vector<InputOutputRecord> records {{u, u, 0, false}};
     refused(Error::Kind::usage, "no start", [&] { fitPnlss(std::vector<PnlssStart> {}, records, {}); });
     refused(Error::Kind::usage, "one structure", [&] {
         fitPnlss(std::vector<PnlssStart> {{withTerms(truth, 2), {}}, {withTerms(truth, 3), {}}}, records, {});

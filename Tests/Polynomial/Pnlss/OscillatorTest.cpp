@@ -106,7 +106,7 @@ VectorXd multisineOf(Index N, double T, double low, double high, double rms, Nor
 
 /// A linear start: y(t+1) = a y(t) + b y(t-1) + c u(t) + d u(t-1) by least squares, with all monomials of the states'
 /// and input's next values.
-Pnlss startOn(const std::vector<PnlssRecord>& records, double T, int degree)
+Pnlss startOn(const std::vector<InputOutputRecord>& records, double T, int degree)
 {
     Eigen::Matrix4d square = Eigen::Matrix4d::Zero();
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
@@ -130,9 +130,9 @@ Pnlss startOn(const std::vector<PnlssRecord>& records, double T, int degree)
 }
 
 /// A run cut into short records, each with a first state of its own: over so short a time chaos has not grown.
-std::vector<PnlssRecord> cut(const VectorXd& u, const VectorXd& y, Index length)
+std::vector<InputOutputRecord> cut(const VectorXd& u, const VectorXd& y, Index length)
 {
-    std::vector<PnlssRecord> records;
+    std::vector<InputOutputRecord> records;
     for (Index first = 0; first + length <= u.size(); first += length)
         records.push_back({u.segment(first, length), y.segment(first, length), 0, false});
     return records;
@@ -176,7 +176,7 @@ TEST_CASE("Duffing's oscillator at moderate levels is identified far below any m
     Normal normal(1);
     Pnlss model;
     for (const auto& [newton, db] : {std::pair {0.5, -95.0}, std::pair {1.0, -80.0}}) {
-        std::vector<PnlssRecord> records;
+        std::vector<InputOutputRecord> records;
         for (int k = 0; k < 3; ++k) {
             const auto u = multisineOf(N, T, 10.0, 200.0, newton, normal);
             Vector2d z = Vector2d::Zero();
@@ -266,7 +266,7 @@ TEST_CASE("Van der Pol's oscillator is identified, and the model says that its l
     Vector2d z(1.0, 0.0);
     const VectorXd y = positions(flow, z, u, T);
     auto records = cut(u, y, 512);
-    const std::vector<PnlssRecord> validation {{u.tail(8192), y.tail(8192), 4096, false}};
+    const std::vector<InputOutputRecord> validation {{u.tail(8192), y.tail(8192), 4096, false}};
     records.resize(16);
     PnlssFitOptions options;
     options.estimateInitialStates = true;

@@ -3,6 +3,7 @@
 
 #include "Engine/Loudspeaker/Network.h"
 #include "Engine/Loudspeaker/RelaxationSpectrum.h"
+#include "Engine/Numerics/LadderCells.h"
 
 #include <algorithm>
 #include <array>
@@ -14,14 +15,10 @@ namespace excursion {
 namespace {
 
 /// Currents in the iron, Z(s) = sum_k R_k s/(s + p_k) with R_k > 0: resistors in parallel with inductors, as any set of
-/// passive loops that couple to the coil. Beforehand it is a semi-inductance Z(s) = K s^a [B 5]. From
-///     s^a = (sin(pi a)/pi) int_0^inf p^(a-1) s/(s + p) dp,     0 < a < 1,
-/// the trapezoidal rule in log p gives one resistor in parallel with one inductor per cell,
-///     R_k s/(s + p_k),   R_k = K (sin(pi a)/pi) p_k^a ln q,   p_k = p_0 q^k,
-/// with an error of about 2 exp(-pi^2/ln q) for the sum over all k. What it has below p_low and above p_high is
-/// not dropped: the moments of these tails are geometric series, and the first three of each are matched by one more
-/// cell with a series resistor (below) and a series inductor (above). So the element is K (jw)^a within 3.5e-4 from the
-/// lowest to the highest frequency of interest and still has finite resistance and stiffness in the numerical sense.
+/// passive loops that couple to the coil. Beforehand it is a semi-inductance Z(s) = K s^a [B 5], drawn by the ladder of
+/// Engine/Numerics/LadderCells.h with its tails as one cell with a series resistor (below) and one with a series
+/// inductor (above). So the element is K (jw)^a within 3.5e-4 from the lowest to the highest frequency of interest and
+/// still has finite resistance and stiffness in the numerical sense.
 /// The fastest cells below the upper tail, those that the impedance shows, depart from the law in rate and weight as
 /// far as the data asks (RelaxationSpectrum.h): real coils follow K s^a within a few to thirty percent. A cell's memory
 /// is the current j_k through its inductor: dj_k/dt = p_k (i - j_k), voltage R_k (i - j_k).
@@ -104,14 +101,11 @@ public:
     template <class T>
     void prepareFor(const Extent& e, const T* parameters, T* c) const
     {
-        using std::exp;
-        using std::sin;
         const T &K = parameters[0], &a = parameters[1];
         const int inner = innerCells(e), first = inner - spectrum::cells;
         // step: ln q
         const double low = std::log(lowRate(e)), high = std::log(highRate(e)), step = (high - low) / inner;
-        const T factor = K * sin(std::numbers::pi * a) * (step / std::numbers::pi);
-        const auto power = [](double logarithm, const T& exponent) { return exp(exponent * logarithm); };
+        const T factor = ladderFactor(K, a, step);
 
         T* cell = c + 2;
         for (int k = 0; k < inner; ++k) {
@@ -119,20 +113,15 @@ public:
             const auto departs = k < first ? spectrum::Departure<T> {T(1.0), T(1.0)}
                                            : spectrum::departure(parameters + 2, k - first);
             *cell++ = std::exp(logRate) * departs.rate;
-            *cell++ = factor * power(logRate, a) * departs.weight;
+            *cell++ = factor * ladderWeight(logRate, a) * departs.weight;
         }
-        // Tail below, s/(s + p) = 1 - p/s + p^2/s^2 - ...: the moments sum p_k^(a + n), k < 0, n = 0, 1, 2.
-        const auto below = [&](double n) { return power(low - 0.5 * step, a + n) / (1.0 - exp(-(a + n) * step)); };
-        const T belowRate = below(2) / below(1), belowR = below(1) / belowRate;
-        *cell++ = belowRate;
-        *cell++ = factor * belowR;
-        c[0] = factor * (below(0) - belowR);
-        // Tail above, s/(s + p) = s/p - s^2/p^2 + ...: the moments sum p_k^(a - n), k >= inner, n = 1, 2, 3.
-        const auto above = [&](double n) { return power(high + 0.5 * step, a - n) / (1.0 - exp((a - n) * step)); };
-        const T aboveRate = above(2) / above(3), aboveR = above(2) * aboveRate * aboveRate;
-        *cell++ = aboveRate;
-        *cell++ = factor * aboveR;
-        c[1] = factor * (above(1) - aboveR / aboveRate);
+        const auto below = ladderBelow(low - 0.5 * step, a, step), above = ladderAbove(high + 0.5 * step, a, step);
+        *cell++ = below.rate;
+        *cell++ = factor * below.resistance;
+        *cell++ = above.rate;
+        *cell++ = factor * above.resistance;
+        c[0] = factor * below.constant;
+        c[1] = factor * above.constant;
     }
 
     template <class T>

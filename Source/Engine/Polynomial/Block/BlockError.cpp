@@ -28,7 +28,7 @@ MatrixXd filtered(const StateSpace& G, const MatrixXd& columns)
     return result;
 }
 
-BlockError::BlockError(const BlockModel& structure, const std::vector<PnlssRecord>& records)
+BlockError::BlockError(const BlockModel& structure, const std::vector<InputOutputRecord>& records)
     : structure_(structure),
       recursion_(withoutTerms(structure.linear), true),
       records_(records),

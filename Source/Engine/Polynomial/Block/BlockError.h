@@ -17,7 +17,7 @@ namespace excursion {
 class BlockError final : public SearchProblem {
 public:
     /// @param structure  which branches there are, and their degrees
-    BlockError(const BlockModel& structure, const std::vector<PnlssRecord>&);
+    BlockError(const BlockModel& structure, const std::vector<InputOutputRecord>&);
 
     Eigen::VectorXd valuesOf(const BlockModel&) const;
     BlockModel modelAt(const Eigen::VectorXd& values) const;
@@ -30,7 +30,7 @@ private:
 
     BlockModel structure_;
     Recursion recursion_;
-    const std::vector<PnlssRecord>& records_;
+    const std::vector<InputOutputRecord>& records_;
     double power_;
 };
 

@@ -6,7 +6,7 @@
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Polynomial/Block/BlockError.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Polynomial/Powers.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
@@ -74,8 +74,8 @@ struct Candidate {
     SearchSummary summary;
 };
 
-Candidate refined(const BlockModel& start, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& judging, int iterations, const std::function<void()>& begun)
+Candidate refined(const BlockModel& start, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& judging, int iterations, const std::function<void()>& begun)
 {
     Candidate result {
         start, start.isValid() ? simulationErrorDb(start, judging) : std::numeric_limits<double>::infinity(), {}};
@@ -97,7 +97,7 @@ Candidate refined(const BlockModel& start, const std::vector<PnlssRecord>& estim
 }
 
 /// The triangular factor of [regressors, output] of all records.
-MatrixXd branchFactor(const StateSpace& G, const std::vector<PnlssRecord>& records, Index powers)
+MatrixXd branchFactor(const StateSpace& G, const std::vector<InputOutputRecord>& records, Index powers)
 {
     TallQr qr(3 + 3 * powers);
     for (const auto& record : records) {
@@ -109,7 +109,7 @@ MatrixXd branchFactor(const StateSpace& G, const std::vector<PnlssRecord>& recor
     return qr.R();
 }
 
-std::map<BlockBranch, double> powersDb(const BlockModel& model, const std::vector<PnlssRecord>& records)
+std::map<BlockBranch, double> powersDb(const BlockModel& model, const std::vector<InputOutputRecord>& records)
 {
     std::map<BlockBranch, double> powers;
     for (const auto& record : records) {
@@ -135,8 +135,8 @@ bool BlockModelFitOptions::isValid(std::string* reason) const
     return true;
 }
 
-BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRecord>& estimation,
-                            const std::vector<PnlssRecord>& validation, const BlockModelFitOptions& options,
+BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<InputOutputRecord>& estimation,
+                            const std::vector<InputOutputRecord>& validation, const BlockModelFitOptions& options,
                             const Progress& progress)
 {
     std::string reason;

@@ -50,8 +50,8 @@ struct BlockModelFit : SearchSummary {
 /// kept stable. The powers are told.
 /// Throws Error (usage) for options that make no sense or a linear part that is not stable, of discrete time, with one
 /// input and one output; (data) for records that do not fit.
-BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<PnlssRecord>& estimation,
-                            const std::vector<PnlssRecord>& validation, const BlockModelFitOptions& = {},
+BlockModelFit fitBlockModel(const StateSpace& linear, const std::vector<InputOutputRecord>& estimation,
+                            const std::vector<InputOutputRecord>& validation, const BlockModelFitOptions& = {},
                             const Progress& = {});
 
 }  // namespace excursion

@@ -2,7 +2,6 @@
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlss.h"
 
 #include "Engine/Error.h"
-#include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 
@@ -171,19 +170,6 @@ StateSpace expandedLinear(const FractionalPnlss& model, const FractionalGrid& gr
 bool isStable(const FractionalPnlss& model, const FractionalGrid& grid)
 {
     return stabilityMargin(expandedLinear(model, grid)) > -1e-9;
-}
-
-MatrixXd simulate(const FractionalPnlss& model, const MatrixXd& input, const FractionalGrid& grid)
-{
-    requireValid(model);
-    if (input.cols() != model.form.linear.inputs())
-        throw Error(Error::Kind::usage, "The input does not fit the model.");
-    FractionalRecursion::Trajectory run;
-    run.output = MatrixXd::Zero(input.rows(), model.form.linear.outputs());
-    if (!FractionalRecursion(model, grid, false, false)
-             .run(model, fineInput(input, grid.substeps, false, 0), 1e100, run))
-        run.output.setConstant(std::numeric_limits<double>::quiet_NaN());
-    return run.output;
 }
 
 }  // namespace excursion

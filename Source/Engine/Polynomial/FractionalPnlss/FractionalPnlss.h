@@ -39,7 +39,7 @@ std::vector<Eigen::MatrixXcd> respondLinear(const FractionalPnlss&, const std::v
 struct FractionalGrid {
     double sampleRate = 0.0;  ///< Hz, of inputs and outputs
     int substeps = 1;
-    LadderOptions band;
+    DiffusiveLadderOptions band;
 
     double step() const { return 1.0 / (sampleRate * substeps); }
 };
@@ -68,10 +68,5 @@ StateSpace expandedLinear(const FractionalPnlss&, const FractionalGrid&);
 
 /// Whether that is stable. Cells slower than the record stand at 1 up to rounding, and are not held against it.
 bool isStable(const FractionalPnlss&, const FractionalGrid&);
-
-/// The output, N x p, from rest, for an input of N samples, N x m, at the grid's sample rate: between samples it is
-/// interpolated band-limited. A model that runs away leaves the finite numbers. Throws Error (usage) where the input
-/// does not fit.
-Eigen::MatrixXd simulate(const FractionalPnlss&, const Eigen::MatrixXd& input, const FractionalGrid&);
 
 }  // namespace excursion

@@ -6,6 +6,7 @@
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
+#include "Engine/Polynomial/FractionalPnlss/FractionalSimulation.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 
@@ -24,7 +25,7 @@ constexpr double far = 1e100;  // no state of a loudspeaker is
 class FractionalSimulationError : public SearchProblem {
 public:
     FractionalSimulationError(const FractionalPnlss& structure, const FractionalGrid& grid,
-                              const std::vector<PnlssRecord>& records, const FractionalPnlssOptions& options)
+                              const std::vector<InputOutputRecord>& records, const FractionalPnlssOptions& options)
         : structure_(structure),
           records_(records),
           recursion_(structure, grid, options.linearFree, options.alphaFree),
@@ -82,7 +83,7 @@ public:
 
 private:
     const FractionalPnlss& structure_;
-    const std::vector<PnlssRecord>& records_;
+    const std::vector<InputOutputRecord>& records_;
     FractionalRecursion recursion_;
     double power_, bound_ = far;
     std::vector<MatrixXd> inputs_;
@@ -115,7 +116,7 @@ bool FractionalPnlssOptions::isValid(std::string* reason) const
 }
 
 double relativeErrorDb(const FractionalPnlss& model, const FractionalGrid& grid,
-                       const std::vector<PnlssRecord>& records)
+                       const std::vector<InputOutputRecord>& records)
 {
     const FractionalRecursion recursion(model, grid, false, false);
     FractionalRecursion::Trajectory run;
@@ -129,9 +130,9 @@ double relativeErrorDb(const FractionalPnlss& model, const FractionalGrid& grid,
 }
 
 FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const FractionalGrid& grid,
-                                      const std::vector<PnlssRecord>& estimation,
-                                      const std::vector<PnlssRecord>& validation, const FractionalPnlssOptions& options,
-                                      const Progress& progress)
+                                      const std::vector<InputOutputRecord>& estimation,
+                                      const std::vector<InputOutputRecord>& validation,
+                                      const FractionalPnlssOptions& options, const Progress& progress)
 {
     std::string reason;
     if (!start.isValid(&reason) || !options.isValid(&reason))
@@ -175,7 +176,7 @@ FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const Fracti
         Index samples = 0;
         for (const auto& record : estimation)
             samples += (record.output.rows() - record.skip) * record.output.cols();
-        result.alphaDeviation = lastDeviation(problem.factor(best), samples, options.rankTolerance);
+        result.alphaStandardError = lastDeviation(problem.factor(best), samples, options.rankTolerance);
     }
     result.stable = isStable(result.model, grid);
     return result;

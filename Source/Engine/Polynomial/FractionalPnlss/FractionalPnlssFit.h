@@ -20,7 +20,7 @@ struct FractionalPnlssOptions {
 struct FractionalPnlssFit : SearchSummary {
     FractionalPnlss model;
     /// standard error of alpha, what is left taken for white noise; 0 where alpha was given
-    double alphaDeviation = 0.0;
+    double alphaStandardError = 0.0;
     /// relative rms error [B 4.26] of the model that is returned; validation NaN without records
     double estimationDb = 0.0, validationDb = 0.0;
     bool stable = false;          ///< the linear part on the grid is stable, and no record made the model run away
@@ -28,7 +28,7 @@ struct FractionalPnlssFit : SearchSummary {
 };
 
 /// As relativeErrorDb() of a PNLSS model, on a grid.
-double relativeErrorDb(const FractionalPnlss&, const FractionalGrid&, const std::vector<PnlssRecord>&);
+double relativeErrorDb(const FractionalPnlss&, const FractionalGrid&, const std::vector<InputOutputRecord>&);
 
 /// Identification of the fractional polynomial model in the time domain, which [B 7.2] leaves to the future: the
 /// simulation error of the ladder realization is lowered as that of a PNLSS model is (see fitPnlss), with the exact
@@ -36,8 +36,8 @@ double relativeErrorDb(const FractionalPnlss&, const FractionalGrid&, const std:
 /// the model with the least error on them is returned. Throws Error (usage, data) for options, a model or records that
 /// do not fit.
 FractionalPnlssFit fitFractionalPnlss(const FractionalPnlss& start, const FractionalGrid&,
-                                      const std::vector<PnlssRecord>& estimation,
-                                      const std::vector<PnlssRecord>& validation, const FractionalPnlssOptions& = {},
-                                      const Progress& = {});
+                                      const std::vector<InputOutputRecord>& estimation,
+                                      const std::vector<InputOutputRecord>& validation,
+                                      const FractionalPnlssOptions& = {}, const Progress& = {});
 
 }  // namespace excursion

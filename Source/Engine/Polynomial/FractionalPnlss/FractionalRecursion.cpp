@@ -2,7 +2,6 @@
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
 
 #include "Engine/Polynomial/SensitivityKernels.h"
-#include "Engine/Signal/Resample.h"
 
 #include <Eigen/LU>
 
@@ -289,23 +288,6 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
         }
         past.advance(run.derivatives.col(t));
     }
-}
-
-MatrixXd fineInput(const MatrixXd& input, int substeps, bool periodic, Index skip)
-{
-    const auto N = input.rows();
-    const Index after = periodic ? std::min<Index>(N - skip, 256) : 0;
-    MatrixXd fine(N * substeps, input.cols());
-    std::vector<double> samples(static_cast<std::size_t>(N + after));
-    for (Index c = 0; c < input.cols(); ++c) {
-        for (Index t = 0; t < N; ++t)
-            samples[static_cast<std::size_t>(t)] = input(t, c);
-        for (Index t = 0; t < after; ++t)
-            samples[static_cast<std::size_t>(N + t)] = input(skip + t, c);
-        const auto between = upsample(samples, substeps);
-        fine.col(c) = Eigen::Map<const VectorXd>(between.data(), N * substeps);
-    }
-    return fine;
 }
 
 }  // namespace excursion

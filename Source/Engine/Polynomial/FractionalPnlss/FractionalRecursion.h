@@ -46,9 +46,4 @@ private:
     MonomialProducts monomials_;
 };
 
-/// An input at samples, between them and `after` samples beyond, band-limited: (N substeps) x m.
-/// @param periodic  the samples after `skip` are one whole period, which goes on; else the record is continued by
-/// reflection
-Eigen::MatrixXd fineInput(const Eigen::MatrixXd& input, int substeps, bool periodic, Eigen::Index skip);
-
 }  // namespace excursion

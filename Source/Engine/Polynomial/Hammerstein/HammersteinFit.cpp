@@ -4,7 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Polynomial/Hammerstein/LongHammerstein.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Polynomial/Powers.h"
 #include "Engine/Validity.h"
 
@@ -22,7 +22,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// P = [u, u^2 .. u^N] T with unit mean square on the records.
-MatrixXd orthonormalPolynomials(const std::vector<PnlssRecord>& records, int degree)
+MatrixXd orthonormalPolynomials(const std::vector<InputOutputRecord>& records, int degree)
 {
     TallQr qr(degree);
     double samples = 0.0, size = 0.0;
@@ -98,8 +98,8 @@ std::vector<Index> lengthsUpTo(Index longest, bool choose)
 
 constexpr Index mostDense = 4096;  // unknowns: their matrix of normal equations takes 134 MB
 
-HammersteinFit fittedByIteration(double sampleRate, const std::vector<PnlssRecord>& estimation,
-                                 const std::vector<PnlssRecord>& validation, const MatrixXd& T, Index K,
+HammersteinFit fittedByIteration(double sampleRate, const std::vector<InputOutputRecord>& estimation,
+                                 const std::vector<InputOutputRecord>& validation, const MatrixXd& T, Index K,
                                  const HammersteinFitOptions& options, const Progress& progress)
 {
     // iterations, between looks at the validation records, looks without a better one
@@ -147,8 +147,8 @@ bool HammersteinFitOptions::isValid(std::string* reason) const
     return true;
 }
 
-HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>& estimation,
-                              const std::vector<PnlssRecord>& validation, const HammersteinFitOptions& options,
+HammersteinFit fitHammerstein(double sampleRate, const std::vector<InputOutputRecord>& estimation,
+                              const std::vector<InputOutputRecord>& validation, const HammersteinFitOptions& options,
                               const Progress& progress)
 {
     requireFitting(options, sampleRate, estimation, validation);

@@ -39,8 +39,8 @@ struct HammersteinFit : SearchSummary {
 /// iteration (LongHammerstein), and the iteration with the least error on the validation records is returned: to stop
 /// early regularizes as well. Throws Error (usage, data) for options or records that make no sense, (numerical) when
 /// the equations have no solution in finite numbers.
-HammersteinFit fitHammerstein(double sampleRate, const std::vector<PnlssRecord>& estimation,
-                              const std::vector<PnlssRecord>& validation, const HammersteinFitOptions& = {},
+HammersteinFit fitHammerstein(double sampleRate, const std::vector<InputOutputRecord>& estimation,
+                              const std::vector<InputOutputRecord>& validation, const HammersteinFitOptions& = {},
                               const Progress& = {});
 
 }  // namespace excursion

@@ -2,7 +2,7 @@
 #include "Engine/Polynomial/Hammerstein/HammersteinSweep.h"
 
 #include "Engine/Error.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Validity.h"
 
@@ -225,7 +225,7 @@ HammersteinSweepFit identifyHammerstein(const ExponentialSweep& sweep, std::span
         const Eigen::MatrixXd part = v.middleRows(from, to - from);
         return part.array() - part.mean();
     };
-    PnlssRecord record;
+    InputOutputRecord record;
     record.output = centred(Eigen::Map<const Eigen::VectorXd>(output.data(), samples));
     result.estimationDb = outputErrorDb(
         {centred(simulate(result.model, Eigen::Map<const Eigen::VectorXd>(x.data(), samples)))}, {record});

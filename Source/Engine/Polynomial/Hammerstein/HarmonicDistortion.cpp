@@ -3,7 +3,7 @@
 
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Take/SweepTake.h"
@@ -389,7 +389,7 @@ SweepModel sweepModel(const SweepTake& sweepTake, Quantity output, const Harmoni
         return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
     };
     const auto errorAt = [&](const ParallelHammerstein& model, std::size_t level) {
-        PnlssRecord record;
+        InputOutputRecord record;
         record.output = judged(column(blocks.mean(*channel, level)));
         return outputErrorDb({judged(simulate(model, column(blocks.mean(input, level))))}, {record});
     };

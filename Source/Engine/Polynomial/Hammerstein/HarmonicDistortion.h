@@ -57,7 +57,7 @@ struct HarmonicDistortion {
 /// keep the harmonics apart.
 HarmonicDistortion harmonicDistortion(const SweepTake&, const HarmonicOptions& = {}, const Progress& = {});
 
-/// A parallel Hammerstein model of the loudest sweep, and its relative rms error (seed 4.26) at each level, played with
+/// A parallel Hammerstein model of the loudest sweep, and its relative rms error [B 4.26] at each level, played with
 /// the voltage that was recorded, where all branches are known.
 struct SweepModel {
     ParallelHammerstein model;

@@ -13,7 +13,7 @@ namespace excursion {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-LongHammerstein::LongHammerstein(const std::vector<PnlssRecord>& records, const Eigen::MatrixXd& T, Index taps)
+LongHammerstein::LongHammerstein(const std::vector<InputOutputRecord>& records, const Eigen::MatrixXd& T, Index taps)
     : branches_(T.cols()), taps_(taps)
 {
     for (const auto& record : records) {

@@ -16,7 +16,7 @@ namespace excursion {
 class LongHammerstein {
 public:
     /// @param T  polynomials P = [u, u^2 .. u^N] T of the input that the branches filter, N x N
-    LongHammerstein(const std::vector<PnlssRecord>&, const Eigen::MatrixXd& T, Eigen::Index taps);
+    LongHammerstein(const std::vector<InputOutputRecord>&, const Eigen::MatrixXd& T, Eigen::Index taps);
 
     /// What is told every few iterations; false ends the search.
     using Judge = std::function<bool(const Eigen::VectorXd& unknowns, int iterations)>;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/Narx/Narx.h"
 
-#include "Engine/Error.h"
-#include "Engine/Polynomial/Narx/NarxRecursion.h"
 #include "Engine/Validity.h"
 
 #include <cmath>
-#include <limits>
+#include <vector>
 
 namespace excursion {
 
@@ -26,20 +24,6 @@ bool Narx::isValid(std::string* reason) const
     if (!coefficients.allFinite())
         return refuse(reason, "a coefficient of a NARX model is not finite");
     return true;
-}
-
-Eigen::MatrixXd simulate(const Narx& model, const Eigen::MatrixXd& input)
-{
-    std::string reason;
-    if (!model.isValid(&reason))
-        throw Error(Error::Kind::usage, "The model cannot be simulated: " + reason + ".");
-    if (input.cols() != 1)
-        throw Error(Error::Kind::usage, "A NARX model has one input, but the record has another number.");
-    Eigen::VectorXd output;
-    const auto lasted = NarxRecursion(model).run(model.coefficients, input.col(0), std::numeric_limits<double>::max(),
-                                                 output);
-    output.tail(output.size() - lasted).setConstant(std::numeric_limits<double>::quiet_NaN());
-    return output;
 }
 
 Pnlss pnlssOf(const Narx& model)

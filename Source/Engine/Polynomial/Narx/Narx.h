@@ -25,11 +25,6 @@ struct Narx {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// The output, N x 1, for an input of N samples, N x 1; input and output are 0 before. A model that runs away leaves
-/// the finite numbers; what comes after is not finite either. Throws Error (usage) for a model or an input that does
-/// not fit.
-Eigen::MatrixXd simulate(const Narx&, const Eigen::MatrixXd& input);
-
 /// The same model as PNLSS: its states are the lags, x(t) = (y(t-1) .. y(t-na), u(t-1) .. u(t-nb)), and the first row
 /// of E and the one of F are alike.
 Pnlss pnlssOf(const Narx&);

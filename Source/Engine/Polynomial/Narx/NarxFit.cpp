@@ -6,7 +6,7 @@
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Polynomial/Narx/NarxRecursion.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Validity.h"
 
 #include <cmath>
@@ -40,7 +40,7 @@ Narx allTerms(double sampleRate, const NarxFitOptions& options)
 }
 
 /// The triangular factor of [regressors, output] over the judged samples of all records.
-MatrixXd predictionFactor(const Narx& model, const std::vector<PnlssRecord>& records)
+MatrixXd predictionFactor(const Narx& model, const std::vector<InputOutputRecord>& records)
 {
     const NarxRecursion recursion(model);
     const auto K = model.parameters();
@@ -100,7 +100,7 @@ Choice chosenForward(const MatrixXd& R, int most)
 
 class NarxError final : public SearchProblem {
 public:
-    NarxError(const Narx& structure, const std::vector<PnlssRecord>& records)
+    NarxError(const Narx& structure, const std::vector<InputOutputRecord>& records)
         : recursion_(structure), records_(records), outputs_(records.size()), power_(judgedPower(records))
     {
         for (const auto& record : records)
@@ -134,7 +134,7 @@ public:
 
 private:
     NarxRecursion recursion_;
-    const std::vector<PnlssRecord>& records_;
+    const std::vector<InputOutputRecord>& records_;
     std::vector<VectorXd> outputs_;
     double power_, bound_ = 0.0;
 };
@@ -152,8 +152,9 @@ std::vector<std::size_t> sizesToRefine(std::size_t most, std::size_t best, bool 
 
 /// Refines one model. @param judged  the least error so far, of the model that `result` holds; both follow when a
 /// better one comes by
-void refine(const Narx& start, const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
-            int iterations, const Progress& progress, double& judged, NarxFit& result)
+void refine(const Narx& start, const std::vector<InputOutputRecord>& estimation,
+            const std::vector<InputOutputRecord>& validation, int iterations, const Progress& progress, double& judged,
+            NarxFit& result)
 {
     NarxError problem(start, estimation);
     bool better = false;
@@ -191,8 +192,9 @@ bool NarxFitOptions::isValid(std::string* reason) const
     return true;
 }
 
-NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation,
-                const std::vector<PnlssRecord>& validation, const NarxFitOptions& options, const Progress& progress)
+NarxFit fitNarx(double sampleRate, const std::vector<InputOutputRecord>& estimation,
+                const std::vector<InputOutputRecord>& validation, const NarxFitOptions& options,
+                const Progress& progress)
 {
     requireFitting(options, sampleRate, estimation, validation);
     progress.at(0.0, "choosing terms");

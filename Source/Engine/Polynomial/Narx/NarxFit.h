@@ -47,7 +47,7 @@ struct NarxFit : SearchSummary {
 /// the best one, and with validation records some others, are refined on the simulation error by search(), which also
 /// takes away the bias that noise in the past outputs makes, and the model with the least error on them is returned.
 /// Throws Error (usage, data) for options or records that make no sense, (numerical) where all simulations run away.
-NarxFit fitNarx(double sampleRate, const std::vector<PnlssRecord>& estimation,
-                const std::vector<PnlssRecord>& validation, const NarxFitOptions& = {}, const Progress& = {});
+NarxFit fitNarx(double sampleRate, const std::vector<InputOutputRecord>& estimation,
+                const std::vector<InputOutputRecord>& validation, const NarxFitOptions& = {}, const Progress& = {});
 
 }  // namespace excursion

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/Narx/NarxRecursion.h"
 
+#include "Engine/Error.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 namespace excursion {
 
@@ -84,6 +88,20 @@ void NarxRecursion::differentiate(const VectorXd& coefficients, const VectorXd& 
         take(first, S.middleCols(na_, T).transpose());
         S.leftCols(na_) = S.middleCols(T, na_).eval();
     }
+}
+
+Eigen::MatrixXd simulate(const Narx& model, const Eigen::MatrixXd& input)
+{
+    std::string reason;
+    if (!model.isValid(&reason))
+        throw Error(Error::Kind::usage, "The model cannot be simulated: " + reason + ".");
+    if (input.cols() != 1)
+        throw Error(Error::Kind::usage, "A NARX model has one input, but the record has another number.");
+    Eigen::VectorXd output;
+    const auto lasted = NarxRecursion(model).run(model.coefficients, input.col(0), std::numeric_limits<double>::max(),
+                                                 output);
+    output.tail(output.size() - lasted).setConstant(std::numeric_limits<double>::quiet_NaN());
+    return output;
 }
 
 }  // namespace excursion

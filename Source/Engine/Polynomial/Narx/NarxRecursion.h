@@ -40,4 +40,9 @@ private:
     MonomialProducts products_;
 };
 
+/// The output, N x 1, for an input of N samples, N x 1; input and output are 0 before. A model that runs away leaves
+/// the finite numbers; what comes after is not finite either. Throws Error (usage) for a model or an input that does
+/// not fit.
+Eigen::MatrixXd simulate(const Narx&, const Eigen::MatrixXd& input);
+
 }  // namespace excursion

@@ -25,7 +25,7 @@ std::span<const double> samplesOf(const Eigen::MatrixXd& column)
     return {column.data(), static_cast<std::size_t>(column.rows())};
 }
 
-LinearStart refinedOn(const StateSpace& linear, const PnlssRecord& record)
+LinearStart refinedOn(const StateSpace& linear, const InputOutputRecord& record)
 {
     PnlssFitOptions options;
     options.search = PnlssSearch::plain;
@@ -40,7 +40,7 @@ LinearStart refinedOn(const StateSpace& linear, const PnlssRecord& record)
 
 }  // namespace
 
-std::vector<LinearStart> linearStarts(const PnlssRecord& record, double sampleRate, int order)
+std::vector<LinearStart> linearStarts(const InputOutputRecord& record, double sampleRate, int order)
 {
     requireFitting({record}, {}, 1, 1);
     IdentifyOptions identifying;
@@ -74,7 +74,7 @@ std::vector<LinearStart> linearStarts(const PnlssRecord& record, double sampleRa
     return starts;
 }
 
-VectorXd initialStateOf(const Pnlss& model, const PnlssRecord& record)
+VectorXd initialStateOf(const Pnlss& model, const InputOutputRecord& record)
 {
     auto kept = model;
     kept.free.setConstant(false);

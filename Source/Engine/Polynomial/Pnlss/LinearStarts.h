@@ -11,7 +11,7 @@ namespace excursion {
 struct LinearStart {
     StateSpace model;
     Eigen::VectorXd initial;
-    double errorDb = 0.0;  ///< relative rms error of its simulation (seed 4.26)
+    double errorDb = 0.0;  ///< relative rms error of its simulation [B 4.26]
 };
 
 /// Linear models of one aperiodic record, each of which a fit may start from, the most promising first.
@@ -23,9 +23,9 @@ struct LinearStart {
 /// first by ascending error, then the unrefined: each begins a search of the nonlinear model at another place. Those
 /// that are refined to the same error are the same, and stand once. Throws Error (data) where neither finds a model,
 /// and as requireFitting() does.
-std::vector<LinearStart> linearStarts(const PnlssRecord&, double sampleRate, int order);
+std::vector<LinearStart> linearStarts(const InputOutputRecord&, double sampleRate, int order);
 
 /// From rest to the state with which a model explains a record best, the model kept; zero where the model runs away.
-Eigen::VectorXd initialStateOf(const Pnlss&, const PnlssRecord&);
+Eigen::VectorXd initialStateOf(const Pnlss&, const InputOutputRecord&);
 
 }  // namespace excursion

@@ -40,8 +40,8 @@ struct Way {
 /// The ways of one fit.
 class Fitting {
 public:
-    Fitting(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
-            const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+    Fitting(const std::vector<PnlssStart>& starts, const std::vector<InputOutputRecord>& estimation,
+            const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
         : start_(starts.front().model),
           estimation_(estimation),
           validation_(validation),
@@ -156,7 +156,7 @@ private:
 
     void grow(Way& way, int iterations)
     {
-        std::vector<PnlssRecord> parts;
+        std::vector<InputOutputRecord> parts;
         for (const auto& record : estimation_) {
             const auto rows = record.skip + (record.input.rows() - record.skip + 3) / 4;
             parts.push_back({record.input.topRows(rows), record.output.topRows(rows), record.skip, false});
@@ -221,14 +221,14 @@ private:
     }
 
     const Pnlss& start_;
-    const std::vector<PnlssRecord>&estimation_, &validation_;
+    const std::vector<InputOutputRecord>&estimation_, &validation_;
     const PnlssFitOptions& options_;
     SimulationError problem_;
     SearchOptions searching_;
     int iterations_ = 0;
 };
 
-void requireStart(const PnlssStart& start, const Pnlss& structure, const std::vector<PnlssRecord>& estimation)
+void requireStart(const PnlssStart& start, const Pnlss& structure, const std::vector<InputOutputRecord>& estimation)
 {
     std::string reason;
     const auto n = structure.linear.order();
@@ -247,26 +247,7 @@ void requireStart(const PnlssStart& start, const Pnlss& structure, const std::ve
 
 }  // namespace
 
-bool PnlssFitOptions::isValid(std::string* reason) const
-{
-    if (maximumIterations < 1)
-        return refuse(reason, "a fit needs at least one iteration");
-    if (!(costTolerance > 0.0 && costTolerance < 1.0) || !(rankTolerance > 0.0 && rankTolerance < 1.0))
-        return refuse(reason, "tolerances must lie between 0 and 1");
-    if (search == PnlssSearch::guided && guideGains.empty())
-        return refuse(reason, "a guided search needs at least one gain");
-    if (std::isnan(enoughDb))
-        return refuse(reason, "the error that is enough must be a number of decibels");
-    for (const double g : guideGains)
-        if (!(g > 0.0 && g <= 1.0))
-            return refuse(reason, "the gains of a guided search must lie above 0 and not above 1");
-    if (lineWeights.size() != 0
-        && (!lineWeights.allFinite() || lineWeights.minCoeff() < 0.0 || lineWeights.maxCoeff() == 0.0))
-        return refuse(reason, "weights of the spectrum must be at least 0, and not all 0");
-    return true;
-}
-
-double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& records,
+double relativeErrorDb(const Pnlss& model, const std::vector<InputOutputRecord>& records,
                        const std::vector<VectorXd>& initialStates)
 {
     const Recursion recursion(model, false);
@@ -280,14 +261,16 @@ double relativeErrorDb(const Pnlss& model, const std::vector<PnlssRecord>& recor
     return outputErrorDb(outputs, records);
 }
 
-PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& options,
+                  const Progress& progress)
 {
     return fitPnlss(std::vector<PnlssStart> {{start, {}}}, estimation, validation, options, progress);
 }
 
-PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& options, const Progress& progress)
+PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& options,
+                  const Progress& progress)
 {
     std::string reason = "there is no start";
     if (starts.empty() || !options.isValid(&reason))

@@ -3,8 +3,9 @@
 
 #include "Engine/Numerics/SearchSummary.h"
 #include "Engine/Polynomial/Pnlss/Pnlss.h"
+#include "Engine/Polynomial/Pnlss/PnlssFitOptions.h"
 #include "Engine/Polynomial/Pnlss/ResidualTest.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Progress.h"
 
 #include <optional>
@@ -12,41 +13,6 @@
 #include <vector>
 
 namespace excursion {
-
-/// How a fit begins; see fitPnlss.
-enum class PnlssSearch {
-    plain,   ///< by simulation
-    guided,  ///< following the measured output
-    grown,   ///< on the first quarter of each record
-    any      ///< in all three ways, one after the other as long as none comes to enoughDb; the best one goes on
-};
-
-struct PnlssFitOptions {
-    /// of a way, by simulation of the whole records; what leads up to that comes on top
-    int maximumIterations = 100;
-    /// stop when three accepted steps in a row lower the cost by less than this fraction
-    double costTolerance = 1e-8;
-    /// singular values of the scaled Jacobian below this, relative to the largest, are cut off
-    double rankTolerance = 1e-13;
-    bool linearFree = true;  ///< A, B, C, D move too
-    bool estimateInitialStates =
-        false;  ///< each record's first state is a parameter; else it is zero, and `skip` has to do
-    PnlssSearch search = PnlssSearch::any;
-    std::vector<double> guideGains {1.0, 0.5, 0.2, 0.1, 0.05, 0.02};  ///< of a guided search: see fitPnlss
-    /// relative rms error, on the validation records where there are any, below which no other way is tried; of the
-    /// weighted error where there are weights and no such records
-    double enoughDb = -200.0;
-    /// where the noise is not known: no other way is tried either once what is left is noise, as far as the input can
-    /// tell (see ResidualTest.h). A gain of less than 0.1 over the number of samples, which changes no likelihood, then
-    /// counts as none.
-    bool judgeResidual = false;
-
-    /// Weights of the error's spectrum, one a line 0 .. N/2 of the judged samples of each record (all equally long,
-    /// periodic); empty: all equal.
-    Eigen::VectorXd lineWeights;
-
-    bool isValid(std::string* reason = nullptr) const;
-};
 
 /// Where a search sets out.
 struct PnlssStart {
@@ -69,7 +35,7 @@ struct PnlssFit : SearchSummary {
 
 /// 20 log10(|model - measured| / |measured|) over all records and outputs, samples after `skip`; +infinity when the
 /// model runs away.
-double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
+double relativeErrorDb(const Pnlss&, const std::vector<InputOutputRecord>&,
                        const std::vector<Eigen::VectorXd>& initialStates = {});
 
 /// Levenberg-Marquardt on the simulation error [B 4.3.1, appendix C], columns scaled to unit length, singular
@@ -90,13 +56,13 @@ double relativeErrorDb(const Pnlss&, const std::vector<PnlssRecord>&,
 ///
 /// Grown: a quarter of a record lets errors of the model add up for a shorter time, and its error has fewer valleys.
 /// Weights of the spectrum come later.
-PnlssFit fitPnlss(const Pnlss& start, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
+PnlssFit fitPnlss(const Pnlss& start, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
 
 /// From several starts of one structure, such as linear models that were found in different ways (see LinearStarts.h):
 /// where one leads into a valley, another need not. Each is gone in the ways that the options name until one is good
 /// enough; then the best one goes on. Throws Error (usage) without a start, or where structures differ.
-PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<PnlssRecord>& estimation,
-                  const std::vector<PnlssRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
+PnlssFit fitPnlss(const std::vector<PnlssStart>& starts, const std::vector<InputOutputRecord>& estimation,
+                  const std::vector<InputOutputRecord>& validation, const PnlssFitOptions& = {}, const Progress& = {});
 
 }  // namespace excursion

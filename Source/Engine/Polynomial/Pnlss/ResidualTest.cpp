@@ -118,7 +118,7 @@ std::optional<double> untold(const VectorXd& e, const MatrixXd& states, const Ma
 }
 
 /// Power of the output of a judged sample, dB.
-double sampleDb(const std::vector<PnlssRecord>& records)
+double sampleDb(const std::vector<InputOutputRecord>& records)
 {
     double samples = 0.0;
     for (const auto& record : records)
@@ -135,13 +135,13 @@ std::optional<bool> UntoldNoise::reachedBy(double errorDb) const
     return errorDb <= db + atUntoldDb ? std::optional<bool>() : false;
 }
 
-double heldOutDb(double estimationDb, const std::vector<PnlssRecord>& estimation, double validationDb,
-                 const std::vector<PnlssRecord>& validation)
+double heldOutDb(double estimationDb, const std::vector<InputOutputRecord>& estimation, double validationDb,
+                 const std::vector<InputOutputRecord>& validation)
 {
     return validationDb + sampleDb(validation) - estimationDb - sampleDb(estimation);
 }
 
-std::optional<UntoldNoise> untoldNoise(const Pnlss& model, const std::vector<PnlssRecord>& records,
+std::optional<UntoldNoise> untoldNoise(const Pnlss& model, const std::vector<InputOutputRecord>& records,
                                        const std::vector<VectorXd>& initial)
 {
     const Recursion recursion(model, false);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Polynomial/Pnlss/Pnlss.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 
 #include <optional>
 
@@ -30,7 +30,7 @@ struct UntoldNoise {
 
 /// @param initial  first states of the records, where there are any
 /// Empty where the model runs away or the record has too few samples.
-std::optional<UntoldNoise> untoldNoise(const Pnlss&, const std::vector<PnlssRecord>&,
+std::optional<UntoldNoise> untoldNoise(const Pnlss&, const std::vector<InputOutputRecord>&,
                                        const std::vector<Eigen::VectorXd>& initial);
 
 /// An error is at the noise when it is no more than this above it; less where the residual itself told the noise.
@@ -38,8 +38,8 @@ constexpr double atNoiseDb = 3.0, atUntoldDb = 2.0;
 
 /// By how much the error of a sample that no fit saw is above that of one that was fitted, dB, from the relative errors
 /// of both [B 4.26].
-double heldOutDb(double estimationDb, const std::vector<PnlssRecord>& estimation, double validationDb,
-                 const std::vector<PnlssRecord>& validation);
+double heldOutDb(double estimationDb, const std::vector<InputOutputRecord>& estimation, double validationDb,
+                 const std::vector<InputOutputRecord>& validation);
 
 /// More than this above it, an error at the noise says that the fit explains these samples, not the system.
 constexpr double heldOutMostDb = 6.0;

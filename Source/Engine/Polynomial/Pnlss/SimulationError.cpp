@@ -38,7 +38,7 @@ MatrixXd kalmanGain(const StateSpace& model, const VectorXd& movement, const Vec
 }
 
 /// The mean power of each output over all records.
-VectorXd outputPower(const std::vector<PnlssRecord>& records)
+VectorXd outputPower(const std::vector<InputOutputRecord>& records)
 {
     VectorXd sum = VectorXd::Zero(records.front().output.cols());
     for (const auto& record : records)
@@ -48,7 +48,7 @@ VectorXd outputPower(const std::vector<PnlssRecord>& records)
 
 }  // namespace
 
-SimulationError::SimulationError(const std::vector<PnlssRecord>& records, const PnlssFitOptions& options,
+SimulationError::SimulationError(const std::vector<InputOutputRecord>& records, const PnlssFitOptions& options,
                                  const Pnlss& structure)
     : structure_(structure),
       records_(records),
@@ -227,7 +227,7 @@ VectorXd SimulationError::movement() const
     return (sum / count).cwiseSqrt();
 }
 
-std::optional<Recursion::Guide> SimulationError::guideOf(const PnlssRecord& record) const
+std::optional<Recursion::Guide> SimulationError::guideOf(const InputOutputRecord& record) const
 {
     if (gain_.size() == 0)
         return std::nullopt;

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "Engine/Numerics/Search.h"
-#include "Engine/Polynomial/Pnlss/PnlssFit.h"
+#include "Engine/Polynomial/Pnlss/PnlssFitOptions.h"
 #include "Engine/Polynomial/Pnlss/Recursion.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 
 #include <limits>
 #include <optional>
@@ -16,7 +17,7 @@ namespace excursion {
 /// records and the options have to outlive it.
 class SimulationError final : public SearchProblem {
 public:
-    SimulationError(const std::vector<PnlssRecord>&, const PnlssFitOptions&, const Pnlss& structure);
+    SimulationError(const std::vector<InputOutputRecord>&, const PnlssFitOptions&, const Pnlss& structure);
 
     Eigen::Index parameters() const;
     /// @param initialStates  one a record; empty: zero. Of no account where they are not estimated
@@ -47,10 +48,10 @@ private:
     Eigen::VectorXd initialState(const Eigen::VectorXd& values, std::size_t record) const;
     Eigen::VectorXd movement() const;  // of the last cost(), rms of each state
     Eigen::MatrixXd weighted(const Eigen::MatrixXd& columns) const;
-    std::optional<Recursion::Guide> guideOf(const PnlssRecord&) const;
+    std::optional<Recursion::Guide> guideOf(const InputOutputRecord&) const;
 
     const Pnlss& structure_;
-    const std::vector<PnlssRecord>& records_;
+    const std::vector<InputOutputRecord>& records_;
     const PnlssFitOptions& options_;
     Recursion recursion_;
     Eigen::Index n_;

@@ -61,7 +61,7 @@ MatrixXd withDraws(const VectorXd& e, std::mt19937_64& random)
 
 }  // namespace
 
-std::optional<OffTangent> offTangent(const Pnlss& model, const std::vector<PnlssRecord>& records,
+std::optional<OffTangent> offTangent(const Pnlss& model, const std::vector<InputOutputRecord>& records,
                                      const std::vector<VectorXd>& initial)
 {
     const auto n = model.linear.order(), first = n * static_cast<Index>(records.size());

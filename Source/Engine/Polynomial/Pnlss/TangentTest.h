@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Polynomial/Pnlss/Pnlss.h"
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 
 #include <optional>
 #include <vector>
@@ -23,7 +23,7 @@ struct OffTangent {
 
 /// @param initial  first states of the records; empty: zero
 /// Empty where the model runs away, or the records have less than eight samples for a coefficient.
-std::optional<OffTangent> offTangent(const Pnlss&, const std::vector<PnlssRecord>&,
+std::optional<OffTangent> offTangent(const Pnlss&, const std::vector<InputOutputRecord>&,
                                      const std::vector<Eigen::VectorXd>& initial);
 
 }  // namespace excursion

@@ -17,7 +17,7 @@ namespace excursion {
 /// with lambda = z - 1, s or, of fractional order, s^alpha (see Response.h). Real pairs and complex pairs pass into one
 /// another smoothly, and poles far apart do not disturb each other's digits as the coefficients of one long polynomial
 /// would.
-struct Sections {
+struct SecondOrderSections {
     Eigen::VectorXd factors;  ///< b_1, e_1, b_2, e_2, ..; then a when the order is odd
     double sampleRate = 0.0;  ///< Hz; 0: continuous time
     double scale = 1.0;       ///< rad/s (to the power alpha) in continuous time, else 1
@@ -31,29 +31,29 @@ struct Sections {
 };
 
 /// @param poles  closed under conjugation (the imaginary part of a lone one is dropped)
-Sections sectionsOf(const std::vector<std::complex<double>>& poles, double sampleRate, double scale,
-                    double alpha = 1.0);
+SecondOrderSections sectionsOf(const std::vector<std::complex<double>>& poles, double sampleRate, double scale,
+                               double alpha = 1.0);
 
 /// The factors' roots, as poles of the model: z, s or s^alpha.
-std::vector<std::complex<double>> poles(const Sections&);
+std::vector<std::complex<double>> poles(const SecondOrderSections&);
 
 /// All roots within the stable region: the unit circle, the left half-plane, or outside of the sector |arg| <= alpha
 /// pi/2 (Matignon 1996) [B 5.18].
-bool isStable(const Sections&);
+bool isStable(const SecondOrderSections&);
 
 /// Unstable roots mirrored: 1/conj(z), -conj(s), or at the border of the sector, but no further than the middle of what
 /// lies beyond it; real ones to the negative axis.
-Sections mirrored(const Sections&);
+SecondOrderSections mirrored(const SecondOrderSections&);
 
 /// The basis functions at points lambda, K x n: 1/q_i and (mu + b_i/2)/q_i for each pair, then 1/(mu + a).
-Eigen::MatrixXcd partialFractions(const Sections&, const Eigen::VectorXcd& lambda);
+Eigen::MatrixXcd partialFractions(const SecondOrderSections&, const Eigen::VectorXcd& lambda);
 
 /// sum_j c_j d(basis_j)/d(factor), one column a factor, given the partial fractions at the same points.
-Eigen::MatrixXcd partialFractionSlopes(const Sections&, const Eigen::VectorXcd& lambda, const Eigen::MatrixXcd& basis,
-                                       const Eigen::VectorXd& c);
+Eigen::MatrixXcd partialFractionSlopes(const SecondOrderSections&, const Eigen::VectorXcd& lambda,
+                                       const Eigen::MatrixXcd& basis, const Eigen::VectorXd& c);
 
 /// The model with these poles. @param C  p x n, coefficients of the partial fractions; @param D  p x 1
 /// Complex pairs become rotations [r, -w; w, r], B and C of a state equally long.
-StateSpace realize(const Sections&, const Eigen::MatrixXd& C, const Eigen::VectorXd& D);
+StateSpace realize(const SecondOrderSections&, const Eigen::MatrixXd& C, const Eigen::VectorXd& D);
 
 }  // namespace excursion

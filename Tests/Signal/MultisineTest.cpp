@@ -2,6 +2,7 @@
 #include "Engine/Error.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Multisine.h"
+#include "SomeMultisine.h"
 
 #include <catch2/catch.hpp>
 
@@ -11,35 +12,14 @@
 #include <set>
 
 using namespace excursion;
-
-namespace {
-
-MultisineOptions options(Grid grid, Shape shape = Shape::white)
-{
-    MultisineOptions o;
-    o.period = 4096;
-    o.grid = grid;
-    o.shape = shape;
-    o.bandLow = 30;
-    o.bandHigh = 12000;
-    o.rms = 2.5;
-    o.seed = 42;
-    return o;
-}
-
-double rms(const std::vector<double>& x)
-{
-    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size()));
-}
-
-}  // namespace
+using namespace excursion::test;
 
 TEST_CASE("A multisine has its rms, no mean, its lines and nothing else")
 {
     const auto grid = GENERATE(Grid::full, Grid::odd, Grid::oddOdd, Grid::oddRandom, Grid::R10, Grid::R20, Grid::R40,
                                Grid::R80);
     const auto shape = GENERATE(Shape::white, Shape::pink, Shape::red);
-    const auto o = options(grid, shape);
+    const auto o = someMultisine(grid, shape);
     const auto lines = chooseLines(o);
     const auto u = multisine(o, lines, 3);
     REQUIRE(u.size() == 4096);
@@ -64,13 +44,13 @@ TEST_CASE("A multisine has its rms, no mean, its lines and nothing else")
 
 TEST_CASE("Each grid has the lines that its name says")
 {
-    for (const int k : chooseLines(options(Grid::odd)))
+    for (const int k : chooseLines(someMultisine(Grid::odd)))
         CHECK(k % 2 == 1);
-    for (const int k : chooseLines(options(Grid::oddOdd)))
+    for (const int k : chooseLines(someMultisine(Grid::oddOdd)))
         CHECK(k % 4 == 1);
-    CHECK(chooseLines(options(Grid::full)).size() == 1024 - 3 + 1);  // lines 3 (35 Hz) to 1024 (12 kHz)
+    CHECK(chooseLines(someMultisine(Grid::full)).size() == 1024 - 3 + 1);  // lines 3 (35 Hz) to 1024 (12 kHz)
 
-    auto o = options(Grid::R10);
+    auto o = someMultisine(Grid::R10);
     o.bandLow = 0;
     const auto lines = chooseLines(o);
     CHECK(std::vector<int>(lines.begin(), lines.begin() + 10) == std::vector<int> {1, 2, 3, 4, 5, 6, 8, 10, 13, 16});
@@ -84,8 +64,8 @@ TEST_CASE("Each grid has the lines that its name says")
 
 TEST_CASE("An odd-random grid leaves out one line of each group, the same in all realizations")
 {
-    const auto odd = chooseLines(options(Grid::odd));
-    const auto o = options(Grid::oddRandom);
+    const auto odd = chooseLines(someMultisine(Grid::odd));
+    const auto o = someMultisine(Grid::oddRandom);
     const auto lines = chooseLines(o);
     CHECK(lines.size() == odd.size() - odd.size() / 4);
     for (std::size_t group = 0; group + 4 <= odd.size(); group += 4)
@@ -105,14 +85,14 @@ TEST_CASE("An odd-random grid leaves out one line of each group, the same in all
 
 TEST_CASE("The draw is fixed: the same lines come out on every machine")
 {
-    const auto lines = chooseLines(options(Grid::oddRandom));
+    const auto lines = chooseLines(someMultisine(Grid::oddRandom));
     CHECK(std::vector<int>(lines.begin(), lines.begin() + 9) == std::vector<int> {3, 7, 9, 11, 13, 17, 19, 21, 25});
 }
 
 TEST_CASE("Multisine options that make no sense are refused with a reason")
 {
     const auto refused = [](auto change) {
-        auto o = options(Grid::odd);
+        auto o = someMultisine(Grid::odd);
         change(o);
         std::string reason;
         CHECK_FALSE(o.isValid(&reason));
@@ -125,10 +105,10 @@ TEST_CASE("Multisine options that make no sense are refused with a reason")
     refused([](auto& o) { o.bandLow = o.bandHigh; });
     refused([](auto& o) { o.sampleRate = -1; });
     refused([](auto& o) { o.groupSize = 1; });
-    auto narrow = options(Grid::odd);
+    auto narrow = someMultisine(Grid::odd);
     narrow.bandLow = 12.0;
     narrow.bandHigh = 13.0;
     CHECK_THROWS_AS(chooseLines(narrow), Error);
-    CHECK_THROWS_AS(multisine(options(Grid::odd), {0, 3}, 0), Error);
-    CHECK_THROWS_AS(multisine(options(Grid::odd), {3, 2048}, 0), Error);
+    CHECK_THROWS_AS(multisine(someMultisine(Grid::odd), {0, 3}, 0), Error);
+    CHECK_THROWS_AS(multisine(someMultisine(Grid::odd), {3, 2048}, 0), Error);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linear/Response.h"
-#include "Engine/Linear/Sections.h"
+#include "Engine/Linear/SecondOrderSections.h"
 #include "Linear/Problem.h"
 
 #include <numbers>

@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// The sections of the report, each in its own file. All but the first two need a rung.
+/// The chapters of the report, each in its own file. All but the first two need a rung.
 void addVerdict(Page&, const LadderFile&);    ///< the answer and what it was got from
 void addProblems(Page&, const LadderFile&);   ///< what is wrong with the take
 void addRungs(Page&, const LadderFile&);      ///< how the error fell

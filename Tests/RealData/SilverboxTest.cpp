@@ -4,8 +4,9 @@
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Import/ImportMat.h"
 #include "Engine/Loudspeaker/ModelFile.h"
-#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Scratch.h"
+#include "SilverboxColumns.h"
 
 #include <Eigen/QR>
 
@@ -19,15 +20,6 @@ namespace {
 constexpr std::size_t arrowEnd = 40500, multisineEnd = 127400;  // the input is silent at both
 // of the benchmark: may tell the state at the start, is not scored
 constexpr std::size_t initialWindow = 50;
-
-ImportOptions silverbox()
-{
-    ImportOptions o;
-    o.columns = {parseColumnQuantity("V1=force:V"), parseColumnQuantity("V2=displacement:V")};
-    o.sampleRate = 1e7 / 16384;
-    o.removeMean = true;
-    return o;
-}
 
 std::vector<double> run(const Model& model, std::span<const double> input, double rate)
 {
@@ -68,7 +60,7 @@ TEST_CASE("The ladder climbs the Silverbox and extrapolates to the arrow", "[slo
     const auto folder = dataFolder("silverbox");
     if (folder.empty())
         return;
-    auto options = silverbox();
+    auto options = silverboxColumns();
     const auto all = importMat(folder / "SNLS80mV.mat", options);
     options.from = arrowEnd;
     options.to = multisineEnd;

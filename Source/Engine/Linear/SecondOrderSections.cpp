@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Linear/Sections.h"
+#include "Engine/Linear/SecondOrderSections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@ namespace excursion {
 using Complex = std::complex<double>;
 using Eigen::Index;
 
-Sections sectionsOf(const std::vector<Complex>& poles, double sampleRate, double scale, double alpha)
+SecondOrderSections sectionsOf(const std::vector<Complex>& poles, double sampleRate, double scale, double alpha)
 {
-    Sections sections;
+    SecondOrderSections sections;
     sections.sampleRate = sampleRate;
     sections.scale = scale;
     sections.alpha = alpha;
@@ -40,7 +40,7 @@ Sections sectionsOf(const std::vector<Complex>& poles, double sampleRate, double
     return sections;
 }
 
-std::vector<Complex> poles(const Sections& sections)
+std::vector<Complex> poles(const SecondOrderSections& sections)
 {
     const double shift = sections.sampleRate > 0.0 ? 1.0 : 0.0;
     std::vector<Complex> result;
@@ -61,7 +61,7 @@ std::vector<Complex> poles(const Sections& sections)
     return result;
 }
 
-bool isStable(const Sections& sections)
+bool isStable(const SecondOrderSections& sections)
 {
     const bool discrete = sections.sampleRate > 0.0;
     const double border = sections.alpha == 1.0 ? 0.0 : -2.0 * std::cos(0.5 * std::numbers::pi * sections.alpha);
@@ -79,7 +79,7 @@ bool isStable(const Sections& sections)
     return discrete ? a > 0.0 && a < 2.0 : a > 0.0;
 }
 
-Sections mirrored(const Sections& sections)
+SecondOrderSections mirrored(const SecondOrderSections& sections)
 {
     auto roots = poles(sections);
     for (auto& root : roots) {
@@ -102,7 +102,7 @@ Sections mirrored(const Sections& sections)
     return sectionsOf(roots, sections.sampleRate, sections.scale, sections.alpha);
 }
 
-Eigen::MatrixXcd partialFractions(const Sections& sections, const Eigen::VectorXcd& lambda)
+Eigen::MatrixXcd partialFractions(const SecondOrderSections& sections, const Eigen::VectorXcd& lambda)
 {
     Eigen::MatrixXcd basis(lambda.size(), sections.order());
     const double unit = 1.0 / sections.scale;
@@ -122,7 +122,7 @@ Eigen::MatrixXcd partialFractions(const Sections& sections, const Eigen::VectorX
     return basis;
 }
 
-Eigen::MatrixXcd partialFractionSlopes(const Sections& sections, const Eigen::VectorXcd& lambda,
+Eigen::MatrixXcd partialFractionSlopes(const SecondOrderSections& sections, const Eigen::VectorXcd& lambda,
                                        const Eigen::MatrixXcd& basis, const Eigen::VectorXd& c)
 {
     Eigen::MatrixXcd slopes(basis.rows(), basis.cols());
@@ -145,7 +145,7 @@ Eigen::MatrixXcd partialFractionSlopes(const Sections& sections, const Eigen::Ve
     return slopes;
 }
 
-StateSpace realize(const Sections& sections, const Eigen::MatrixXd& C, const Eigen::VectorXd& D)
+StateSpace realize(const SecondOrderSections& sections, const Eigen::MatrixXd& C, const Eigen::VectorXd& D)
 {
     const auto n = sections.order();
     StateSpace model;

@@ -3,38 +3,21 @@
 #include "Engine/Import/ImportText.h"
 #include "Engine/Import/ReadTake.h"
 #include "Scratch.h"
+#include "SilverboxColumns.h"
+#include "SomeMultisine.h"
 
 #include <cmath>
-#include <numeric>
 
 using namespace excursion;
 using namespace excursion::test;
-
-namespace {
-
-double rms(const std::vector<double>& x)
-{
-    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / double(x.size()));
-}
-
-ImportOptions silverbox()
-{
-    ImportOptions o;
-    o.columns = {parseColumnQuantity("V1=force:V"), parseColumnQuantity("V2=displacement:V")};
-    o.sampleRate = 1e7 / 16384;
-    o.removeMean = true;
-    return o;
-}
-
-}  // namespace
 
 TEST_CASE("The Silverbox is read from MAT and CSV alike")
 {
     const auto folder = dataFolder("silverbox");
     if (folder.empty())
         return;
-    const auto mat = importMat(folder / "SNLS80mV.mat", silverbox());
-    const auto csv = std::get<Measurement>(importText(folder / "SNLS80mV.csv", silverbox()));
+    const auto mat = importMat(folder / "SNLS80mV.mat", silverboxColumns());
+    const auto csv = std::get<Measurement>(importText(folder / "SNLS80mV.csv", silverboxColumns()));
     REQUIRE(mat.length() == 131072);
     REQUIRE(csv.length() == 131072);
     CHECK(mat.input().quantity == Quantity::force);
@@ -45,17 +28,17 @@ TEST_CASE("The Silverbox is read from MAT and CSV alike")
         worst = std::max(worst, std::abs(mat.channels[1].samples[n] - csv.channels[1].samples[n]));
     CHECK(worst < 1e-5);  // the CSV has five digits
 
-    const auto schroeder = std::get<Measurement>(importText(folder / "Schroeder80mV.csv", silverbox()));
+    const auto schroeder = std::get<Measurement>(importText(folder / "Schroeder80mV.csv", silverboxColumns()));
     CHECK(schroeder.length() == 131072);
 
     const auto bytes = bytesOf(folder / "SNLS80mV.mat");
     const Scratch s;
     const auto truncated = s.file("t.mat", std::string_view(bytes).substr(0, bytes.size() / 3));
-    CHECK_THROWS_AS(importMat(truncated, silverbox()), Error);
-    auto o = silverbox();
+    CHECK_THROWS_AS(importMat(truncated, silverboxColumns()), Error);
+    auto o = silverboxColumns();
     o.columns[0].column = "V9";
     refused(Error::Kind::usage, "V2", [&] { importMat(folder / "SNLS80mV.mat", o); });
-    o = silverbox();
+    o = silverboxColumns();
     o.sampleRate = 0;
     refused(Error::Kind::usage, "--rate", [&] { importMat(folder / "SNLS80mV.mat", o); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Polynomial/PnlssRecord.h"
+#include "Engine/Polynomial/InputOutputRecord.h"
 
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Signal/Level.h"
@@ -13,7 +13,7 @@ namespace excursion {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+void requireFitting(const std::vector<InputOutputRecord>& estimation, const std::vector<InputOutputRecord>& validation,
                     Index inputs, Index outputs)
 {
     if (estimation.empty())
@@ -29,9 +29,9 @@ void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vecto
         }
 }
 
-PnlssRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index before)
+InputOutputRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index before)
 {
-    PnlssRecord record;
+    InputOutputRecord record;
     const auto N = input.rows();
     record.skip = before;
     record.periodic = true;
@@ -45,13 +45,13 @@ PnlssRecord periodicRecord(const MatrixXd& input, const MatrixXd& output, Index 
     return record;
 }
 
-MatrixXd judgedError(const PnlssRecord& record, const MatrixXd& modelled)
+MatrixXd judgedError(const InputOutputRecord& record, const MatrixXd& modelled)
 {
     const auto rows = record.output.rows() - record.skip;
     return record.output.bottomRows(rows) - modelled.bottomRows(rows);
 }
 
-double judgedPower(const std::vector<PnlssRecord>& records)
+double judgedPower(const std::vector<InputOutputRecord>& records)
 {
     double power = 0.0;
     for (const auto& record : records)
@@ -59,7 +59,7 @@ double judgedPower(const std::vector<PnlssRecord>& records)
     return power;
 }
 
-void foldJudged(TallQr& qr, const PnlssRecord& record, Index first, const MatrixXd& derivatives,
+void foldJudged(TallQr& qr, const InputOutputRecord& record, Index first, const MatrixXd& derivatives,
                 const Eigen::VectorXd& error)
 {
     const Index drop = std::clamp<Index>(record.skip - first, 0, derivatives.rows()), rows = derivatives.rows() - drop;
@@ -70,7 +70,7 @@ void foldJudged(TallQr& qr, const PnlssRecord& record, Index first, const Matrix
     qr.fold(block);
 }
 
-double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<PnlssRecord>& records)
+double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<InputOutputRecord>& records)
 {
     if (records.empty())
         return std::numeric_limits<double>::quiet_NaN();

@@ -14,7 +14,7 @@ namespace excursion {
 class TallQr;
 
 /// A stretch of input and output that a PNLSS model is fitted to or judged by.
-struct PnlssRecord {
+struct InputOutputRecord {
     Eigen::MatrixXd input;   ///< N x m
     Eigen::MatrixXd output;  ///< N x p, as measured
     /// samples at the start that the model is simulated through but not judged on: its transient dies there
@@ -28,18 +28,18 @@ struct PnlssRecord {
 
 /// A record of one steady period: `before` of its last samples are put in front, again and again if need be, to let the
 /// transient die.
-PnlssRecord periodicRecord(const Eigen::MatrixXd& input, const Eigen::MatrixXd& output, Eigen::Index before);
+InputOutputRecord periodicRecord(const Eigen::MatrixXd& input, const Eigen::MatrixXd& output, Eigen::Index before);
 
 /// Throws Error (data) unless there is something to estimate from, and all records fit a model of these inputs and
 /// outputs and are finite.
-void requireFitting(const std::vector<PnlssRecord>& estimation, const std::vector<PnlssRecord>& validation,
+void requireFitting(const std::vector<InputOutputRecord>& estimation, const std::vector<InputOutputRecord>& validation,
                     Eigen::Index inputs, Eigen::Index outputs);
 
 /// The same before a fit of a model with one input and one output; options that are not valid and sample rates that are
 /// none: Error (usage).
 template <class Options>
-void requireFitting(const Options& options, double sampleRate, const std::vector<PnlssRecord>& estimation,
-                    const std::vector<PnlssRecord>& validation)
+void requireFitting(const Options& options, double sampleRate, const std::vector<InputOutputRecord>& estimation,
+                    const std::vector<InputOutputRecord>& validation)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -50,25 +50,25 @@ void requireFitting(const Options& options, double sampleRate, const std::vector
 }
 
 /// measured - modelled, of the samples after `skip`.
-Eigen::MatrixXd judgedError(const PnlssRecord&, const Eigen::MatrixXd& modelled);
+Eigen::MatrixXd judgedError(const InputOutputRecord&, const Eigen::MatrixXd& modelled);
 
 /// |measured|^2 of the samples after `skip`, of all records.
-double judgedPower(const std::vector<PnlssRecord>&);
+double judgedPower(const std::vector<InputOutputRecord>&);
 
 /// Folds [derivatives, error] of a stretch of a record's samples, `first` and those after it, as far as they are
 /// judged.
 /// @param error  one output's column of judgedError()
-void foldJudged(TallQr&, const PnlssRecord&, Eigen::Index first, const Eigen::MatrixXd& derivatives,
+void foldJudged(TallQr&, const InputOutputRecord&, Eigen::Index first, const Eigen::MatrixXd& derivatives,
                 const Eigen::VectorXd& error);
 
 /// 20 log10(|modelled - measured| / |measured|) over all records, samples after `skip` [B 4.26]; +infinity where the
 /// model ran away, NaN without records.
 /// @param modelled  one a record, N x p
-double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<PnlssRecord>&);
+double outputErrorDb(const std::vector<Eigen::MatrixXd>& modelled, const std::vector<InputOutputRecord>&);
 
 /// The same of any model that can be simulated from rest.
 template <class Model>
-double simulationErrorDb(const Model& model, const std::vector<PnlssRecord>& records)
+double simulationErrorDb(const Model& model, const std::vector<InputOutputRecord>& records)
 {
     std::vector<Eigen::MatrixXd> outputs;
     for (const auto& record : records)

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Loudspeaker/Trajectory.h"
+
+#include "Engine/Loudspeaker/ExponentialStep.h"
+#include "Engine/Loudspeaker/Plausible.h"
+#include "Engine/Loudspeaker/Radiator.h"
+#include "Engine/Loudspeaker/SensitivityStep.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace excursion {
+
+const std::vector<double>& Trajectory::operator[](Trace trace) const
+{
+    const std::array<const std::vector<double>*, traceCount> all {&current, &displacement, &velocity, &acceleration,
+                                                                  &flow,    &lateness,     &spot};
+    return *all[static_cast<std::size_t>(trace)];
+}
+
+bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start)
+{
+    ExponentialStep motion(model, drive.step());
+    Radiator radiator(model);
+    const Plausible plausible(model);
+    if (start.size() > 0)
+        motion.begin(start);
+    Eigen::VectorXd before;
+    for (auto* trace :
+         {&out.current, &out.displacement, &out.velocity, &out.acceleration, &out.flow, &out.lateness, &out.spot}) {
+        trace->clear();
+        trace->reserve(drive.length() - first);
+    }
+    std::size_t half = 0;
+    for (std::size_t n = 0; n < drive.length(); ++n) {
+        const bool kept = n >= first;
+        if (kept) {
+            out.current.push_back(motion.current());
+            out.displacement.push_back(motion.displacement());
+            out.velocity.push_back(motion.velocity());
+            motion.state(before);
+        }
+        for (int s = 0; s < drive.substeps(); ++s, half += 2) {
+            const double acceleration = motion.step(drive.polynomial(half));
+            if (s > 0 || !kept)
+                continue;
+            const auto sound = radiator.at(before.data(), acceleration);
+            out.acceleration.push_back(acceleration);
+            out.flow.push_back(sound.flow);
+            out.lateness.push_back(sound.lateness);
+            out.spot.push_back(sound.spot);
+        }
+        if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
+            return false;
+    }
+    return true;
+}
+
+bool differentiate(const Model& model, std::span<const Eigen::Index> active, const Drive& drive, std::size_t first,
+                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
+{
+    const auto count = static_cast<Eigen::Index>(active.size());
+    SensitivityStep motion(model, drive.step(), active);
+    const bool radiates = std::any_of(observed.begin(), observed.end(),
+                                      [](Trace trace) { return trace >= Trace::flow; });
+    Radiator radiator(model, radiates ? active : std::span<const Eigen::Index> {});
+    const Plausible plausible(model);
+    if (start.value.size() > 0) {
+        Eigen::MatrixXd slopes(count, start.value.size());
+        for (std::size_t k = 0; k < active.size(); ++k)
+            slopes.row(static_cast<Eigen::Index>(k)) = start.gradient.col(active[k]).transpose();
+        motion.begin(start.value, slopes);
+    }
+    out.assign(observed.size(), Eigen::MatrixXd(count, static_cast<Eigen::Index>(drive.length() - first)));
+    Eigen::MatrixXd before, emitted(count, 3);
+    Eigen::VectorXd from;
+    std::size_t half = 0;
+    for (std::size_t n = 0; n < drive.length(); ++n) {
+        const auto column = static_cast<Eigen::Index>(n - first);
+        const bool kept = n >= first;
+        if (kept) {
+            for (std::size_t q = 0; q < observed.size(); ++q)
+                if (observed[q] < Trace::acceleration)
+                    out[q].col(column) = motion.slopes().col(static_cast<Eigen::Index>(observed[q]));
+            if (radiates) {
+                motion.slopesByState(before);
+                motion.state(from);
+            }
+        }
+        for (int s = 0; s < drive.substeps(); ++s, half += 2) {
+            motion.step(drive.polynomial(half));
+            if (s > 0 || !kept)
+                continue;
+            if (radiates)
+                radiator.differentiate(from.data(), motion.acceleration(), before, motion.accelerationSlopes(),
+                                       emitted);
+            for (std::size_t q = 0; q < observed.size(); ++q)
+                if (observed[q] == Trace::acceleration)
+                    out[q].col(column) = motion.accelerationSlopes();
+                else if (observed[q] > Trace::acceleration)
+                    out[q].col(column) = emitted.col(static_cast<Eigen::Index>(observed[q])
+                                                     - static_cast<Eigen::Index>(Trace::flow));
+        }
+        if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
+            return false;
+    }
+    return true;
+}
+
+int stableSubsteps(const Model& model, double sampleRate, double limit)
+{
+    return std::clamp(
+        static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (limit * sampleRate))), 1,
+        64);
+}
+
+}  // namespace excursion

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a person loads, adds and takes back through the window.
+#include "Plugin/Editor.h"
+
+#include "Engine/Error.h"
+#include "Engine/Loudspeaker/ModelFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <utility>
+
+namespace excursion::plugin {
+namespace {
+
+/// Whether a file says that it is a model.
+bool holdsModel(const juce::File& file)
+{
+    if (!file.hasFileExtension("json") || file.getSize() > (1 << 26))
+        return false;
+    const auto document = nlohmann::json::parse(file.loadFileAsString().toStdString(), nullptr, false);
+    return !document.is_object()
+           || (document.value("format", "") != "excursion-measurement"
+               && document.value("format", "") != "excursion-plan");
+}
+
+}  // namespace
+
+void Editor::undo()
+{
+    if (owner_.session().status().busy) {
+        tell("Wait until the work is done, or cancel it, before you take something back.", false);
+        return;
+    }
+    history_.undo();
+    update();
+}
+
+void Editor::redo()
+{
+    if (owner_.session().status().busy) {
+        tell("Wait until the work is done, or cancel it, before you do something again.", false);
+        return;
+    }
+    history_.redo();
+    update();
+}
+
+/// A rung that was added or taken back is a step of the history; another take has none.
+void Editor::noteLadder(const std::shared_ptr<const Findings>& findings)
+{
+    std::vector<std::string> rungs;
+    for (const auto& rung : findings->file.ladder.rungs)
+        rungs.push_back(rung.added);
+    const auto before = std::exchange(rungs_, rungs);
+    if (std::exchange(take_, findings->take) != findings->take) {
+        history_.clear();
+        laddering_ = false;
+        return;
+    }
+    if (std::exchange(laddering_, false) || before.empty())
+        return;
+    const auto back = [this] {
+        laddering_ = true;
+        owner_.session().undo();
+    };
+    const auto again = [this](const std::string& effect) {
+        return [this, effect] {
+            laddering_ = true;
+            owner_.session().add(effect);
+        };
+    };
+    if (rungs.size() == before.size() + 1)
+        history_.did("Add " + words(rungs.back()), back, again(rungs.back()));
+    else if (rungs.size() + 1 == before.size())
+        history_.did("Take back " + words(before.back()), again(before.back()), back);
+}
+
+/// That another model plays is a step of the history.
+void Editor::noteModel(const AnyModel& before, const AnyModel& now)
+{
+    const auto put = [this](const AnyModel& which) {
+        return [this, which] {
+            try {
+                owner_.setModel(which);
+            } catch (const Error& error) {
+                tell(words(error.what()), true);
+            }
+        };
+    };
+    history_.did("Load a model", put(before), put(now));
+}
+
+void Editor::use(const Model& model, const juce::String& from)
+{
+    try {
+        const auto before = owner_.anyModel();
+        owner_.setModel(model);
+        replaced_.reset();
+        noteModel(before, model);
+        tell("The model is from " + from + ".", false);
+    } catch (const Error& error) {
+        tell(words(error.what()), true);
+    }
+}
+
+void Editor::useFile(const juce::File& file)
+{
+    const auto path = file.getFullPathName().toStdString();
+    try {
+        const auto text = file.loadFileAsString().toStdString();
+        if (!holdsBox(text)) {
+            use(readModel(path), file.getFileName());
+            return;
+        }
+        useBox(nlohmann::ordered_json::parse(text), file.getFileName());
+    } catch (const Error& error) {
+        tell(words(error.what()), true);
+    }
+}
+
+void Editor::useBox(const nlohmann::ordered_json& document, const juce::String& from)
+{
+    replaced_ = owner_.anyModel();
+    owner_.rehearsing().load(document, from.toStdString());
+    tell("Rehearsing what it is worth to turn the model of " + from + " around.", false);
+}
+
+/// What came of a model without physics that was loaded.
+void Editor::noteRehearsal()
+{
+    const auto status = owner_.rehearsing().status();
+    if (status.version == rehearsed_)
+        return;
+    rehearsed_ = status.version;
+    if (!status.trouble && replaced_)
+        noteModel(*replaced_, owner_.anyModel());
+    replaced_.reset();
+    tell(words(status.words), status.trouble);
+}
+
+void Editor::load(const juce::File& file)
+{
+    if (!holdsModel(file)) {
+        owner_.session().open(file.getFullPathName().toStdString());
+        go(PageName::measure);
+        return;
+    }
+    useFile(file);
+    go(PageName::linearize);
+}
+
+void Editor::filesDropped(const juce::StringArray& files, int, int) { load(juce::File(files[0])); }
+
+}  // namespace excursion::plugin
