@@ -9,7 +9,7 @@
 namespace excursion::plugin {
 namespace {
 
-constexpr int gap = 6, high = 26, wordsHigh = 68;
+constexpr int gap = 6, high = 26;
 
 }  // namespace
 
@@ -94,8 +94,9 @@ void TargetPanel::ask()
     Answer answer;
     answer.controls = controlsOf(recipe, model);
     answer.unit = model.electrical() ? "V" : "N";
-    answer.used = recipe.target.kind != Target::Kind::own;
-    if (!answer.used)
+    const bool own = recipe.target.kind == Target::Kind::own;
+    answer.used = !own && (recipe.mode == Mode::linearize || recipe.mode == Mode::audition);
+    if (own)
         answer.controls.target.kind = Target::Kind::resonance;
     forecast_.ask([model, answer, volts = recipe.fullScale]() mutable {
         try {
@@ -161,7 +162,7 @@ void TargetPanel::resized()
     }
     if (!pictured())
         return;
-    words_.setBounds(area.removeFromTop(getWidth() < 520 ? wordsHigh + 18 : wordsHigh - 14));
+    words_.setBounds(area.removeFromTop(getWidth() < 520 ? 72 : 40));
     area.removeFromTop(gap);
     plots_.setBounds(area);
 }

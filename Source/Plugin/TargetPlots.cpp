@@ -57,7 +57,7 @@ std::string named(const Resonance& one)
 
 std::vector<Plot> targetPlots(const TargetForecast& told, const PredistortionControls& limits, const std::string& unit)
 {
-    auto response = overFrequency(told, "Response", {"over far above", "dB", false, 0.0, 0.0, {}}, told.ownDb,
+    auto response = overFrequency(told, "Response", {"over the plateau", "dB", false, 0.0, 0.0, {}}, told.ownDb,
                                   told.targetDb);
     double highest = 0.0;
     for (const auto* curve : {&told.ownDb, &told.targetDb})
@@ -82,8 +82,10 @@ std::string wordsOf(const TargetForecast& told, const std::string& unit, bool us
                        + ". It takes " + decibels(std::abs(told.lowGainDb)) + (lower ? " more" : " less")
                        + " excursion and voltage at the lowest notes. Pink noise at 0 dBFS moves the cone "
                        + engineering(pink.displacement, "m", 2)
-                       + " (own: " + engineering(told.ownPink.displacement, "m", 2) + ") and needs "
-                       + engineering(pink.voltage, unit, 2);
+                       + " (own: " + engineering(told.ownPink.displacement, "m", 2) + ")";
+    // Where the cone would go too far the voltage at 0 dBFS is no matter.
+    if (!(pink.roomDb < 0.0 && pink.byDisplacement))
+        text += " and needs " + engineering(pink.voltage, unit, 2);
     if (!std::isfinite(pink.roomDb))
         return text + "; there is no limit.";
     if (pink.roomDb >= 0.0)

@@ -15,7 +15,7 @@ namespace excursion::plugin {
 std::vector<Plot> targetPlots(const TargetForecast&, const PredistortionControls& limits, const std::string& unit);
 
 /// What the target costs, for a person.
-/// @param used  whether it is played, or only looked at
+/// @param used  whether it is played when there is a signal, or only looked at
 std::string wordsOf(const TargetForecast&, const std::string& unit, bool used);
 
 }  // namespace excursion::plugin

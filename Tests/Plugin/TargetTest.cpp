@@ -121,7 +121,7 @@ TEST_CASE("The last page tells what a target costs, also while it is not in use,
             editor.update();
             for (auto* label : plugin::all<juce::Label>(panel))
                 if (label->getTitle() == "What the target costs")
-                    text = label->getText();
+                    text = label->getText().replaceCharacter(0xa0, ' ');
             if (text.contains(wanted))
                 return true;
             juce::Thread::sleep(20);
@@ -134,6 +134,8 @@ TEST_CASE("The last page tells what a target costs, also while it is not in use,
     const auto plots = plugin::all<plugin::PlotView>(panel);
     REQUIRE(plots.size() == 3);
     CHECK(plots[1]->plot().series.size() == 3);  // own, target, limit
+    put(processor, Mode::speaker, {Target::Kind::resonance, 30.0, 0.7, 0.02});
+    CHECK(told("Not in use: 30.0 Hz"));
     put(processor, Mode::linearize, {Target::Kind::resonance, 30.0, 0.7, 0.02});
     CHECK(told("In use: 30.0 Hz"));
     put(processor, Mode::linearize, {Target::Kind::resonance, 5000.0, 0.7, 0.02});
