@@ -102,7 +102,7 @@ void TargetPanel::ask()
         try {
             answer.told = forecastTarget(model, answer.controls, volts);
         } catch (const Error& error) {
-            answer.refusal = error.what();
+            answer.refusal = std::string(error.what()) + " The own linear part is played.";
         }
         return answer;
     });

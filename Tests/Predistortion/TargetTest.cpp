@@ -191,6 +191,8 @@ TEST_CASE("A closed box is played as the driver would be in it", "[predistortion
     const OwnResonance own(midbass());
     CHECK_FALSE(own.suspensionVolume);
     CHECK_THROWS_WITH(own.require({Target::Kind::closedBox, 40.0, 0.7, volume}), Catch::Contains("area"));
+    for (const Target& refused : {Target {Target::Kind::closedBox, 40.0, 0.7, volume}, {Target::Kind::resonance, 4.0}})
+        CHECK(own.played(refused).frequency == own.single->frequency);
     CHECK_THROWS_WITH(own.require({Target::Kind::resonance, 4.0, 0.7, volume}), Catch::Contains("out of reach"));
     CHECK_THROWS_WITH(own.require({Target::Kind::resonance, 40.0, 0.0, volume}), Catch::Contains("Q of"));
 }

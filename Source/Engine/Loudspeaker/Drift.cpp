@@ -4,11 +4,11 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Loudspeaker/Propagate.h"
+#include "Engine/Loudspeaker/Resonance.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 namespace excursion {
 namespace {
@@ -61,10 +61,8 @@ Eigen::VectorXd factorsOf(const Model& before, const Model& now, const std::vect
 /// f0 in Hz and Q by Thiele and Small.
 Eigen::VectorXd figuresIn(const Model& model)
 {
-    const auto base = [&model](const char* name) { return model.baseParameter(name).value; };
-    const double K = base("K"), m = base("m"),
-                 losses = base("Rms") + (model.electrical() ? base("Bl") * base("Bl") / base("Re") : 0.0);
-    return Eigen::Vector2d(std::sqrt(K / m) / (2.0 * std::numbers::pi), std::sqrt(K * m) / losses);
+    const auto cone = coneResonance(model);
+    return Eigen::Vector2d(cone.frequency, cone.quality);
 }
 
 void tell(Drift& drift, const Model& before, const std::vector<std::string>& names)

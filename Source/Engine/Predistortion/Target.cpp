@@ -17,21 +17,25 @@ namespace excursion {
 namespace {
 
 constexpr double mostApart = 6.0;  // dB
+constexpr double farthest = 8.0;   // a factor
+
+bool inReach(double frequency, const Resonance& own)
+{
+    return frequency >= own.frequency / farthest && frequency <= own.frequency * farthest;
+}
 
 /// See OwnResonance.
 std::optional<Resonance> resonanceIn(const Model& model)
 {
-    const auto base = [&model](const char* name) { return model.baseParameter(name).value; };
-    const double K = base("K"), m = base("m"),
-                 damping = base("Rms") + (model.electrical() ? base("Bl") * base("Bl") / base("Re") : 0.0);
-    const Resonance own {std::sqrt(K / m) / (2.0 * std::numbers::pi), std::sqrt(K * m) / damping};
+    const auto own = coneResonance(model);
     if (!(own.frequency > 0.0 && own.quality > 0.0 && std::isfinite(own.frequency) && std::isfinite(own.quality)))
         return std::nullopt;
     std::vector<double> frequency;
     for (double octaves = -2.0; octaves <= 1.0; octaves += 1.0 / 24.0)
         frequency.push_back(own.frequency * std::exp2(octaves));
     const auto motion = respond(linearPart(model), {Quantity::displacement}, frequency).front().value;
-    const double slow = (model.electrical() ? base("Bl") / base("Re") : 1.0) / K;
+    const auto base = [&model](const char* name) { return model.baseParameter(name).value; };
+    const double slow = (model.electrical() ? base("Bl") / base("Re") : 1.0) / base("K");
     for (std::size_t k = 0; k < frequency.size(); ++k) {
         const std::complex<double> s(0.0, frequency[k] / own.frequency);
         const double apart = std::abs(motion[k] * (s * s + s / own.quality + 1.0)) / slow;
@@ -61,19 +65,25 @@ OwnResonance::OwnResonance(const Model& model) : single(resonanceIn(model))
         suspensionVolume = airDensity * speedOfSound * speedOfSound * area.value * area.value / stiffness;
 }
 
+/// Whether it can be played or not.
+std::optional<Resonance> OwnResonance::asked(const Target& target) const
+{
+    if (!single || !target.areSound())
+        return std::nullopt;
+    if (target.kind == Target::Kind::own)
+        return single;
+    if (target.kind == Target::Kind::resonance)
+        return Resonance {target.frequency, target.quality};
+    if (!suspensionVolume)
+        return std::nullopt;
+    const double stiffer = std::sqrt(1.0 + *suspensionVolume / target.volume);
+    return Resonance {stiffer * single->frequency, stiffer * single->quality};
+}
+
 Resonance OwnResonance::played(const Target& target) const
 {
-    auto wanted = single.value_or(Resonance {1.0, 1.0});
-    if (!single || target.kind == Target::Kind::own || !target.areSound())
-        return wanted;
-    if (target.kind == Target::Kind::resonance) {
-        wanted = {target.frequency, target.quality};
-    } else if (suspensionVolume) {
-        const double stiffer = std::sqrt(1.0 + *suspensionVolume / target.volume);
-        wanted = {stiffer * wanted.frequency, stiffer * wanted.quality};
-    }
-    wanted.frequency = std::clamp(wanted.frequency, single->frequency / farthest, single->frequency * farthest);
-    return wanted;
+    const auto wanted = asked(target);
+    return wanted && inReach(wanted->frequency, *single) ? *wanted : single.value_or(Resonance {1.0, 1.0});
 }
 
 void OwnResonance::require(const Target& target) const
@@ -89,10 +99,7 @@ void OwnResonance::require(const Target& target) const
     if (target.kind == Target::Kind::closedBox && !suspensionVolume)
         throw Error(Error::Kind::data, "What a closed box would do cannot be told: the model does not know the area of "
                                        "its cone. Give a resonance and a Q instead.");
-    const bool asked = target.kind == Target::Kind::resonance;
-    const double stiffer = asked ? 1.0 : std::sqrt(1.0 + *suspensionVolume / target.volume),
-                 frequency = asked ? target.frequency : stiffer * single->frequency;
-    if (frequency < single->frequency / farthest || frequency > single->frequency * farthest)
+    if (const double frequency = asked(target)->frequency; !inReach(frequency, *single))
         throw Error(Error::Kind::data, "A resonance of " + engineering(frequency, "Hz", 3)
                                            + " is out of reach: the driver's own is at "
                                            + engineering(single->frequency, "Hz", 3) + ", and no target is more than "

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/Resonance.h"
 
 #include <optional>
 #include <string>
 
 namespace excursion {
-
-/// A resonance of second order, s^2 + (w/Q) s + w^2 with w = 2 pi f.
-struct Resonance {
-    double frequency = 0.0;  ///< f, Hz
-    double quality = 0.0;    ///< Q
-};
 
 /// What a linearized driver is to move like: as its own linear part does, or with another resonance, which is put
 /// before the predistorter as Linkwitz' equalizer,
@@ -42,11 +36,7 @@ struct Target {
     bool operator==(const Target&) const = default;
 };
 
-/// The resonance that a driver has itself, as Thiele and Small count it,
-///     f0 = sqrt(K/m)/(2 pi),   Q0 = sqrt(K m)/(Rms + Bl^2/Re),
-/// without the term in Bl for a driver without a coil. It is where the impedance has its peak. The poles of the linear
-/// part are no better measure: those of an eddy current stand among them, and a woofer of 32 Hz that is well damped has
-/// its pair at 62 Hz.
+/// The resonance that a driver has itself (coneResonance()), and what can be put in its place.
 struct OwnResonance {
     explicit OwnResonance(const Model&);
 
@@ -60,13 +50,15 @@ struct OwnResonance {
 
     /// What is played for a target. A closed box adds the stiffness of its air,
     ///     ft = f0 sqrt(1 + Vas/V),   Qt = Q0 sqrt(1 + Vas/V).
-    /// No target is farther than a factor `farthest` from the own frequency: beyond
-    /// that it is played as if it were there. Any thread.
+    /// What require() refuses is not played: then it is the own one. Any thread.
     Resonance played(const Target&) const;
-    static constexpr double farthest = 8.0;
 
-    /// Throws Error (data): why this driver cannot be given this target. A target that is out of reach is refused, too.
+    /// Throws Error (data): why this driver cannot be given this target; also where that is farther than by a factor of
+    /// 8 from the own frequency.
     void require(const Target&) const;
+
+private:
+    std::optional<Resonance> asked(const Target&) const;
 };
 
 }  // namespace excursion
