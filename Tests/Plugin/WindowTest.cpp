@@ -189,7 +189,7 @@ TEST_CASE("A target and what it costs can be read at every size", "[plugin][targ
                 const auto plots = plugin::all<plugin::PlotView>(panel);
                 return !plots.empty() && plots.front()->plot().series.size() > 1;
             };
-            for (int k = 0; k < 400 && pictured && (k < 40 || !drawn()); ++k) {
+            for (int k = 0; k < 3000 && pictured && (k < 40 || !drawn()); ++k) {
                 editor.update();
                 juce::Thread::sleep(20);
             }
