@@ -90,6 +90,7 @@ void TargetPanel::ask()
     if (question == asked_)
         return;
     asked_ = std::move(question);
+    words_.setText("What the target costs is being computed.", juce::dontSendNotification);  // not the one before
     const auto model = withoutOff(processor_.model(), recipe);
     Answer answer;
     answer.controls = controlsOf(recipe, model);
