@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
-#include "Cli/Terminal.h"
+#include "Cli/Predistorting.h"
 #include "Cli/Verbs.h"
 
-#include "Engine/BlackBox/BlackBoxPredistorter.h"
 #include "Engine/BlackBox/ModelDocument.h"
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Engineering.h"
@@ -12,27 +11,13 @@
 #include "Engine/Loudspeaker/ModelFile.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Signal/Level.h"
-#include "Engine/Take/WavFile.h"
 
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <optional>
 
 namespace excursion::cli {
-namespace {
-
-struct PredistortArguments {
-    std::string model, input, out;
-    double fullScale = 0.0;                                             ///< V or N
-    std::optional<double> displacementLimit, voltageLimit, powerLimit;  ///< m, V or N, W
-    double amount = 1.0, margin = 0.0;
-    int oversampling = 2;
-};
 
 void publish(const Wav& bent, const std::string& out)
 {
@@ -41,7 +26,6 @@ void publish(const Wav& bent, const std::string& out)
     draft.publish();
 }
 
-/// What the documents of all classes of models begin with.
 nlohmann::ordered_json documentOf(const PredistortArguments& options, const Wav& wav)
 {
     return {{"format", "excursion-predistort"},
@@ -55,7 +39,6 @@ nlohmann::ordered_json documentOf(const PredistortArguments& options, const Wav&
             {"amount", options.amount}};
 }
 
-/// @param loudest  peak that came out, in the input's unit
 void sayLoudest(const PredistortArguments& options, double loudest, Terminal& terminal)
 {
     if (loudest > options.fullScale)
@@ -69,7 +52,6 @@ void sayWritten(const PredistortArguments& options, const std::string& unit, Ter
                  + ", as in " + options.input + ".");
 }
 
-/// @param out  where what comes of it goes
 Wav readPlayable(const std::string& file, const std::string& out)
 {
     auto wav = readWav(file);
@@ -82,6 +64,13 @@ Wav readPlayable(const std::string& file, const std::string& out)
     return wav;
 }
 
+std::string turnedDown(double decibels, bool limited)
+{
+    return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit";
+}
+
+namespace {
+
 PredistortionControls controlsFrom(const PredistortArguments& options, const Model& model)
 {
     PredistortionControls controls;
@@ -90,107 +79,8 @@ PredistortionControls controlsFrom(const PredistortArguments& options, const Mod
     controls.voltageLimit = options.voltageLimit.value_or(std::numeric_limits<double>::infinity());
     controls.powerLimit = options.powerLimit.value_or(std::numeric_limits<double>::infinity());
     controls.margin = options.margin;
+    controls.target = targetFrom(options.target, model);
     return controls;
-}
-
-/// One channel through a predistorter of its own, by which its delay is taken out again.
-template <class AnyPredistorter>
-void bend(std::vector<double>& samples, AnyPredistorter& predistorter, double fullScale, const Progress& progress,
-          double from, double share)
-{
-    constexpr std::size_t block = 4096;
-    const auto latency = static_cast<std::size_t>(predistorter.latency());
-    const std::size_t length = samples.size();
-    samples.resize(length + latency, 0.0);
-    for (auto& sample : samples)
-        sample *= fullScale;
-    for (std::size_t n = 0; n < samples.size(); n += block) {
-        if (n / block % 16 == 0)
-            progress.at(from + share * static_cast<double>(n) / static_cast<double>(samples.size()), "predistorting");
-        predistorter.process(samples.data() + n, samples.data() + n, std::min(block, samples.size() - n));
-    }
-    samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(latency));
-    for (auto& sample : samples)
-        sample /= fullScale;
-}
-
-/// dB from which on a limit is told to have acted.
-constexpr double noticed = 1e-3;
-
-std::string turnedDown(double decibels, bool limited)
-{
-    return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit";
-}
-
-/// The same with a model without physics, which knows no cone: the region of its fit is the limit.
-void runBlackBox(const PredistortArguments& options, const BlackBox& box, Terminal& terminal)
-{
-    if (options.displacementLimit || options.powerLimit || options.margin != 0.0)
-        throw Error(Error::Kind::usage, "--limit-x, --limit-p and --margin are of a cone and a coil, which a model "
-                                        "without physics does not know: leave them out; it keeps to where it was "
-                                        "fitted.");
-    const auto wav = readPlayable(options.input, options.out);
-    const RehearsedBox model(box);
-    const auto& gain = model.rehearsal;
-    const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "units of " + box.input;
-    terminal.say("A " + box.kind + " (" + box.output + " from " + box.input + ") at "
-                 + significant(box.linear.sampleRate, 6) + " Hz. As it was fitted, with "
-                 + significant(box.stimulus.rms, 3) + " " + unit + " rms, its distortion is " + fixed(gain.beforeDb, 1)
-                 + " dB; with the correction " + fixed(gain.afterDb, 1) + " dB are left: a gain of "
-                 + fixed(gain.gainDb(), 1) + " dB, as far as the model is right.");
-    if (box.output == "current")
-        terminal.say(
-            "What becomes linear is the current, which is not the sound: of that, a model of the displacement, "
-            "the velocity, the acceleration or the pressure would take the distortion out.");
-    const auto rate = static_cast<double>(wav.sampleRate);
-    if (rate != box.linear.sampleRate)
-        terminal.say("The WAV is at another rate, " + significant(rate, 6)
-                     + " Hz: the correction passes through the model's rate, and reaches up to "
-                     + significant(0.41e-3 * std::min(rate, box.linear.sampleRate), 3) + " kHz.");
-    auto bent = wav;
-    const auto progress = terminal.progress();
-    std::vector<std::vector<std::string>> rows;
-    nlohmann::ordered_json channels = nlohmann::ordered_json::array();
-    bool limited = false;
-    double loudest = 0.0;
-    const BlackBoxControls controls {options.amount,
-                                     options.voltageLimit.value_or(std::numeric_limits<double>::infinity())};
-    for (std::size_t c = 0; c < bent.channels.size(); ++c) {
-        BlackBoxPredistorter predistorter(model, rate, controls);
-        const double before = options.fullScale * peakOf(wav.channels[c]),
-                     share = 1.0 / static_cast<double>(bent.channels.size());
-        bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
-        const auto meters = predistorter.take();
-        const double after = options.fullScale * peakOf(bent.channels[c]);
-        loudest = std::max(loudest, after);
-        limited = limited || meters.reduction > noticed;
-        channels.push_back({{"peakIn", before},
-                            {"peakOut", after},
-                            {"correction", meters.correction},
-                            {"region", meters.region},
-                            {"reduction", meters.reduction}});
-        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
-                        significant(meters.correction) + " " + unit, fixed(100.0 * meters.region, 0) + " %",
-                        turnedDown(meters.reduction, true)});
-    }
-    publish(bent, options.out);
-    auto told = documentOf(options, wav);
-    told.update({{"voltageLimit", numberOrNull(controls.inputLimit)},
-                 {"modelRate", box.linear.sampleRate},
-                 {"distortionBeforeDb", gain.beforeDb},
-                 {"distortionAfterDb", gain.afterDb},
-                 {"gainDb", gain.gainDb()},
-                 {"channels", channels},
-                 {"limited", limited}});
-    terminal.document(told);
-    terminal.table({"channel", "peak in", "out", "the correction", "of the region", "turned down"}, rows);
-    if (limited)
-        terminal.say("The signal goes beyond where the model was fitted (" + significant(box.stimulus.peak, 3) + " "
-                     + unit + " peak, or what its states reached): there it was turned down.");
-    sayLoudest(options, loudest, terminal);
-    sayWritten(options, unit, terminal);
-    if (limited)
-        terminal.answer = 1;
 }
 
 void run(const PredistortArguments& options, Terminal& terminal)
@@ -215,6 +105,9 @@ void run(const PredistortArguments& options, Terminal& terminal)
     std::string reason;
     if (!controls.isValid(&reason))
         throw Error(Error::Kind::usage, "The predistortion cannot run: " + reason + ".");
+    nlohmann::ordered_json target;
+    if (options.target.asked())
+        target = tellTarget(model, controls, options.fullScale, terminal);
 
     auto bent = wav;
     const auto progress = terminal.progress();
@@ -260,6 +153,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
                  {"voltageLimit", numberOrNull(controls.voltageLimit)},
                  {"powerLimit", numberOrNull(controls.powerLimit)},
                  {"margin", controls.margin},
+                 {"target", target},
                  {"channels", channels},
                  {"limited", limited}});
     terminal.document(told);
@@ -314,6 +208,7 @@ void addPredistort(CLI::App& app, Terminal& terminal)
                      "model's, 0 to 0.3")
         ->check(CLI::Range(0.0, 0.3))
         ->capture_default_str();
+    addTargetOptions(*verb, o->target);
     verb->add_option("--amount", o->amount, "0: the signal as it is, 1: fully linearized")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();

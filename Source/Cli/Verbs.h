@@ -46,6 +46,7 @@ void addSimulate(CLI::App&, Terminal&);
 void addWhatIf(CLI::App&, Terminal&);
 void addParameters(CLI::App&, Terminal&);
 void addPredistort(CLI::App&, Terminal&);
+void addAdapt(CLI::App&, Terminal&);
 void addCollect(CLI::App&, Terminal&);
 void addDoctor(CLI::App&, Terminal&);
 

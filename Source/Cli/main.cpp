@@ -148,6 +148,7 @@ int main(int argc, char** argv)
     cli::addWhatIf(app, terminal);
     cli::addParameters(app, terminal);
     cli::addPredistort(app, terminal);
+    cli::addAdapt(app, terminal);
     cli::addCollect(app, terminal);
 
     cli::addDoctor(app, terminal);

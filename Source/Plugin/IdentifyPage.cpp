@@ -271,7 +271,11 @@ void IdentifyPage::tick()
     }
     if (idle) {
         note(now);
-        shaping_ = false;
+        // Where no shape came of what was asked for, the lists go back to that of the model which is shown.
+        if (shaping_ && now.linear && !reduced_.isMouseButtonDown(true)) {
+            choose(now.linear->shape);
+            shaping_ = false;
+        }
     }
     const bool linear = now.linear != nullptr, shapes = linear && (idle || shaping_);
     identify_.setEnabled(idle && take_ != nullptr && !outputs_.empty());

@@ -15,7 +15,10 @@
 namespace excursion::plugin {
 
 LinearizePage::LinearizePage(Window& window)
-    : Page(window), processor_(window.processor()), mode_(processor_.parameters().mode(), &window.history())
+    : Page(window),
+      processor_(window.processor()),
+      mode_(processor_.parameters().mode(), &window.history()),
+      target_(window)
 {
     name_.setFont(juce::Font(19.0f));
     forecastWords_.setFont(juce::Font(14.0f));
@@ -61,6 +64,8 @@ LinearizePage::LinearizePage(Window& window)
     const auto tell = [this](const juce::String& text, bool trouble) { window_.tell(text, trouble); };
     laws_.told = tell;
     distortion_.told = tell;
+    target_.told = tell;
+    target_.reshaped = [this] { resized(); };
     add({&name_, &recipes_, &drivers_, &load_, &mode_.box()});
     for (auto* number : processor_.parameters().numbers()) {
         dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number, &window.history()));
@@ -72,7 +77,7 @@ LinearizePage::LinearizePage(Window& window)
         switches_.push_back(std::make_unique<OnOffButton>(*effect, &window.history()));
         add({&switches_.back()->button()});
     }
-    add({&excursion_, &voltage_, &power_, &facts_, &laws_, &distortion_, &forecastWords_});
+    add({&excursion_, &voltage_, &power_, &facts_, &target_, &laws_, &distortion_, &forecastWords_});
     power_.setVisible(false);
     showModel(processor_.anyModel());
 }
@@ -194,12 +199,20 @@ void LinearizePage::showForecast()
         forecast_.take();  // of a driver before
         return;
     }
+    if (targetPictured())
+        return;
     if (auto question = std::pair {processor_.modelVersion(), toJson(recipe).dump()}; question != asked_) {
         asked_ = std::move(question);
         const auto model = withoutOff(processor_.model(), recipe);
-        forecast_.ask(model, controlsOf(recipe, model), recipe.fullScale);
+        forecast_.ask([model, controls = controlsOf(recipe, model), volts = recipe.fullScale] {
+            try {
+                return std::optional(predictDistortion(model, controls, volts));
+            } catch (const Error&) {
+                return std::optional<PredictedDistortion>();  // a model that cannot be run has none to tell
+            }
+        });
     }
-    const auto answer = forecast_.take();
+    const auto answer = forecast_.take().value_or(std::nullopt);
     if (!answer)
         return;
     showDistortion(answer->frequency, answer->before, answer->after, "Predicted distortion at 0 dBFS");
@@ -253,6 +266,8 @@ void LinearizePage::tick()
 {
     follow();
     showMeters();
+    if (!box_)
+        target_.tick();
     showForecast();
 }
 
@@ -312,6 +327,18 @@ void LinearizePage::resized()
     }
     left.removeFromTop(8);
     facts_.setBounds(left.removeFromTop(juce::jmin(140, left.getHeight())));
+    target_.setVisible(!box_);
+    for (auto* part : std::initializer_list<juce::Component*> {&laws_, &distortion_, &forecastWords_})
+        part->setVisible(!targetPictured());
+    if (targetPictured()) {
+        target_.setBounds(area);
+        target_.resized();
+        return;
+    }
+    if (!box_) {
+        target_.setBounds(area.removeFromTop(target_.head()));
+        target_.resized();
+    }
     forecastWords_.setBounds(area.removeFromBottom(24));
     distortion_.setBounds(area.removeFromBottom(area.getHeight() * 9 / 20));
     laws_.setBounds(area);

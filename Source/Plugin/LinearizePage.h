@@ -2,10 +2,12 @@
 #pragma once
 
 #include "Plugin/Dials.h"
+#include "Engine/Predistortion/PredictedDistortion.h"
 #include "Plugin/Forecast.h"
 #include "Plugin/Meter.h"
 #include "Plugin/Page.h"
 #include "Plugin/PlotGrid.h"
+#include "Plugin/TargetPanel.h"
 
 #include <cstdint>
 #include <memory>
@@ -16,14 +18,15 @@
 namespace excursion::plugin {
 
 /// What is done to the signal with the model: mode, limits, effects as switches, the laws, the meters of the
-/// protection, and the distortion that is to be expected with and without linearization. Of a model without physics,
-/// the response of its linear part in place of laws, and no limits that only a cone and a coil have.
+/// protection, the target, and the distortion that is to be expected with and without linearization. Of a model without
+/// physics, the response of its linear part in place of laws, and no limits that only a cone and a coil have.
 class LinearizePage : public Page {
 public:
     explicit LinearizePage(Window&);
 
     void showModel(const AnyModel&);
     void tick() override;
+    TargetPanel& target() { return target_; }
     void resized() override;
 
 private:
@@ -35,6 +38,7 @@ private:
     void follow();
     void showMeters();
     void showForecast();
+    bool targetPictured() const { return !box_ && target_.pictured(); }
 
     Processor& processor_;
     juce::Label name_, forecastWords_, facts_;
@@ -46,9 +50,10 @@ private:
     std::vector<std::unique_ptr<OnOffButton>> switches_;
     PlotGrid laws_ {"Laws of the model"};
     PlotView distortion_;
+    TargetPanel target_;
     Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
     LoadedBoxPointer box_;  ///< null: a driver is shown
-    Forecast forecast_;
+    Forecast<std::optional<PredictedDistortion>> forecast_;
     /// version of the model, and the recipe, that the forecast is of
     std::pair<std::uint64_t, std::string> asked_;
     std::unique_ptr<juce::FileChooser> chooser_;

@@ -31,7 +31,7 @@ Parameters::Parameters(juce::AudioProcessor& processor)
                            first.voltageLimit);
     trim_ = number("trim", "Output trim", {Settings::trims, 10, 0.0, 1.0, "dB"}, first.trimDb);
     // Later ones stand behind, so that the earlier ones keep their places.
-    constexpr std::size_t firstEffects = 6;
+    constexpr std::size_t firstEffects = 6, secondEffects = 13;
     const auto switchOf = [&](std::size_t k) {
         const auto& effect = *catalogue()[k];
         effects_.push_back(added(new OnOff("effect-" + words(effect.id()), words(effect.title()))));
@@ -40,7 +40,15 @@ Parameters::Parameters(juce::AudioProcessor& processor)
         switchOf(k);
     powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 100, 30.0, 1.0, "W"}, first.powerLimit);
     margin_ = number("margin", "Model margin", {Settings::margins, 1000, 0.15, 100.0, "%"}, first.margin);
-    for (std::size_t k = firstEffects; k < catalogue().size(); ++k)
+    for (std::size_t k = firstEffects; k < secondEffects; ++k)
+        switchOf(k);
+    target_ = added(new Choice("target", "Target", {"Own linear part", "New resonance", "Closed box"}));
+    targetF0_ = number("targetF0", "Target f0", {Settings::targetFrequencies, 10, 100.0, 1.0, "Hz"},
+                       first.target.frequency);
+    targetQ_ = number("targetQ", "Target Q", {Settings::targetQualities, 100, 0.8, 1.0, ""}, first.target.quality);
+    targetVolume_ = number("targetVolume", "Target box", {Settings::targetVolumes, 10000, 0.03, 1000.0, "l"},
+                           first.target.volume);
+    for (std::size_t k = secondEffects; k < catalogue().size(); ++k)
         switchOf(k);
 }
 
@@ -55,6 +63,8 @@ Settings Parameters::settings() const
     settings.powerLimit = powerLimit_->get();
     settings.margin = margin_->get();
     settings.trimDb = trim_->get();
+    settings.target = {static_cast<Target::Kind>(target_->getIndex()), targetF0_->get(), targetQ_->get(),
+                       targetVolume_->get()};
     return settings;
 }
 
@@ -92,6 +102,7 @@ Between Parameters::between() const
             found[parameter.paramID.toStdString()] = static_cast<double>(sent);
     };
     look(*mode_);
+    look(*target_);
     for (const auto* effect : effects_)
         look(*effect);
     return found;
@@ -118,6 +129,10 @@ void Parameters::set(const Recipe& recipe, const Between& between)
     powerLimit_->set(recipe.powerLimit);
     margin_->set(recipe.margin);
     trim_->set(recipe.trimDb);
+    put(*target_, target_->proportionOf(static_cast<int>(recipe.target.kind)));
+    targetF0_->set(recipe.target.frequency);
+    targetQ_->set(recipe.target.quality);
+    targetVolume_->set(recipe.target.volume);
     for (std::size_t k = 0; k < effects_.size(); ++k)
         put(*effects_[k],
             std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);

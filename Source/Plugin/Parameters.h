@@ -14,7 +14,8 @@ namespace excursion::plugin {
 
 /// The parameters that a host sees and automates: those of a Recipe, and a switch for every effect of the catalogue.
 ///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V),
-///     trim (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects
+///     trim (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects, target, targetF0 (Hz),
+///     targetQ, targetVolume (l), effect-<id> of still later ones
 /// No listener hangs at them, as those are called on the audio thread: who wants to know reads them, now and then.
 class Parameters {
 public:
@@ -39,11 +40,14 @@ public:
     {
         return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, margin_, trim_};
     }
+    Choice& target() { return *target_; }
+    std::vector<Number*> targetNumbers() const { return {targetF0_, targetQ_, targetVolume_}; }
     const std::vector<OnOff*>& effects() const { return effects_; }
 
 private:
-    Choice* mode_;
+    Choice *mode_, *target_;
     Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_;
+    Number *targetF0_, *targetQ_, *targetVolume_;
     std::vector<OnOff*> effects_;  ///< in the order of the catalogue
     mutable std::mutex mutex_;     ///< of what follows; never locked on the audio thread
     std::string title_, words_;

@@ -41,7 +41,7 @@ Processor::Processor()
       model_(firstModel()),
       measuredDisplacement_(measuredDisplacement(model_)),
       worker_([this](const std::stop_token& stop) { work(stop); }),
-      rehearsing_([this](const LoadedBoxPointer& box) { put(box); })
+      rehearsing_([this](const LoadedBoxPointer& box, const std::stop_token& stop) { put(box, stop); })
 {
     latency_ = Chain(model_, options(), {}).latency();  // the same at every rate
     setLatencySamples(latency_);
@@ -128,15 +128,26 @@ void Processor::setModel(const AnyModel& model)
     put(model);
 }
 
-void Processor::put(const AnyModel& model)
+/// With the mutex held. Throws Error for a model that cannot be played at the rate, with the switches of the recipe.
+void Processor::requirePlayable(const AnyModel& model, const Recipe& recipe) const
+{
+    if (const auto* box = std::get_if<LoadedBoxPointer>(&model)) {
+        BlackBoxEngine((*box)->played, options().sampleRate, {});
+        return;
+    }
+    requireRunnable(std::get<Model>(model), options());
+    requireRunnable(withoutOff(std::get<Model>(model), recipe), options());
+}
+
+/// @param stop  is asked when its turn has come: a newer model may have been set meanwhile, whose cancelling came first
+void Processor::put(const AnyModel& model, const std::stop_token& stop)
 {
     {
         const std::lock_guard lock(mutex_);
+        if (stop.stop_requested())
+            throw Error(Error::Kind::cancelled, "The model is not wanted any more.");
+        requirePlayable(model, parameters_.recipe());
         const auto* box = std::get_if<LoadedBoxPointer>(&model);
-        if (box == nullptr) {
-            requireRunnable(std::get<Model>(model), options());
-            requireRunnable(withoutOff(std::get<Model>(model), parameters_.recipe()), options());
-        }
         int latency = build(model);
         box_ = box != nullptr ? *box : nullptr;
         if (box == nullptr)
@@ -302,8 +313,11 @@ void Processor::setStateInformation(const void* data, int size)
     try {
         const auto state = stateFrom({static_cast<const char*>(data), static_cast<std::size_t>(std::max(size, 0))},
                                      box());
-        if (const auto* driver = std::get_if<Model>(&state.model))
-            requireRunnable(withoutOff(*driver, state.recipe), {48000.0, oversampling});
+        {
+            // All of it is used or nothing, so what may be refused is asked first.
+            const std::lock_guard lock(mutex_);
+            requirePlayable(state.model, state.recipe);
+        }
         parameters_.set(state.recipe, state.between);
         setModel(state.model);
     } catch (const Error&) {

@@ -94,7 +94,8 @@ public:
 private:
     template <class Sample>
     void play(juce::AudioBuffer<Sample>&, bool bypassed);
-    void put(const AnyModel&);
+    void put(const AnyModel&, const std::stop_token& = {});
+    void requirePlayable(const AnyModel&, const Recipe&) const;
     int build(const AnyModel&);
     std::vector<std::unique_ptr<Chain>> chains(const AnyModel&, std::size_t channels);
     int start();

@@ -68,7 +68,7 @@ void Rehearsing::run(const std::stop_token& stop)
         try {
             const auto box = loadedBox(order.document, order.where, progress);
             progress.at(1.0, "");
-            done_(box);
+            done_(box, progress.stop);
             said = wordsOf(box->played);
         } catch (const Error& error) {
             trouble = true;

@@ -17,9 +17,10 @@ namespace excursion::plugin {
 /// carried out; one under way is stopped by the next. Not for the audio thread.
 class Rehearsing {
 public:
-    using Done = std::function<void(const LoadedBoxPointer&)>;
+    /// The token tells that the order was cancelled meanwhile: then the model is not wanted any more.
+    using Done = std::function<void(const LoadedBoxPointer&, const std::stop_token&)>;
 
-    /// @param done  is given the model, on the thread; an Error that it throws is told as trouble
+    /// @param done  is given the model, on the thread; an Error that it throws is told as trouble, but for (cancelled)
     explicit Rehearsing(Done done);
     ~Rehearsing();
 

@@ -178,6 +178,30 @@ TEST_CASE("Switched off the model stands still; switched on again it corrects as
     }
 }
 
+TEST_CASE("Switched on after it was reset, the model hears the signal for 0.1 s before it corrects", "[predistorter]")
+{
+    for (const double rate : {48000.0, 44100.0}) {
+        const auto period = playedAs(pinkStimulus(2.0), rate, 16384, 4);
+        std::vector<double> u(static_cast<std::size_t>(0.4 * rate));
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = 0.9 * period[(5000 + n) % period.size()];
+        BlackBoxPredistorter predistorter(oneBox(), rate);
+        predistorter.turn(false);
+        predistorter.reset();
+        predistorter.turn(true);
+        std::vector<double> out(u.size());
+        predistorter.process(u.data(), out.data(), u.size());
+        const auto late = static_cast<std::size_t>(predistorter.latency()),
+                   heard = static_cast<std::size_t>(0.1 * rate);
+        for (std::size_t n = late; n < heard; ++n)
+            REQUIRE(out[n] == u[n - late]);
+        double correction = 0.0;
+        for (std::size_t n = 3 * heard; n < u.size(); ++n)
+            correction = std::max(correction, std::abs(out[n] - u[n - late]));
+        CHECK(correction > 0.0);
+    }
+}
+
 TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[predistorter]")
 {
     const auto& stimulus = oneBox().box.stimulus;

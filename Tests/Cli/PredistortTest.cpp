@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -155,6 +156,49 @@ TEST_CASE("predistort says when a limit was reached", "[cli]")
     CHECK(document.at("channels")[0].at("powerReduction").get<double>() > 3.0);
 }
 
+TEST_CASE("predistort plays a target, and tells what it costs first", "[cli][predistort]")
+{
+    const Scratch scratch;
+    // 57.2 Hz and a Q of 0.628, by sqrt(K/m) and sqrt(K m)/(Rms + Bl^2/Re)
+    const auto model = bentModel(scratch), in = wavOf(scratch, {tone(0.01)}), out = (scratch / "out.wav").string();
+    const auto run = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"predistort", model, in, out, "--full-scale", "20"});
+        return runProgram(scratch.folder(), options);
+    };
+    const auto told = run({"--target-f0", "40", "--target-q", "0.7", "--limit-u", "30", "--json"});
+    INFO(told.out << told.err);
+    REQUIRE(told.code == 0);
+    const auto target = documentOf(told, "excursion-predistort").at("target");
+    CHECK(target.at("kind") == "resonance");
+    CHECK(target.at("driver").at("f0").get<double>() == Approx(57.176).epsilon(1e-4));
+    CHECK(target.at("driver").at("q").get<double>() == Approx(0.62784).epsilon(1e-4));
+    CHECK(target.at("target").at("f0") == 40.0);
+    CHECK(target.at("target").at("q") == 0.7);
+    CHECK(target.at("lowGainDb").get<double>() == Approx(40.0 * std::log10(57.176 / 40.0)).epsilon(1e-3));
+    const auto level = [&target](const char* which) { return target.at(which).at("pink").at("levelDb").get<double>(); };
+    CHECK(level("target") < level("driver") - 3.0);
+
+    // A tone of 50 Hz so soft that nothing bends comes out as T has it.
+    const double w = 50.0, f0 = 57.176, q0 = 0.62784;
+    const std::complex<double> s(0.0, w), T = (s * s + s * f0 / q0 + f0 * f0) / (s * s + s * 40.0 / 0.7 + 1600.0);
+    const auto of = [](const std::vector<double>& samples) {
+        std::complex<double> sum;
+        for (std::size_t n = 0; n < samples.size(); ++n)
+            sum += samples[n] * std::polar(1.0, -2.0 * std::numbers::pi * 50.0 * static_cast<double>(n) / rate);
+        return sum;
+    };
+    CHECK(std::abs(of(readWav(out).channels[0]) / of(tone(0.01)) - T) < 0.03 * std::abs(T));
+
+    CHECK_THAT(run({"--target-box", "10"}).out, Catch::Contains("the target") && Catch::Contains("dB less"));
+    CHECK(documentOf(run({"--json"}), "excursion-predistort").at("target").is_null());
+    CHECK(run({"--target-box", "10", "--target-q", "1"}).code == 2);
+    CHECK(run({"--target-f0", "-3"}).code == 2);
+    CHECK(run({"--target-f0", "nan"}).code == 2);
+    const auto far = run({"--target-f0", "3"});
+    CHECK(far.code == 4);
+    CHECK_THAT(far.err, Catch::Contains("out of reach"));
+}
+
 TEST_CASE("predistort refuses what it cannot play", "[cli][bad-input]")
 {
     const Scratch scratch;
@@ -275,6 +319,9 @@ TEST_CASE("predistort turns around a model without physics, and says what that g
     auto limited = command;
     limited.insert(limited.end(), {"--limit-x", "0.001"});
     CHECK(runProgram(scratch.folder(), limited).code == 2);
+    auto aimed = command;
+    aimed.insert(aimed.end(), {"--target-f0", "30"});
+    CHECK(runProgram(scratch.folder(), aimed).code == 2);
     document.erase("stimulus");
     std::ofstream(model) << document.dump();
     const auto refused = runProgram(scratch.folder(), command);

@@ -334,6 +334,61 @@ TEST_CASE("Models are rehearsed, taken back and handed over while audio runs on 
     CHECK(finite);
 }
 
+TEST_CASE("A rehearsal that is cancelled while its model is handed over replaces no newer model", "[plugin][blackbox]")
+{
+    // Whom it hands the model to can tell that it is not wanted any more.
+    std::atomic<bool> there {false}, cancelled {false};
+    plugin::Rehearsing rehearsing([&](const plugin::LoadedBoxPointer&, const std::stop_token& stop) {
+        there = true;
+        for (int k = 0; k < 1000 && !stop.stop_requested(); ++k)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        cancelled = stop.stop_requested();
+        throw Error(Error::Kind::cancelled, "Not wanted any more.");
+    });
+    rehearsing.load(boxes().front()->document, "a file");
+    while (!there)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    rehearsing.cancel();
+    rehearsing.wait();
+    CHECK(cancelled);
+    CHECK(rehearsing.status().version == 0);
+
+    // And so can the plugin, kept busy so that both wait for it.
+    for (int k = 0; k < 3; ++k) {
+        Processor processor;
+        std::jthread busy([&](const std::stop_token& stop) {
+            while (!stop.stop_requested())
+                processor.prepareToPlay(rate, 512);
+        });
+        processor.rehearsing().load(boxes().front()->document, "a file");
+        while (processor.rehearsing().status().busy && processor.rehearsing().status().fraction < 1.0) {}
+        processor.setModel(processor.model());
+        processor.rehearsing().wait();
+        CHECK_FALSE(processor.box());
+    }
+}
+
+TEST_CASE("Of a state with a model that cannot run at the rate nothing is taken", "[plugin][blackbox]")
+{
+    Processor saved, processor;
+    const auto stimulus = pinkStimulus(2.0);
+    auto document = nlohmann::ordered_json::parse(stateOf(saved).toString().toStdString());
+    document["model"] = documentOf(randomPnlss(11, 47000.0, stimulus), stimulus);
+    document["recipe"]["amount"] = 0.25;
+    document["recipe"]["mode"] = "audition";
+    const auto text = document.dump();
+    processor.prepareToPlay(768000.0, 512);  // more than 16 times the model's
+    const auto before = stateOf(processor);
+    processor.setStateInformation(text.data(), static_cast<int>(text.size()));
+    CHECK_FALSE(processor.box());
+    CHECK((stateOf(processor) == before));
+    // At another rate it is one that can be used.
+    processor.prepareToPlay(rate, 512);
+    processor.setStateInformation(text.data(), static_cast<int>(text.size()));
+    CHECK(processor.box());
+    CHECK(processor.parameters().recipe().amount == 0.25);
+}
+
 TEST_CASE("A driver and models without physics take over from one another without a step", "[plugin][blackbox]")
 {
     for (const auto mode : {Mode::bypass, Mode::speaker, Mode::linearize, Mode::audition}) {

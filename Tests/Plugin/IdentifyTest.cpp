@@ -246,6 +246,9 @@ TEST_CASE("Fractional order is found, and an unstable model is made stable in fo
     CHECK(processor.session().status().trouble);
     CHECK(editor.status().contains("stable"));
     CHECK(linearOf(editor) == before);
+    // The lists name what is shown.
+    CHECK(named<juce::ComboBox>(editor.identify(), "Reduce").getSelectedItemIndex() == 0);
+    CHECK(editor.identify().shapeWish().reducing == before->shape.reducing);
 }
 
 TEST_CASE("A PNLSS begins at the linear model, is cancelled, is fitted, and goes to the last page",

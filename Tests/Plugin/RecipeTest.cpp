@@ -33,6 +33,8 @@ Recipe drawn(std::mt19937& random)
     recipe.powerLimit = within(Settings::powers);
     recipe.margin = within(Settings::margins);
     recipe.trimDb = within(Settings::trims);
+    recipe.target = {static_cast<Target::Kind>(random() % 3), within(Settings::targetFrequencies),
+                     within(Settings::targetQualities), within(Settings::targetVolumes)};
     recipe.title = "of chance";
     return recipe;
 }
@@ -40,26 +42,33 @@ Recipe drawn(std::mt19937& random)
 }  // namespace
 
 TEST_CASE(
-    "A recipe of version 1 is read with no limit of the power and no margin; a later version than ours is refused",
+    "A recipe of version 1 is read with no limit of the power and no margin, one of version 2 with no target; a later "
+    "version than ours is refused",
     "[plugin]")
 {
     std::mt19937 random(2);
     const auto recipe = drawn(random);
     auto document = documentOf(recipe);
-    CHECK(document["version"] == 2);
+    CHECK(document["version"] == 3);
     CHECK(toJson(read(document)) == toJson(recipe));
+    auto expected = recipe;
+    document["version"] = 2;
+    document.erase("target");
+    expected.target = {};
+    CHECK(toJson(read(document)) == toJson(expected));
+    document["version"] = 3;
+    CHECK_THROWS_WITH(read(document), Catch::Contains("target"));
     document["version"] = 1;
     document.erase("powerLimit");
     document.erase("margin");
-    auto expected = recipe;
     expected.powerLimit = 10000.0;
     expected.margin = 0.0;
     CHECK(toJson(read(document)) == toJson(expected));
     document["version"] = 2;
     CHECK_THROWS_WITH(read(document), Catch::Contains("powerLimit"));
-    for (const nlohmann::json& version : {nlohmann::json(3), nlohmann::json("2"), nlohmann::json(0)}) {
+    for (const nlohmann::json& version : {nlohmann::json(4), nlohmann::json("2"), nlohmann::json(0)}) {
         document["version"] = version;
-        CHECK_THROWS_WITH(read(document), Catch::Contains("1 or 2"));
+        CHECK_THROWS_WITH(read(document), Catch::Contains("1, 2 or 3"));
     }
     for (const auto& [key, value] :
          {std::pair {"powerLimit", 0.0}, {"powerLimit", 10001.0}, {"margin", -0.1}, {"margin", 0.31}}) {
@@ -71,6 +80,18 @@ TEST_CASE(
         std::string reason;
         CHECK_FALSE(invalid.isValid(&reason));
     }
+    for (const auto& [key, value] : {std::pair<const char*, nlohmann::json> {"kind", "vented"},
+                                     {"f0", 4.0},
+                                     {"f0", nullptr},
+                                     {"q", 0.0},
+                                     {"volume", 2.0}}) {
+        auto broken = documentOf(recipe);
+        broken["target"][key] = value;
+        CHECK_THROWS_WITH(read(broken), Catch::Contains(std::string("target.") + key));
+    }
+    auto invalid = recipe;
+    invalid.target.quality = 10.0;
+    CHECK_FALSE(invalid.isValid(nullptr));
 }
 
 TEST_CASE("The plugin's controls are those of its recipe, and no limit of the voltage is above full scale", "[plugin]")
@@ -94,6 +115,8 @@ TEST_CASE("The plugin's controls are those of its recipe, and no limit of the vo
         CHECK(expected.voltageLimit == std::min(recipe.voltageLimit, recipe.fullScale));
         CHECK(expected.powerLimit == recipe.powerLimit);
         CHECK(expected.margin == recipe.margin);
+        CHECK(controls.linearization.target == recipe.target);
+        CHECK(expected.target == recipe.target);
         CHECK(controls.linearization.isValid(nullptr));
     }
     CHECK(controlsOf(Recipe {}, model).powerLimit == std::numeric_limits<double>::infinity());
@@ -132,5 +155,7 @@ TEST_CASE("Parameters keep their places when later versions have more of them", 
              "effect-inductance-position "
              "effect-eddy-currents effect-creep effect-damping-velocity powerLimit margin effect-inductance-current "
              "effect-friction "
-             "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance");
+             "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance target "
+             "targetF0 "
+             "targetQ targetVolume");
 }

@@ -171,6 +171,50 @@ TEST_CASE("A model without physics can be read at every size, whether it can be 
     }
 }
 
+TEST_CASE("A target and what it costs can be read at every size", "[plugin][target]")
+{
+    Processor processor;
+    Editor editor(processor);
+    editor.go(PageName::linearize);
+    auto& panel = dynamic_cast<plugin::LinearizePage&>(editor.page(PageName::linearize)).target();
+    for (const auto kind : {Target::Kind::own, Target::Kind::resonance, Target::Kind::closedBox})
+        for (const bool pictured : {false, true}) {
+            auto recipe = processor.parameters().recipe();
+            recipe.target = {kind, 40.0, 0.7, 0.015};
+            recipe.voltageLimit = 25.0;
+            recipe.fullScale = 20.0;
+            processor.parameters().set(recipe);
+            panel.choosePicture(pictured);
+            const auto drawn = [&panel] {
+                for (auto* label : plugin::all<juce::Label>(panel))
+                    if (label->getText().contains("being computed"))
+                        return false;
+                const auto plots = plugin::all<plugin::PlotView>(panel);
+                return !plots.empty() && plots.front()->plot().series.size() > 1;
+            };
+            for (int k = 0; k < 3000 && pictured && (k < 40 || !drawn()); ++k) {
+                editor.update();
+                juce::Thread::sleep(20);
+            }
+            editor.update();
+            CHECK((!pictured || drawn()));
+            for (const auto theme : {plugin::look::Theme::light, plugin::look::Theme::dark}) {
+                editor.setTheme(theme);
+                for (const auto& [width, height] : sizes) {
+                    editor.setSize(width, height);
+                    editor.update();
+                    INFO("target " << static_cast<int>(kind) << " at " << width << " x " << height);
+                    if (std::getenv("EXCURSION_ALL_PICTURES") != nullptr || width == 1024)
+                        keepPicture(editor, "sizes/target-" + juce::String(static_cast<int>(kind))
+                                                + (pictured ? "-costs-" : "-") + juce::String(width)
+                                                + (theme == plugin::look::Theme::dark ? "-dark" : "-light"));
+                    if (theme == plugin::look::Theme::light)
+                        checkPage(editor, PageName::linearize);
+                }
+            }
+        }
+}
+
 TEST_CASE("The window opens within nine tenths of the screen, and what was chosen of it is kept", "[plugin]")
 {
     const auto file = plugin::preferencesFile();

@@ -235,7 +235,8 @@ TEST_CASE("A recipe is refused by field when it makes no sense", "[chain]")
     refused("voltageLimit", -1);
     refused("trimDb", 100);
     refused("off", nlohmann::json::array({"warp-drive"}));
-    refused("version", 3);
+    refused("version", 4);
+    refused("target", "low");
 }
 
 TEST_CASE("Effects that a recipe switches off are not in the model that is run", "[chain]")

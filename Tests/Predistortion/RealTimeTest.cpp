@@ -33,7 +33,9 @@ struct AudioThread {
     {
         for (const std::size_t n :
              {std::size_t {0}, std::size_t {1}, std::size_t {64}, std::size_t {1000}, std::size_t {8192}}) {
-            bend.each([](Predistorter& engine) { engine.set({0.5, 3e-3, 10.0}); });
+            PredistortionControls controls {0.5, 3e-3, 10.0};
+            controls.target = {Target::Kind::resonance, 30.0 + static_cast<double>(n % 7), 0.7};
+            bend.each([&controls](Predistorter& engine) { engine.set(controls); });
             bend.process(u.data(), u.data(), n);
             play.process(u.data(), u.data(), n);
             u[17] = std::numeric_limits<double>::quiet_NaN();

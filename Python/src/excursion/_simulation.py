@@ -128,6 +128,9 @@ def predistort(
     limit_u: float | None = None,
     limit_p: float | None = None,
     margin: float | None = None,
+    target_f0: float | None = None,
+    target_q: float | None = None,
+    target_box: float | None = None,
     amount: float | None = None,
     oversampling: int | None = None,
     progress: Progress | None = None,
@@ -141,6 +144,9 @@ def predistort(
     :param limit_u: V that may come out at most; by default no limit
     :param limit_p: W of heat in the voice coil, averaged over 1 s; by default no limit
     :param margin: the limits hold for every loudspeaker whose parameters differ by at most this share, 0 to 0.3
+    :param target_f0: Hz at which the linearized loudspeaker is to resonate; by default where the driver does
+    :param target_q: and with which total Q; by default the driver's own. What the two take is in the document, `target`
+    :param target_box: in their place: litres of the closed box as in which it is to move
     :param amount: 0: the signal as it is, 1: fully linearized, the default
     :param oversampling: 1, 2 (the default) or 4
 
@@ -164,6 +170,9 @@ def predistort(
         "--limit-u": limit_u,
         "--limit-p": limit_p,
         "--margin": margin,
+        "--target-f0": target_f0,
+        "--target-q": target_q,
+        "--target-box": target_box,
         "--amount": amount,
         "--oversampling": oversampling,
     }

@@ -62,7 +62,8 @@ void BlackBoxPredistorter::reset()
     toModel_.reset();
     back_.reset();
     linearizer_.reset();
-    idle_ = false;
+    // Switched off it stands still: what it will be switched on into is not silence, and it has to listen first.
+    idle_ = !on_;
     warm_ = 0;
     set(controls_);
     amount_.jump();

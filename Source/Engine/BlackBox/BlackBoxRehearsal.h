@@ -23,13 +23,17 @@ struct BlackBoxRehearsal {
 
 struct BlackBoxRehearsalOptions {
     int passes = 2;
-    int mostPreview = 64;  ///< samples of the model, of each pass
+    int mostPreview = 64;  ///< samples of the model that a pass looks ahead at most: 16, 32, 64 or 128
 };
 
-/// Tries costs of the correction from 20 to 80 dB below the model's mean gain, with a look ahead of 16 samples and
-/// twice as many again, and takes the first that takes 45 dB away, or what leaves least distortion among those whose
-/// correction is no larger than the peak of the stimulus.
-/// Throws Error (data) where none takes 3 dB away, with a sentence that says so; (cancelled).
+/// Tries costs of the correction from 20 to 80 dB below the square of the model's gain under the stimulus (rms over
+/// rms), in steps of 10 dB, first with a look ahead of 16 samples, then with twice as many each time. Only those whose
+/// correction is no larger than the peak of the stimulus count. The first that takes 45 dB away ends the trials of its
+/// look ahead, and where 40 dB are gone no longer one is tried; of all that were tried, what leaves least distortion is
+/// taken. These trials are judged by what the linearizer believes; what is told then is measured, on the model that
+/// plays what was corrected.
+/// Throws Error (data), with a sentence that says so, where the model has no distortion to speak of, or where none
+/// takes 3 dB away, by belief or as measured; (cancelled).
 BlackBoxRehearsal rehearse(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsalOptions& = {},
                            const Progress& = {});
 

@@ -59,32 +59,34 @@ PredictedDistortion predictDistortion(const Model& model, const PredistortionCon
     result.displacement = plain.take().displacement;
     const double resolution = options.sampleRate / tones.period;
     constexpr double fewest = 8.0;  // lines in a band: of fewer, all might be excited or all even
-    double signalSum = 0.0, beforeSum = 0.0, afterSum = 0.0;
+    double signalSum = 0.0, bentSum = 0.0, beforeSum = 0.0, afterSum = 0.0;
     const auto db = [](double power, double reference) {
         return 10.0 * std::log10(std::max(power, 1e-30 * reference) / reference);
     };
     for (double low = tones.bandLow, high; low < tones.bandHigh; low = high) {
         high = std::min(std::max(low * std::cbrt(2.0), low + fewest * resolution), tones.bandHigh);
-        double signal = 0.0, first = 0.0, second = 0.0;
+        double signal = 0.0, bentSignal = 0.0, first = 0.0, second = 0.0;
         for (auto k = static_cast<std::size_t>(std::ceil(low / resolution));
              k < static_cast<std::size_t>(std::ceil(high / resolution)); ++k)
             if (std::binary_search(lines.begin(), lines.end(), static_cast<int>(k))) {
                 signal += std::norm(before[k]);
+                bentSignal += std::norm(after[k]);
             } else {
                 first += std::norm(before[k]);
                 second += std::norm(after[k]);
             }
-        if (signal <= 0.0)
+        if (signal <= 0.0 || bentSignal <= 0.0)
             continue;
         result.frequency.push_back(std::sqrt(low * high));
         result.before.push_back(db(first, signal));
-        result.after.push_back(db(second, signal));
+        result.after.push_back(db(second, bentSignal));
         signalSum += signal;
+        bentSum += bentSignal;
         beforeSum += first;
         afterSum += second;
     }
     result.beforeDb = db(beforeSum, signalSum);
-    result.afterDb = db(afterSum, signalSum);
+    result.afterDb = db(afterSum, bentSum);
     return result;
 }
 

@@ -10,8 +10,9 @@ namespace excursion {
 
 /// What a loudspeaker is expected to add on the lines that a multisine leaves out, without and with linearization.
 struct PredictedDistortion {
-    std::vector<double> frequency;         ///< Hz, centres of third-octaves, wider where lines are sparse
-    std::vector<double> before, after;     ///< dB: distortion in that band over the signal in it
+    std::vector<double> frequency;  ///< Hz, centres of third-octaves, wider where lines are sparse
+    /// dB: distortion in that band over the signal in it; after: over what a target has made of that
+    std::vector<double> before, after;
     double beforeDb = 0.0, afterDb = 0.0;  ///< all of them together
     double displacement = 0.0;             ///< m, peak without linearization
 };

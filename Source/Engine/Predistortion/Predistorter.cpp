@@ -23,6 +23,7 @@ double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(st
 
 Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const PredistortionControls& controls)
     : oversampling_((requireRunnable(model, options), options.oversampling)),
+      target_(model, options.sampleRate),
       protection_(undonePart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
       linearizer_(undonePart(model), options.sampleRate * options.oversampling),
       plausible_(model),
@@ -40,6 +41,7 @@ Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, c
 void Predistorter::reset()
 {
     oversampling_.reset();
+    target_.reset();
     protection_.reset();
     linearizer_.reset();
     recovery_.reset();
@@ -62,6 +64,7 @@ void Predistorter::turn(bool on)
     if (on && !bends())
         linearizer_.reset();
     on_ = on;
+    target_.aim(on ? controls_.target : Target {});
     amount_.aim(on ? controls_.amount : 0.0);
     protection_.set(controls_, on);
 }
@@ -118,7 +121,7 @@ void Predistorter::begin(const double* in, std::size_t n)
         const bool sound = std::abs(in[k]) < plausible_.input();  // not for NaN
         if (!sound)
             faults_.fetch_add(1, std::memory_order_relaxed);
-        block_[k] = recovery_.step() * protection_.step(in[k], sound);
+        block_[k] = recovery_.step() * protection_.step(target_.step(sound ? in[k] : 0.0), sound);
     }
     oversampling_.up(block_.data(), n, between_.data());
     for (std::size_t k = 0; k < n; ++k) {

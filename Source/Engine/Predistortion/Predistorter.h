@@ -10,6 +10,7 @@
 #include "Engine/Predistortion/Protection.h"
 #include "Engine/Predistortion/RealTime.h"
 #include "Engine/Predistortion/Recovery.h"
+#include "Engine/Predistortion/TargetFilter.h"
 
 #include <array>
 #include <atomic>
@@ -17,9 +18,10 @@
 
 namespace excursion {
 
-/// Bends the voltage so that the driver moves as if it were linear, and turns it down before that so that the driver
-/// comes to no harm:
-///     u -> Protection (looks ahead) -> up -> Linearizer -> down
+/// Bends the voltage so that the driver moves as if it were linear, or as a target has it, and turns it down before
+/// that so that the driver comes to no harm:
+///     u -> TargetFilter -> Protection (looks ahead) -> up -> Linearizer -> down
+/// The limits are of what the target asks for, as the protection comes behind it.
 /// As a protection that can be turned down is none, the amount goes to 1 where the excursion comes near its limit.
 ///
 /// It is prepared by its construction, which allocates; everything else is for the audio thread: no allocation, no
@@ -75,6 +77,7 @@ private:
     void fault();
 
     Oversampling oversampling_;
+    TargetFilter target_;
     Protection protection_;
     Linearizer linearizer_;
     Plausible plausible_;

@@ -26,7 +26,7 @@ bool PredistortionControls::isValid(std::string* reason) const
         return refuse(reason, "a limit must be positive");
     if (!(margin >= 0.0 && margin <= 0.3))
         return refuse(reason, "the margin must lie between 0 and 0.3");
-    return true;
+    return target.isValid(reason);
 }
 
 void requireRunnable(const Model& model, const RealTimeOptions& options)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Predistortion/Target.h"
 
 #include <limits>
 #include <string>
@@ -25,19 +25,20 @@ double measuredDisplacement(const Model&);
 
 /// What can be moved while a signal runs; it is followed smoothly.
 struct PredistortionControls {
-    double amount = 1.0;  ///< 0: the signal as it is, 1: fully linearized
+    double amount = 1.0;  ///< 0: the signal as it is but for the target, 1: fully linearized
     double displacementLimit = std::numeric_limits<double>::infinity();  ///< m, of the cone
     double voltageLimit = std::numeric_limits<double>::infinity();       ///< V, or N of a driver without a coil
     /// W, of the coil's heat, see averagingTime; a driver without a coil has none
     double powerLimit = std::numeric_limits<double>::infinity();
     /// the limits hold for every driver whose parameters differ by no more than this share from the model's; 0 to 0.3
     double margin = 0.0;
+    Target target = {};  ///< what the cone is to move like, with any amount
     bool isValid(std::string* reason) const;
     /// The same for the audio thread, which has no use for a reason.
     bool areSound() const
     {
         return amount >= 0.0 && amount <= 1.0 && displacementLimit > 0.0 && voltageLimit > 0.0 && powerLimit > 0.0
-               && margin >= 0.0 && margin <= 0.3;
+               && margin >= 0.0 && margin <= 0.3 && target.areSound();
     }
 
     /// s: the heat is Re i^2, averaged by a low-pass of first order with this time constant

@@ -11,7 +11,7 @@ namespace excursion {
 namespace {
 
 constexpr auto formatName = "excursion-recipe";
-constexpr int formatVersion = 2;
+constexpr int formatVersion = 3;
 
 struct Names {
     std::string_view name, title;
@@ -22,15 +22,38 @@ constexpr std::array<Names, modes.size()> names {{{"bypass", "Bypass"},
                                                   {"linearize", "Linearize"},
                                                   {"audition", "Audition"}}};
 
-/// Version 1 knew neither a limit of the power nor a margin.
+constexpr std::array<std::string_view, 3> targetKinds {"own", "resonance", "closed-box"};
+
+/// Version 1 knew neither a limit of the power nor a margin, version 2 no target.
 int versionOf(const JsonField& field)
 {
     const auto number = field.at("version");
-    const int version = number.value() == 1 ? 1 : formatVersion;
+    int version = formatVersion;
+    while (version > 1 && number.value() != version)
+        --version;
     if (number.value() != version)
-        number.refuse("1 or 2, the versions that this program reads");
+        number.refuse("1, 2 or 3, the versions that this program reads");
     field.requireFormat(formatName, version);
     return version;
+}
+
+Target targetFrom(const JsonField& field)
+{
+    const std::vector<std::string> kinds(targetKinds.begin(), targetKinds.end());
+    const auto within = [&field](const char* key, const Settings::Range& range) {
+        return field.at(key).numberWithin(range.least, range.most);
+    };
+    const auto kind = std::find(kinds.begin(), kinds.end(), field.at("kind").oneOf(kinds)) - kinds.begin();
+    return {static_cast<Target::Kind>(kind), within("f0", Settings::targetFrequencies),
+            within("q", Settings::targetQualities), within("volume", Settings::targetVolumes)};
+}
+
+nlohmann::ordered_json documentOf(const Target& target)
+{
+    return {{"kind", targetKinds[static_cast<std::size_t>(target.kind)]},
+            {"f0", target.frequency},
+            {"q", target.quality},
+            {"volume", target.volume}};
 }
 
 }  // namespace
@@ -48,7 +71,10 @@ bool Recipe::isValid(std::string* reason) const
            && check(voltages.holds(voltageLimit), "the limit of the voltage must lie between 0.01 and 1000 V")
            && check(powers.holds(powerLimit), "the limit of the power must lie between 0.01 and 10000 W")
            && check(margins.holds(margin), "the margin must lie between 0 and 0.3")
-           && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB");
+           && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB")
+           && check(targetFrequencies.holds(target.frequency) && targetQualities.holds(target.quality)
+                        && targetVolumes.holds(target.volume),
+                    "a target must lie between 5 and 5000 Hz, a Q of 0.2 and 3, and 0.1 and 1000 l");
 }
 
 Model withoutOff(const Model& model, const Recipe& recipe)
@@ -69,6 +95,7 @@ PredistortionControls controlsOf(const Settings& settings, double measuredDispla
     if (settings.powerLimit < Settings::powers.most)
         controls.powerLimit = settings.powerLimit;
     controls.margin = settings.margin;
+    controls.target = settings.target;
     return controls;
 }
 
@@ -91,6 +118,7 @@ nlohmann::ordered_json toJson(const Recipe& recipe)
             {"powerLimit", recipe.powerLimit},
             {"margin", recipe.margin},
             {"trimDb", recipe.trimDb},
+            {"target", documentOf(recipe.target)},
             {"off", recipe.off}};
 }
 
@@ -117,6 +145,8 @@ Recipe recipeFromJson(const JsonField& field)
         recipe.margin = within("margin", Settings::margins);
     }
     recipe.trimDb = within("trimDb", Settings::trims);
+    if (version > 2)
+        recipe.target = targetFrom(field.at("target"));
     known.clear();
     for (const auto* effect : catalogue())
         known.push_back(effect->id());

@@ -37,6 +37,7 @@ struct Settings {
     double powerLimit = 10000.0;     ///< W, of the coil's heat averaged over a second; the most there is: none
     double margin = 0.0;             ///< of the model's parameters, see PredistortionControls
     double trimDb = 0.0;             ///< of the output
+    Target target;                   ///< of linearization
 
     struct Range {
         double least, most;
@@ -44,9 +45,11 @@ struct Settings {
     };
     static constexpr Range fullScales {0.01, 1000.0}, amounts {0.0, 1.0}, displacements {0.05, 4.0},
         voltages {0.01, 1000.0}, powers {0.01, 10000.0}, margins {0.0, 0.3}, trims {-60.0, 24.0};
+    /// of a target: Hz, Q, m^3
+    static constexpr Range targetFrequencies {5.0, 5000.0}, targetQualities {0.2, 3.0}, targetVolumes {1e-4, 1.0};
 };
 
-/// All that a person sets: how a model is used, whichever it is. As a document, format "excursion-recipe", version 2
+/// All that a person sets: how a model is used, whichever it is. As a document, format "excursion-recipe", version 3
 /// (Docs/Formats.md).
 struct Recipe : Settings {
     std::string title;

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Cli/Target.h"
+#include "Cli/Terminal.h"
+
+#include "Engine/BlackBox/BlackBox.h"
+#include "Engine/Take/WavFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace excursion::cli {
+
+// What `predistort` does alike with drivers and with models without physics.
+
+struct PredistortArguments {
+    std::string model, input, out;
+    double fullScale = 0.0;                                             ///< V or N
+    std::optional<double> displacementLimit, voltageLimit, powerLimit;  ///< m, V or N, W
+    double amount = 1.0, margin = 0.0;
+    int oversampling = 2;
+    TargetArguments target;
+};
+
+void runBlackBox(const PredistortArguments&, const BlackBox&, Terminal&);
+
+void publish(const Wav& bent, const std::string& out);
+
+/// What the documents of all classes of models begin with.
+nlohmann::ordered_json documentOf(const PredistortArguments&, const Wav&);
+
+/// @param loudest  peak that came out, in the input's unit
+void sayLoudest(const PredistortArguments&, double loudest, Terminal&);
+void sayWritten(const PredistortArguments&, const std::string& unit, Terminal&);
+
+/// @param out  where what comes of it goes
+Wav readPlayable(const std::string& file, const std::string& out);
+
+/// dB from which on a limit is told to have acted.
+inline constexpr double noticed = 1e-3;
+std::string turnedDown(double decibels, bool limited);
+
+/// One channel through a predistorter of its own, by which its delay is taken out again.
+template <class AnyPredistorter>
+void bend(std::vector<double>& samples, AnyPredistorter& predistorter, double fullScale, const Progress& progress,
+          double from, double share)
+{
+    constexpr std::size_t block = 4096;
+    const auto latency = static_cast<std::size_t>(predistorter.latency());
+    const std::size_t length = samples.size();
+    samples.resize(length + latency, 0.0);
+    for (auto& sample : samples)
+        sample *= fullScale;
+    for (std::size_t n = 0; n < samples.size(); n += block) {
+        if (n / block % 16 == 0)
+            progress.at(from + share * static_cast<double>(n) / static_cast<double>(samples.size()), "predistorting");
+        predistorter.process(samples.data() + n, samples.data() + n, std::min(block, samples.size() - n));
+    }
+    samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(latency));
+    for (auto& sample : samples)
+        sample /= fullScale;
+}
+
+}  // namespace excursion::cli

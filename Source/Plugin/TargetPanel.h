@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Predistortion/TargetForecast.h"
+#include "Plugin/Dials.h"
+#include "Plugin/Forecast.h"
+#include "Plugin/Page.h"
+#include "Plugin/PlotGrid.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace excursion::plugin {
+
+/// What a linearized driver is to move like, and what that costs: its own linear part, another resonance or a closed
+/// box, with response, excursion and voltage before it is used. While the own linear part is played, the picture shows
+/// what the resonance as it is set would do.
+class TargetPanel : public juce::Component {
+public:
+    explicit TargetPanel(Window&);
+
+    /// Whether the picture of the target is asked for, which takes all of the panel; else it is as high as head().
+    bool pictured() const { return picture_.getSelectedItemIndex() == 1; }
+    void choosePicture(bool target);  ///< as if a person had
+    int head() const;                 ///< px
+    std::function<void()> reshaped;   ///< head() or pictured() are others
+    std::function<void(const juce::String&, bool trouble)> told;
+
+    void tick();
+    void resized() override;
+
+private:
+    struct Answer {
+        std::optional<TargetForecast> told;
+        std::string refusal;
+        PredistortionControls controls;
+        std::string unit;
+        bool used = false;
+    };
+    void follow();
+    void ask();
+    void show(const Answer&);
+
+    Processor& processor_;
+    ChoiceBox kind_;
+    juce::ComboBox picture_;
+    struct Setting {
+        juce::Label title;
+        std::unique_ptr<NumberDial> dial;
+    };
+    std::array<Setting, 3> settings_;  ///< f0, Q, volume
+    juce::Label words_;
+    PlotGrid plots_ {"Response, excursion and voltage of the target"};
+    Forecast<Answer> forecast_;
+    std::pair<std::uint64_t, std::string> asked_;  ///< version of the model, and the recipe, that the forecast is of
+    int shownKind_ = -1;
+};
+
+}  // namespace excursion::plugin

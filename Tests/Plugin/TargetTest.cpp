@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A target in the plugin: played, kept, taken back, and told on the last page before it is used.
+#include "Engine/Predistortion/TargetFilter.h"
+#include "Plugin/Walk.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+using namespace excursion;
+using plugin::Editor;
+using plugin::PageName;
+using plugin::Processor;
+
+namespace {
+
+constexpr double rate = 48000.0;
+
+juce::MemoryBlock stateOf(Processor& processor)
+{
+    juce::MemoryBlock block;
+    processor.getStateInformation(block);
+    return block;
+}
+
+void put(Processor& processor, Mode mode, const Target& target)
+{
+    auto recipe = processor.parameters().recipe();
+    recipe.mode = mode;
+    recipe.fullScale = 100.0;
+    recipe.displacementLimit = 4.0;
+    recipe.voltageLimit = 100.0;
+    recipe.target = target;
+    processor.parameters().set(recipe);
+}
+
+/// V per V of a tone that is so soft that no law bends, once it is steady.
+std::complex<double> gain(Processor& processor, double frequency)
+{
+    juce::MidiBuffer midi;
+    constexpr int block = 480, blocks = 200;
+    const double step = 2.0 * std::numbers::pi * frequency / rate;
+    std::complex<double> in, out;
+    for (int b = 0; b < blocks; ++b) {
+        juce::AudioBuffer<double> buffer(2, block);
+        for (int k = 0; k < block; ++k)
+            for (int c = 0; c < 2; ++c)
+                buffer.setSample(c, k, 1e-6 * std::sin(step * (block * b + k)));
+        const juce::AudioBuffer<double> before(buffer);
+        processor.processBlock(buffer, midi);
+        if (b < blocks / 2)
+            continue;
+        for (int k = 0; k < block; ++k) {
+            const auto turn = std::polar(1.0, -step * (block * b + k));
+            in += before.getSample(1, k) * turn;
+            out += buffer.getSample(1, k) * turn;
+        }
+    }
+    return out / in * std::polar(1.0, step * processor.getLatencySamples());
+}
+
+}  // namespace
+
+TEST_CASE("The plugin plays the target of its recipe, smoothly put in, and none in bypass", "[plugin][target]")
+{
+    Processor processor;
+    const Target target {Target::Kind::resonance, 35.0, 0.6, 0.02};
+    processor.prepareToPlay(rate, 480);
+    put(processor, Mode::linearize, target);
+    TargetFilter expected(processor.model(), rate);
+    expected.aim(target);
+    expected.jump();
+    for (const double frequency : {20.0, 40.0, 100.0, 400.0}) {
+        const auto found = gain(processor, frequency), truth = expected.at(frequency);
+        INFO(frequency << " Hz");
+        CHECK(std::abs(found - truth) < 1e-3 * std::abs(truth));
+    }
+    put(processor, Mode::linearize, {});
+    CHECK(std::abs(gain(processor, 40.0) - 1.0) < 1e-3);
+    put(processor, Mode::bypass, target);
+    gain(processor, 40.0);
+    CHECK(std::abs(gain(processor, 40.0) - 1.0) < 1e-12);
+}
+
+TEST_CASE("A target is kept with the state, and is a step of the history", "[plugin][target]")
+{
+    Processor processor, other;
+    put(processor, Mode::linearize, {Target::Kind::closedBox, 33.3, 0.55, 0.0123});
+    const auto state = stateOf(processor);
+    other.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+    CHECK(other.parameters().recipe().target == processor.parameters().recipe().target);
+    CHECK((stateOf(other) == state));
+
+    Processor fresh;
+    Editor editor(fresh);
+    editor.go(PageName::linearize);
+    editor.update();
+    for (auto* list : plugin::all<juce::ComboBox>(editor.page(PageName::linearize)))
+        if (list->getTitle() == "Target")
+            list->setSelectedItemIndex(1, juce::sendNotificationSync);
+    CHECK(fresh.parameters().settings().target.kind == Target::Kind::resonance);
+    editor.undo();
+    CHECK(fresh.parameters().settings().target.kind == Target::Kind::own);
+    editor.redo();
+    CHECK(fresh.parameters().settings().target.kind == Target::Kind::resonance);
+}
+
+TEST_CASE("The last page tells what a target costs, also while it is not in use, and why there is none",
+          "[plugin][target]")
+{
+    Processor processor;
+    Editor editor(processor);
+    editor.go(PageName::linearize);
+    auto& panel = dynamic_cast<plugin::LinearizePage&>(editor.page(PageName::linearize)).target();
+    panel.choosePicture(true);
+    const auto told = [&](const juce::String& wanted) {
+        juce::String text;
+        for (int k = 0; k < 3000; ++k) {
+            editor.update();
+            for (auto* label : plugin::all<juce::Label>(panel))
+                if (label->getTitle() == "What the target costs")
+                    text = label->getText();
+            if (text.contains(wanted))
+                return true;
+            juce::Thread::sleep(20);
+        }
+        INFO(text);
+        CHECK(text == wanted);
+        return false;
+    };
+    CHECK(told("Not in use: 40.0"));
+    const auto plots = plugin::all<plugin::PlotView>(panel);
+    REQUIRE(plots.size() == 3);
+    CHECK(plots[1]->plot().series.size() == 3);  // own, target, limit
+    put(processor, Mode::speaker, {Target::Kind::resonance, 30.0, 0.7, 0.02});
+    CHECK(told("Not in use: 30.0"));
+    put(processor, Mode::linearize, {Target::Kind::resonance, 30.0, 0.7, 0.02});
+    CHECK(told("In use: 30.0"));
+    put(processor, Mode::linearize, {Target::Kind::resonance, 5000.0, 0.7, 0.02});
+    CHECK(told("out of reach"));
+    // Without a cone there is no target.
+    CHECK(panel.isVisible());
+}
