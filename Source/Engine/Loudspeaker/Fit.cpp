@@ -122,7 +122,9 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         }
         return true;
     };
-    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress);
+    auto frugal = options.search;
+    frugal.slopesAlongSteps = false;
+    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, frugal, progress);
     place(theta);
     if (!summary.usable())
         return summary;

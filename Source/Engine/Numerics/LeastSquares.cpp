@@ -175,9 +175,7 @@ SearchSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& theta,
     solver.parameter_tolerance = 1e-10;
     solver.gradient_tolerance = 1e-30;
     solver.initial_trust_region_radius = 1e3;
-    // Beside bounds each step is followed by a search along it. With slopes at every place that it tries it would cost
-    // more than the steps themselves.
-    solver.line_search_interpolation_type = ceres::QUADRATIC;
+    solver.line_search_interpolation_type = options.slopesAlongSteps ? ceres::CUBIC : ceres::QUADRATIC;
     solver.num_threads = 1;
     solver.logging_type = ceres::SILENT;
     Watch watch(progress, options.maximumIterations);

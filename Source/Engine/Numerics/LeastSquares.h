@@ -16,6 +16,9 @@ struct LeastSquaresOptions {
     int maximumIterations = 30;
     /// stop when an accepted step lowers the cost, without NormalEquations::sure, by less than this fraction
     double costTolerance = 1e-6;
+    /// Beside bounds each step is followed by a search along it: with slopes at every place that it tries, which finds
+    /// better ways, or without, where slopes cost more than the steps themselves.
+    bool slopesAlongSteps = true;
 
     bool isValid(std::string* reason = nullptr) const;
 };
