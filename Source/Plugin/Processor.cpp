@@ -3,7 +3,6 @@
 
 #include "Engine/BlackBox/BlackBoxEngine.h"
 #include "Engine/Error.h"
-#include "Plugin/Editor.h"
 
 #include <chrono>
 #include <limits>
@@ -325,8 +324,4 @@ void Processor::setStateInformation(const void* data, int size)
     }
 }
 
-juce::AudioProcessorEditor* Processor::createEditor() { return new Editor(*this); }
-
 }  // namespace excursion::plugin
-
-juce::AudioProcessor* JUCE_CALLTYPE createPluginFilter() { return new excursion::plugin::Processor(); }

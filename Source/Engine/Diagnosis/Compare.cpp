@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Compare.h"
 
-#include "Engine/Diagnosis/ResidualCurves.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Fit.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Diagnosis/ResidualCurves.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Loudspeaker/Record.h"
 #include "Engine/Progress.h"
@@ -34,18 +35,6 @@ std::string inWords(const ErrorKinds&);
 /// Error of one channel against frequency, in bands of 1/24 octave or finer; rms per band, in the channel's unit.
 struct ErrorSpectrum {
     std::vector<double> frequency, measured, model, error, noise;
-};
-
-/// The forces and voltages that the model lacks, against motion: with the model linearized at rest,
-///     voltage = Z_e(jw) e_i + Bl j w e_x,   force = (K + Rms s + m s^2 + ...) e_x - Bl e_i,
-/// from the errors e of current and displacement (or what the channels give of it), sorted by the simulated x, v and i.
-struct ResidualCurve {
-    std::string residual;  ///< "force" or "voltage"
-    std::string unit;      ///< "N" or "V"
-    std::string against;   ///< "x", "v" or "i"
-    std::string againstUnit;
-    std::vector<double> argument, mean, scatter;  ///< mean and standard deviation in each bin
-    double db = 0.0;  ///< the residual's rms over that of what drives: the voltage, the force Bl i
 };
 
 struct ChannelComparison {

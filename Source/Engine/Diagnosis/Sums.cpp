@@ -7,6 +7,19 @@
 
 namespace excursion {
 
+std::vector<std::size_t> trialSections(const Record& record, int realizations)
+{
+    std::map<int, int> taken;
+    std::vector<std::size_t> sections;
+    for (const auto n : estimationSections(record)) {
+        const int level = record.sections[n].level;
+        if (level >= 0 && taken[level]++ >= realizations)
+            continue;
+        sections.push_back(n);
+    }
+    return sections;
+}
+
 Sums sumsOf(const Model& model, const Record& record, std::vector<std::size_t> sections,
             const std::vector<Eigen::Index>& active, const ScoreOptions& options, const Progress& progress)
 {

@@ -33,6 +33,9 @@ struct Sums {
     bool finite = true;
 };
 
+/// Sections for a quick look or fit: of each level up to `realizations` of those not held out.
+std::vector<std::size_t> trialSections(const Record&, int realizations);
+
 /// By the quick error of FeedbackError.h.
 /// @param sections  to estimate on; those held out come by themselves
 Sums sumsOf(const Model&, const Record&, std::vector<std::size_t> sections, const std::vector<Eigen::Index>& active,

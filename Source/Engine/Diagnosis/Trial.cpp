@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace excursion {
 namespace {
@@ -107,19 +106,6 @@ FitSummary fitFed(Model& model, const Record& record, const std::vector<std::siz
         return fit(model, record, sections, options, progress);
     model = std::move(found);
     return summary;
-}
-
-std::vector<std::size_t> trialSections(const Record& record, int realizations)
-{
-    std::map<int, int> taken;
-    std::vector<std::size_t> sections;
-    for (const auto n : estimationSections(record)) {
-        const int level = record.sections[n].level;
-        if (level >= 0 && taken[level]++ >= realizations)
-            continue;
-        sections.push_back(n);
-    }
-    return sections;
 }
 
 FitSummary tryFit(Model& model, const Score& proposed, const Record& record, const std::vector<std::size_t>& sections,

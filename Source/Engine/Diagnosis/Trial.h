@@ -13,9 +13,6 @@ namespace excursion {
 /// @param toTheEnd  as far as it goes, where something is left: before that is called unknown
 FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, bool toTheEnd, const Progress& = {});
 
-/// Sections for a quick fit: of each level up to `realizations` of those not held out.
-std::vector<std::size_t> trialSections(const Record&, int realizations);
-
 /// A fit with laws that are fed. With FitOptions::fedGradient it goes on from there, or from where the model was,
 /// whichever leaves less, to what a simulation leaves.
 FitSummary quickFit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Vote.h"
 
-#include "Engine/Diagnosis/Trial.h"
 #include "Engine/Numerics/LeastSquares.h"
 
 #include <algorithm>

@@ -150,12 +150,16 @@ public:
         return tried;
     }
 
-    /// The vote on an effect that was really taken out: what it explains is what is left more without it, not what the
-    /// derivatives say of that.
+    /// The vote on an effect that was really taken out. At the noise what it explains is what is left more without it,
+    /// not the little that derivatives say of that; while more is missing the doubt of these stands.
     Vote votedBy(const std::string& effect, const Vote& vote, const Left& without, const Left& with) const
     {
         const double explained = std::max(without.cost - with.cost, 1e-300);
-        return {lost(without, with), effectNamed(effect).linear() ? 0.0 : vote.byLevel / explained, vote.byLevel};
+        return {lost(without, with),
+                effectNamed(effect).linear() ? 0.0
+                : with.areNoise()            ? vote.byLevel / explained
+                                             : vote.inconsistency,
+                vote.byLevel};
     }
 
     /// Takes the effects out of which the others do not lose what `keeps` asks for, one at a time. What was found of
