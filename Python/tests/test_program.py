@@ -220,10 +220,16 @@ def processes(monkeypatch):
 
 
 def test_ctrl_c_ends_the_program(stiff, processes, scratch, tmp_path):
-    threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begun = threading.Event()
+
+    def interrupt() -> None:
+        begun.wait(10)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=interrupt, daemon=True).start()
     started = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        excursion.improve(stiff.take, out=tmp_path / "ladder")
+    with pytest.raises(KeyboardInterrupt):  # between two lines of progress: nobody knows how long a ladder takes
+        excursion.improve(stiff.take, out=tmp_path / "ladder", progress=lambda share, what: begun.set())
     assert time.monotonic() - started < 8
     assert [process.returncode for process in processes] == [6]  # it heard the Ctrl-C and said so
     assert not list((tmp_path / "ladder").glob("*")) if (tmp_path / "ladder").exists() else True
