@@ -120,7 +120,15 @@ Draw draw(std::uint64_t seed, const DrawOptions& options)
     if (result.speaker.eddyCurrents && result.speaker.inductancePosition)
         result.speaker.eddyCurrents->moves = Random(seed, 19).chance(0.7);
 
-    for (int round = 0; round < 4 && !result.hidden.empty(); ++round) {
+    if (!options.oddity.empty()) {
+        Random course(seed, 18);
+        const double strength = course.logUniform(0.01, 0.2);
+        result.speaker.oddity = drawOddity(options.oddity, strength, result.speaker.K, result.visited.displacement,
+                                           course);
+    }
+
+    const bool bare = result.hidden.empty() && !result.speaker.oddity;
+    for (int round = 0; round < 4 && !bare; ++round) {
         const double reached = pilotPeak(result.speaker, result.setup);
         if (reached > 0.45 * result.speaker.xmax && reached < 0.85 * result.speaker.xmax)
             break;

@@ -25,6 +25,7 @@ struct DrawOptions {
     std::optional<double> noiseDb;                    ///< drawn from -50 .. -85
     std::optional<double> sampleRate;                 ///< drawn from 44.1, 48, 88.2 and 96 kHz
     std::optional<std::vector<Quantity>> channels;
+    std::string oddity;                               ///< a name of oddityNames(); empty: none
     double seconds = 12.0;  ///< about; long periods may take up to twice as much
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Bench/Curve.h"
+#include "Bench/Oddity.h"
 #include "Bench/Relaxation.h"
 
 #include <complex>
@@ -99,7 +100,7 @@ struct HungPart {
 /// A loudspeaker in free air, or in a vented box, as the bench knows it:
 ///     u = Re(T) i + d/dt [ lambda(x, i) + lambda_eddy ] + Bl(x) v,     lambda = Le(x, i) i,
 ///         lambda_eddy = k(x) G(s) k(x) i
-///     m x'' = Bl(x) i - Rms(v) v - F_suspension - F_friction - F_box - F_parts + d/dx (integral of lambda di)
+///     m x'' = Bl(x) i - Rms(v) v - F_suspension - F_friction - F_box - F_parts + F_odd + d/dx (integral of lambda di)
 /// where the last term is the reluctance force, 1/2 i^2 dLe/dx when Le does not depend on i, and with k'(x) i times the
 /// loops' flux G(s) k(x) i where the loops' coupling k moves. Signs: positive current moves the cone to positive x,
 /// towards the microphone.
@@ -127,6 +128,7 @@ struct Loudspeaker {
     bool doppler = false;
     std::vector<ConeMode> coneBreakup;
     std::vector<HungPart> sideResonance;
+    std::optional<Oddity> oddity;  ///< what no effect describes
 
     double forceFactorAt(double x) const;               ///< N/A
     double stiffnessAt(double x) const;                 ///< N/m
@@ -145,10 +147,10 @@ struct Loudspeaker {
     };
     Response small(double frequency) const;
 
-    /// The ids of the effects present, in the order of effectIds().
+    /// The ids of the effects present, in the order of effectIds(); an oddity is none.
     std::vector<std::string> effects() const;
 
-    /// The same driver without any effect.
+    /// The same driver without any effect or oddity.
     Loudspeaker linear() const;
 };
 

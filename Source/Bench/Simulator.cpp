@@ -104,6 +104,8 @@ Simulator::Simulator(const Loudspeaker& speaker, double step, double highest, do
             cell.take[l] = step * parabola[2][l];
         modes_.push_back(cell);
     }
+    if (speaker.oddity)
+        oddity_.emplace(*speaker.oddity, step);
     for (const auto& part : speaker.sideResonance) {
         parts_.emplace_back();
         parts_.back().part = part;
@@ -217,7 +219,7 @@ Triple Simulator::accelerations()
         double force = bl_[j] * i_[j] - damping_(v_[j]).value * v_[j] - suspension_[j] - frictionSum_[j];
         if (inductance_.present())
             force += inductance_(x_[j]).slope * coEnergyIntegral(saturation_, i_[j]);
-        force += box_[j] + couplingSlope_[j] * i_[j] * (eddyHistory_[j] + eddy[j]);
+        force += box_[j] + odd_[j] + couplingSlope_[j] * i_[j] * (eddyHistory_[j] + eddy[j]);
         for (const auto& part : parts_)
             force -= part.part.mass * part.acceleration[j];
         a[j] = force / speaker_.m;
@@ -265,6 +267,8 @@ const Simulator::Sample& Simulator::step(const Triple& voltage)
         solveCurrents(voltage);
         frictionForces();
         suspensionForces();
+        if (oddity_)
+            odd_ = oddity_->force(x_, v_);
         const auto a = accelerations();
 
         double iMoved = 0.0, aMoved = 0.0;
@@ -300,6 +304,8 @@ void Simulator::finish(const Triple& voltage)
         creep_.advance(speaker_.creep->family == Creep::Family::fractional ? v_ : suspension_);
     for (std::size_t n = 0; n < friction_.size(); ++n)
         frictionState_[n] = friction_[n][2];
+    if (oddity_)
+        oddity_->finish();
     sample_.radiated = a_[2];
     if (speaker_.ventedBox) {
         portPosition_ += h_ * (portVelocity_ + h_ * times(B, port_)[2]);

@@ -4,6 +4,7 @@
 #include "Bench/Collocation.h"
 #include "Bench/Law.h"
 #include "Bench/Loudspeaker.h"
+#include "Bench/OddForce.h"
 
 #include <vector>
 
@@ -65,13 +66,14 @@ private:
     std::vector<Mode> modes_;
     std::vector<Part> parts_;
     RelaxationBank eddy_, creep_;
+    std::optional<OddForce> oddity_;
     bool loopsMove_ = false;
     double creepScale_ = 0;  // what multiplies the creep cells' output
 
     // this step: current, acceleration, the port's, what leaks a second
     Triple i_ {}, a_ {}, port_ {}, leak_ {};
     Triple iBefore_ {}, aBefore_ {}, portBefore_ {}, leakBefore_ {};  // the step before it
-    Triple x_ {}, v_ {}, box_ {}, bl_ {}, suspension_ {}, frictionSum_ {}, eddyHistory_ {}, creepHistory_ {};
+    Triple x_ {}, v_ {}, box_ {}, bl_ {}, suspension_ {}, frictionSum_ {}, odd_ {}, eddyHistory_ {}, creepHistory_ {};
     Triple coupling_ {1.0, 1.0, 1.0}, couplingSlope_ {};  // of coil and loops
     std::vector<Triple> friction_;
     double iLargest_ = 0, aLargest_ = 0;

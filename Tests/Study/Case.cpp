@@ -82,12 +82,11 @@ double power(const std::vector<double>& samples)
     return std::inner_product(samples.begin(), samples.end(), samples.begin(), 0.0);
 }
 
-/// What is missing without one effect of several, in the channel that shows it best, over the noise.
-double shownBy(const std::string& effect, const bench::Draw& drawn,
-               const std::map<Quantity, std::vector<double>>& whole, std::uint64_t seed, bench::DrawOptions options)
+/// What is missing without a part of the loudspeaker, in the channel that shows it best, over the noise.
+double shownBy(const bench::Loudspeaker& lesser, const bench::Draw& drawn,
+               const std::map<Quantity, std::vector<double>>& whole)
 {
-    std::erase_if(*options.hidden, [&](const bench::HiddenEffect& h) { return h.id == effect; });
-    const auto without = played(bench::draw(seed, options).speaker, drawn.setup);
+    const auto without = played(lesser, drawn.setup);
     double most = -std::numeric_limits<double>::infinity();
     for (const auto& [quantity, samples] : whole) {
         auto difference = without.at(quantity);
@@ -102,6 +101,8 @@ void improveAndJudge(Outcome& outcome)
 {
     bench::DrawOptions options;
     options.seconds = outcome.what.seconds;
+    options.channels = outcome.what.channels;
+    options.oddity = outcome.what.oddity;
     options.hidden.emplace();
     for (const auto& id : outcome.what.hidden)
         options.hidden->push_back({id, 0.0});
@@ -113,8 +114,16 @@ void improveAndJudge(Outcome& outcome)
         outcome.strengths.push_back(hidden.strength);
     if (outcome.whole()) {
         const auto whole = played(drawn.speaker, drawn.setup);
-        for (const auto& id : outcome.what.hidden)
-            outcome.showDb.push_back(shownBy(id, drawn, whole, outcome.what.seed, options));
+        for (const auto& id : outcome.what.hidden) {
+            auto fewer = options;
+            std::erase_if(*fewer.hidden, [&](const bench::HiddenEffect& h) { return h.id == id; });
+            outcome.showDb.push_back(shownBy(bench::draw(outcome.what.seed, fewer).speaker, drawn, whole));
+        }
+    }
+    if (outcome.odd()) {
+        auto sane = drawn.speaker;
+        sane.oddity.reset();
+        outcome.oddityDb = shownBy(sane, drawn, played(drawn.speaker, drawn.setup));
     }
     const auto take = bench::measure(drawn.speaker, drawn.setup);
     outcome.takeSeconds = static_cast<double>(take.length()) / take.sampleRate;
@@ -131,9 +140,12 @@ void improveAndJudge(Outcome& outcome)
         outcome.standsDb = outcome.finalDb = baseOverNoise(take, improvement.diagnose.fit);
         return;
     }
-    for (const auto& rung : ladder.rungs)
-        if (!rung.added.empty())
-            outcome.added.push_back(rung.added);
+    for (std::size_t n = 1; n < ladder.rungs.size(); ++n) {
+        const auto& added = ladder.rungs[n].added;
+        outcome.added.push_back(added);
+        const auto* named = ladder.rungs[n - 1].diagnosis.find(added);
+        outcome.confidence.push_back(named ? named->confidence : 0.0);
+    }
     const auto& base = ladder.rungs.front();
     if (base.diagnosis.verdict == Verdict::missingEffect)
         outcome.first = base.diagnosis.ranking.front().effect;
@@ -149,6 +161,23 @@ bool Outcome::nothingAdded() const
     return failure.empty() && added.empty() && withdrawn.empty() && verdict != name(Verdict::badMeasurement);
 }
 
+std::string Outcome::kin() const
+{
+    return what.oddity == "contact" ? "stiffness" : what.oddity == "hysteresis" ? "friction" : "";
+}
+
+int Outcome::falselyAdded() const
+{
+    return static_cast<int>(
+        std::count_if(added.begin(), added.end(), [&](const auto& id) { return !hides(id) && id != kin(); }));
+}
+
+bool Outcome::honest() const
+{
+    return failure.empty()
+           && (verdict != name(Verdict::complete) || std::find(added.begin(), added.end(), kin()) != added.end());
+}
+
 bool Outcome::hides(const std::string& effect) const
 {
     return std::find(what.hidden.begin(), what.hidden.end(), effect) != what.hidden.end();
@@ -158,9 +187,11 @@ bool Outcome::shows(std::size_t n) const { return showDb[n] >= standsOutDb; }
 
 bool Outcome::explained() const
 {
-    if (control())
+    if (control() && !odd())
         return nothingAdded();
-    if (!failure.empty() || !std::all_of(added.begin(), added.end(), [&](const std::string& id) { return hides(id); }))
+    if (!failure.empty() || falselyAdded() > 0)
+        return false;
+    if (odd() && oddityDb >= standsOutDb && !honest())
         return false;
     for (std::size_t n = 0; n < what.hidden.size(); ++n)
         if ((!whole() || shows(n)) && std::find(added.begin(), added.end(), what.hidden[n]) == added.end())

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Take/Measurement.h"
+
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +13,11 @@ namespace excursion::study {
 /// One random take of the study.
 struct Case {
     std::uint64_t seed = 1;
-    std::vector<std::string> hidden;  ///< ids of effects; none: a control
-    double seconds = 12.0;            ///< about, of the take
-    unsigned threads = 1;             ///< of the fits
+    std::vector<std::string> hidden;                   ///< ids of effects; none: a control
+    double seconds = 12.0;                             ///< about, of the take
+    unsigned threads = 1;                              ///< of the fits
+    std::optional<std::vector<Quantity>> channels {};  ///< absent: drawn
+    std::string oddity {};                             ///< what no effect describes, bench::oddityNames(); empty: none
 };
 
 /// Of one law of the final model: how much of the truth lies within its 95 % band, over 90 % of the visited range.
@@ -29,15 +34,25 @@ struct Outcome {
     std::vector<double> strengths;  ///< of the hidden effects
     /// of several: what each changes in the channel that shows it best, over the noise
     std::vector<double> showDb;
+    double oddityDb = 0.0;       ///< the same of the oddity
     std::string verdict, first;  ///< first of the ranking of the base's diagnosis
     std::vector<std::string> added, withdrawn;
-    double standsDb = 0.0;  ///< validation error of the base over the noise floor, in the worst channel
-    double finalDb = 0.0;   ///< the same of the final model
+    std::vector<double> confidence;  ///< in each that was added, 0..1
+    double standsDb = 0.0;           ///< validation error of the base over the noise floor, in the worst channel
+    double finalDb = 0.0;            ///< the same of the final model
     std::vector<LawCoverage> laws;
     std::string failure;  ///< what was thrown
 
     bool control() const { return what.hidden.empty(); }
-    bool whole() const { return what.hidden.size() > 1; }  ///< a loudspeaker with several effects
+    /// a loudspeaker with several effects, or with known ones beside an oddity
+    bool whole() const { return what.hidden.size() > 1 || (!control() && odd()); }
+    bool odd() const { return !what.oddity.empty(); }
+    /// The effect whose law is of the same kind as the oddity's, so that naming it is no mistake: a contact is a
+    /// stiffness that depends on position, any hysteresis a friction. Empty: there is none.
+    std::string kin() const;
+    int falselyAdded() const;  ///< effects that are neither there nor kin of what is
+    /// What is there beside the known effects is not passed over in silence: not complete, or its kin is named.
+    bool honest() const;
     bool hides(const std::string& effect) const;
     bool shows(std::size_t n) const;  ///< hidden effect n, 6 dB above the noise
     bool named() const { return hides(first); }

@@ -41,17 +41,19 @@ std::vector<std::string> hiddenIn(std::uint64_t seed, std::size_t turn, std::vec
     return hidden;
 }
 
-/// The controls follow with seeds of their own.
+/// The controls follow with seeds of their own; oddities take turns.
 std::vector<Case> cases(const std::vector<std::string>& effects, const Several& several, int takes, int controls,
-                        std::uint64_t firstSeed, double seconds, unsigned threads)
+                        Case first, const std::vector<std::string>& oddities)
 {
     std::vector<Case> result;
     for (int n = 0; n < takes + controls; ++n) {
-        const auto seed = firstSeed + static_cast<std::uint64_t>(n);
-        result.push_back(
-            {seed,
-             n < takes ? hiddenIn(seed, static_cast<std::size_t>(n), effects, several) : std::vector<std::string> {},
-             seconds, threads});
+        auto mine = first;
+        mine.seed += static_cast<std::uint64_t>(n);
+        if (n < takes)
+            mine.hidden = hiddenIn(mine.seed, static_cast<std::size_t>(n), effects, several);
+        if (!oddities.empty())
+            mine.oddity = oddities[static_cast<std::size_t>(n) % oddities.size()];
+        result.push_back(std::move(mine));
     }
     return result;
 }
@@ -61,8 +63,8 @@ std::vector<Case> cases(const std::vector<std::string>& effects, const Several& 
 int main(int argc, char** argv)
 {
     int takes = 200, controls = 50, jobs = 2;
-    std::uint64_t firstSeed = 1;
-    double seconds = 12.0;
+    Case first;
+    std::vector<std::string> channels, oddities;
     Several several;
     std::string json, demand;
     std::vector<std::string> hide = bench::drawnEffects();
@@ -81,8 +83,16 @@ int main(int argc, char** argv)
     app.add_option("--most", several.most, "effects that a take hides at once; with more than one they are drawn")
         ->check(CLI::Range(1, 13))
         ->capture_default_str();
-    app.add_option("--first-seed", firstSeed, "of the first take; the others follow")->capture_default_str();
-    app.add_option("--seconds", seconds, "about, of each take")->check(CLI::Range(0.5, 120.0))->capture_default_str();
+    app.add_option("--first-seed", first.seed, "of the first take; the others follow")->capture_default_str();
+    app.add_option("--seconds", first.seconds, "about, of each take")
+        ->check(CLI::Range(0.5, 120.0))
+        ->capture_default_str();
+    app.add_option("--channels", channels, "of each take, beside the voltage; drawn when not given")
+        ->delimiter(',')
+        ->check([](const std::string& word) { return quantityNamed(word) ? "" : "unknown channel: " + word; });
+    app.add_option("--beside", oddities, "what no effect describes: these take turns beside what is hidden")
+        ->delimiter(',')
+        ->check(CLI::IsMember(bench::oddityNames()));
     app.add_option("--jobs", jobs, "takes at once; with more than one, each fit has one thread")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
@@ -94,7 +104,13 @@ int main(int argc, char** argv)
     CLI11_PARSE(app, argc, argv);
     several.most = std::max(several.most, several.fewest);
 
-    const auto plan = cases(hide, several, takes, controls, firstSeed, seconds, jobs > 1 ? 1 : 2);
+    first.threads = jobs > 1 ? 1 : 2;
+    if (!channels.empty()) {
+        first.channels = {Quantity::voltage};
+        for (const auto& channel : channels)
+            first.channels->push_back(quantityNamed(channel).value());
+    }
+    const auto plan = cases(hide, several, takes, controls, first, oddities);
     std::vector<Outcome> outcomes;
     std::mutex mutex;
     std::size_t next = 0;

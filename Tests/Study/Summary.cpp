@@ -54,7 +54,14 @@ Summary summarize(const std::vector<Outcome>& outcomes)
     Summary summary;
     std::vector<double> ratios;
     for (const auto& o : outcomes) {
-        if (o.control()) {
+        if (o.odd()) {
+            summary.oddNothingFalse.add(o.failure.empty() && o.falselyAdded() == 0);
+            if (o.oddityDb >= standsOutDb)
+                summary.oddHonest.add(o.honest());
+        }
+        if (o.control() && o.odd()) {
+            summary.falselyAdded += o.falselyAdded();
+        } else if (o.control()) {
             summary.untouched.add(o.nothingAdded());
         } else if (o.whole()) {
             for (std::size_t n = 0; n < o.showDb.size(); ++n) {
@@ -65,15 +72,15 @@ Summary summarize(const std::vector<Outcome>& outcomes)
                     summary.foundOf[o.what.hidden[n]].add(added);
                 }
             }
-            summary.falselyAdded += static_cast<int>(
-                std::count_if(o.added.begin(), o.added.end(), [&](const std::string& id) { return !o.hides(id); }));
+            summary.falselyAdded += o.falselyAdded();
         } else if (o.standsDb >= standsOutDb) {
             summary.named.add(o.named());
             summary.alone.add(o.explained());
         } else {
             summary.faint.add(o.named());
         }
-        summary.atNoise.add(o.finalDb <= nearNoiseDb);
+        if (!o.odd())
+            summary.atNoise.add(o.finalDb <= nearNoiseDb);
         if (o.improveSeconds > 0.0)
             ratios.push_back(o.improveSeconds / o.takeSeconds);
         for (const auto& law : o.laws)
@@ -103,7 +110,8 @@ std::string line(const Outcome& o)
     auto result = formatted("%s seed %-4llu %-9s %5.1f kHz noise %5.1f dB, hidden ", o.explained() ? "ok   " : "WRONG",
                             static_cast<unsigned long long>(o.what.seed), o.driver.c_str(), o.sampleRate / 1000.0,
                             o.noiseDb)
-                  + (o.control() ? "nothing" : hidden) + ": ";
+                  + (o.control() ? "nothing" : hidden)
+                  + (o.odd() ? formatted(" beside %s (%.0f dB)", o.what.oddity.c_str(), o.oddityDb) : "") + ": ";
     if (!o.failure.empty())
         return result + "failed: " + o.failure;
     result += formatted("stands %5.1f dB, first %s, added %s", o.standsDb, o.first.empty() ? "-" : o.first.c_str(),
@@ -129,6 +137,10 @@ std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
         for (const auto& [effect, share] : s.foundOf)
             result += row(("  " + effect).c_str(), share, 0.0);
     }
+    if (s.oddNothingFalse.of > 0) {
+        result += row("beside something unknown: not called complete, or its kin named", s.oddHonest, 1.0);
+        result += row("beside something unknown: nothing added that is not there", s.oddNothingFalse, 0.97);
+    }
     result += row("controls to which nothing was added", s.untouched, 0.99);
     result += row("final validation error within 3 dB of the noise", s.atNoise, 0.90);
     result += row("points of the true laws inside the 95 % bands", s.inBand, 0.85);
@@ -137,7 +149,7 @@ std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
     result += formatted("  median time of improve over the take's length: %.2f\n", s.medianTimeRatio);
     bool any = false;
     for (const auto& o : outcomes)
-        if (!o.explained() || o.finalDb > nearNoiseDb) {
+        if (!o.explained() || (!o.odd() && o.finalDb > nearNoiseDb)) {
             result += any ? "" : "\nNot as they should be:\n";
             any = true;
             result += "  " + line(o) + "\n";
@@ -158,6 +170,8 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
     document["several"] = {{"shown", s.shown}, {"found", s.found}, {"falselyAdded", s.falselyAdded}, {"f1", s.f1()}};
     for (const auto& [effect, part] : s.foundOf)
         document["foundOf"][effect] = share(part);
+    if (s.oddNothingFalse.of > 0)
+        document["besideUnknown"] = {{"notComplete", share(s.oddHonest)}, {"nothingFalse", share(s.oddNothingFalse)}};
     document["controlsUntouched"] = share(s.untouched);
     document["atNoise"] = share(s.atNoise);
     document["inBand"] = share(s.inBand);
@@ -175,11 +189,14 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
                    {"seconds", o.takeSeconds},
                    {"first", o.first},
                    {"added", o.added},
+                   {"confidence", o.confidence},
                    {"withdrawn", o.withdrawn},
                    {"verdict", o.verdict},
                    {"standsDb", numberOrNull(o.standsDb)},
                    {"finalDb", numberOrNull(o.finalDb)},
                    {"improveSeconds", o.improveSeconds}};
+        if (o.odd())
+            take["oddity"] = {{"kind", o.what.oddity}, {"showDb", o.oddityDb}};
         if (o.whole())
             take["showDb"] = o.showDb;
         for (const auto& law : o.laws)

@@ -30,6 +30,8 @@ struct Summary {
     /// of loudspeakers with several effects: those that show, of these the ones added; added but not there
     int shown = 0, found = 0, falselyAdded = 0;
     std::map<std::string, Share> foundOf;   ///< by effect
+    Share oddHonest;                        ///< takes whose oddity stands out: honest()
+    Share oddNothingFalse;                  ///< takes with an oddity: no effect added that is not there
     Share inBand;                           ///< points of the hidden laws within their 95 % bands, pooled
     std::map<std::string, Share> inBandOf;  ///< by effect
     double medianTimeRatio = 0.0;           ///< time of improve over the take's length
