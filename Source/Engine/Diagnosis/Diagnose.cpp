@@ -49,18 +49,29 @@ private:
 };
 
 /// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that
-/// can. Of these the ones come first that the catalogue as a whole speaks for: others only borrow what belongs to one
-/// that is not in yet.
-bool better(const RankedEffect& a, const RankedEffect& b)
+/// can. Of these the ones come first that the catalogue as a whole speaks for, as others may only borrow what belongs to
+/// one that is not in yet; unless another leaves far less: several that explain the same have little each that is
+/// theirs alone, and one of them is there.
+void putInOrder(std::vector<RankedEffect>& ranking, const Excess& excess)
 {
-    if (a.significant != b.significant)
-        return a.significant;
-    if (a.significant && a.vote.backs() != b.vote.backs())
-        return a.vote.backs();
-    const bool triedA = a.confirmedChi > 0.0, triedB = b.confirmedChi > 0.0;
-    if (triedA != triedB)
-        return triedA;
-    return triedA ? a.confirmedChi < b.confirmedChi : a.predictedChi < b.predictedChi;
+    constexpr double far = 4.0;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& r : ranking)
+        if (r.significant && r.confirmedChi > 0.0)
+            least = std::min(least, excess(r.confirmedChi));
+    const auto preferred = [&](const RankedEffect& r) {
+        return r.vote.standsAlone() || (r.vote.backs() && !(excess(r.confirmedChi) > far * least));
+    };
+    std::stable_sort(ranking.begin(), ranking.end(), [&](const RankedEffect& a, const RankedEffect& b) {
+        if (a.significant != b.significant)
+            return a.significant;
+        if (a.significant && preferred(a) != preferred(b))
+            return preferred(a);
+        const bool triedA = a.confirmedChi > 0.0, triedB = b.confirmedChi > 0.0;
+        if (triedA != triedB)
+            return triedA;
+        return triedA ? a.confirmedChi < b.confirmedChi : a.predictedChi < b.predictedChi;
+    });
 }
 
 /// Confidence of the tried effects: the first is sure when it explains at least half of the excess and the second
@@ -270,7 +281,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         entry.reason = reasonFor(*candidate.effect, entry.model, before, errorAfter);
         diagnosis.ranking.push_back(std::move(entry));
     }
-    std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
+    putInOrder(diagnosis.ranking, excess);
     judge(diagnosis.ranking, before.chi, excess, diagnosis);
     constexpr double smallestShare = 0.15;  // of what is not noise; less is a symptom of something else
     constexpr double mostLeft = 0.15;       // by all effects together
@@ -323,7 +334,7 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
         entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model, entry.model.components.size() - 1);
         diagnosis.ranking.push_back(std::move(entry));
     }
-    std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), better);
+    putInOrder(diagnosis.ranking, Excess(before));
     const bool found = !diagnosis.ranking.empty() && diagnosis.ranking.front().significant
                        && !outdone(diagnosis.ranking, Excess(before));
     conclude(diagnosis, found, model, targets, before);

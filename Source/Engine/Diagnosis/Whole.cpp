@@ -139,6 +139,8 @@ public:
                 if (!fit(leaner, brief).usable())
                     continue;
                 then = left(leaner);
+                if (effectNamed(effect).linear() && lost(then, now) < barelyMissed && reshape(leaner, then, now))
+                    then = left(leaner);
                 if (thorough && test_.played && lost(then, now) > hardlyNeeded && fitExactly(leaner).usable())
                     then = left(leaner);
             }
@@ -195,6 +197,28 @@ public:
         return every;
     }
 
+    /// What seems to miss a linear effect a little may only have another of its linear effects in a wrong shape, from
+    /// which no small step leads to the right one: each is found anew on the responses. Whether that helped.
+    bool reshape(Model& model, const Left& now, const Left& enough) const
+    {
+        const auto still = withoutLaws(model, record_, options_.threads);
+        auto best = now;
+        bool helped = false;
+        for (std::size_t k = 1; k < model.components.size() && lost(best, enough) > hardlyNeeded; ++k) {
+            if (!model.components[k].effect->linear() || base_.has(model.components[k].effect->id()))
+                continue;
+            auto anew = model;
+            if (!fitByResponse(anew, k, still).usable() || !fit(anew, brief).usable())
+                continue;
+            if (auto then = left(anew); lost(best, then) > hardlyNeeded && then.chi < best.chi) {
+                model = std::move(anew);
+                best = std::move(then);
+                helped = true;
+            }
+        }
+        return helped;
+    }
+
     void findPartsAnew(Model& model) const { excursion::findPartsAnew(model, record_, sections_, within(brief)); }
 
 private:
@@ -222,6 +246,7 @@ private:
     ScoreOptions test_;
     FitOptions options_;
     static constexpr LeastSquaresOptions brief {5, 1e-2}, glance {1, 1e-1};
+    static constexpr double barelyMissed = 6.0;   // dB
     static constexpr double sorelyMissed = 15.0;  // dB more that are left: no fit would make that good
 };
 
@@ -318,14 +343,16 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         return whole;
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
     search.chooseResiduals(whole.model);
-    const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
-    auto tried = search.takeOut(whole.model, true, [&](const Tried& one) {
+    const auto keeps = [&](const Tried& one) {
+        const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
         return unknownLeft ? one.vote.standsAlone()
                            : one.vote.backs() || whole.fit.costPerResidual * one.times > atNoise || !one.staysNoise;
-    });
-    if (!tried) {
+    };
+    constexpr int rounds = 3;  // what has gone may have held up another one
+    auto tried = search.takeOut(whole.model, true, keeps);
+    for (int n = 1; n <= rounds && !tried; ++n) {
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
-        tried = search.tryWithout(whole.model, false);
+        tried = n < rounds ? search.takeOut(whole.model, true, keeps) : search.tryWithout(whole.model, false);
     }
     for (const auto& [effect, one] : *tried)
         whole.votes[effect] = one.vote;
