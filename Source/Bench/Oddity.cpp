@@ -36,7 +36,7 @@ Oddity drawOddity(const std::string& name, double strength, double stiffness, do
     case Oddity::Kind::hysteresis:
         oddity.limit = visited * random.logUniform(0.05, 0.4);
         oddity.exponent = random.uniform(1.5, 4.0);
-        oddity.pinch = random.uniform(0.2, 0.5);
+        oddity.pinch = random.uniform(0.5, 0.9);
         oddity.stiffness = force / oddity.limit;
         break;
     case Oddity::Kind::jump: oddity.depth = strength * visited; break;

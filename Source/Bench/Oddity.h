@@ -24,7 +24,7 @@ struct Oddity {
     double stiffness = 0.0;  ///< contact: N/m^1.5; hysteresis: N/m; wander and jump: N/m, of the spring
     double limit = 0.0;      ///< m, hysteresis: largest |z|
     double exponent = 2.0;   ///< hysteresis: n
-    double pinch = 0.5;      ///< hysteresis: b, 1 is Dahl's shape for n = 1
+    double pinch = 0.5;      ///< hysteresis: b, not below 1/2, where it would make energy; 1 with n = 1 is Dahl's
     double depth = 0.0;      ///< wander: rms of w; jump: m, from one rest to the other
     std::uint64_t seed = 1;  ///< of the course over time
 };

@@ -111,6 +111,31 @@ TEST_CASE("The force of the current is the motion voltage's twin plus the slope 
     }
 }
 
+TEST_CASE("Flux that current and position change together is one potential, whose coenergy makes the force",
+          "[effects]")
+{
+    Alone alone(effectNamed("inductance-current"));
+    const auto names = alone.effect.parameters(alone.extent);
+    double place = 0.3;
+    for (std::size_t k = 0; k < names.size(); ++k)
+        if (names[k].name.front() == 'p')
+            alone.parameters[k] = place *= -0.7;
+    alone.prepare();
+    const double dx = 1e-4 * alone.extent.displacement, di = 1e-4 * alone.extent.current;
+    for (const double bias : {-1.4, -0.7, 0.3, 1.2})  // also beyond the visited currents
+        for (const double away : {-0.8, 0.1, 0.6}) {
+            const double i = bias * alone.extent.current, x = away * alone.extent.displacement;
+            const double byPosition = (alone.at(i, x + dx, 0.0).inductance - alone.at(i, x - dx, 0.0).inductance)
+                                      / (2.0 * dx);
+            const double byCurrent = (alone.at(i + di, x, 0.0).fluxSlope - alone.at(i - di, x, 0.0).fluxSlope)
+                                     / (2.0 * di);
+            REQUIRE(std::abs(byCurrent) > 0.0);
+            CHECK(byPosition == Approx(byCurrent).epsilon(1e-5));
+            const double perCurrent = (alone.at(i + di, x, 0.0).force - alone.at(i - di, x, 0.0).force) / (2.0 * di);
+            CHECK(perCurrent == Approx(alone.at(i, x, 0.0).fluxSlope).epsilon(1e-5));
+        }
+}
+
 TEST_CASE("The reluctance force is the slope of the coenergy 1/2 i^2 L(x)", "[effects]")
 {
     const Alone alone(effectNamed("inductance-position"));

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 
 namespace excursion {
 namespace {
@@ -27,7 +28,20 @@ struct Tried {
     /// by which the mean squared residual grows without it; as if beyond measure where not tried
     double times = std::numeric_limits<double>::infinity();
     bool staysNoise = false;  ///< every channel's error without it
+    bool plausible = true;    ///< as it stands in the model; else it stands for something else
 };
+
+/// The effects of a model whose parameters are no longer what their names say.
+std::set<std::string> implausible(const Model& model)
+{
+    std::set<std::string> found;
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto& one = model.components[k];
+        if (!one.effect->plausible(one.extent, one.parameters, model.base().parameters))
+            found.insert(one.effect->id());
+    }
+    return found;
+}
 
 /// The search for a whole: what all its steps share.
 class Search {
@@ -125,11 +139,13 @@ public:
     {
         std::map<std::string, Tried> tried;
         const auto now = left(model);
+        const auto strange = implausible(model);
         for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
             if (base_.has(effect))
                 continue;
             auto& one = tried[effect] = {vote, {}};
-            if (vote.standsAlone())
+            one.plausible = !strange.contains(effect);
+            if (vote.standsAlone() && one.plausible)
                 continue;
             auto leaner = withoutEffect(model, effect);
             if (!fit(leaner, glance).usable())
@@ -186,7 +202,11 @@ public:
                 if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
                     continue;
                 const auto then = left(leaner), now = left(model);
-                if (keeps(Tried {votedBy(effect, tried.vote, then, now), {}, then.chi / now.chi, then.areNoise()}))
+                if (keeps(Tried {votedBy(effect, tried.vote, then, now),
+                                 {},
+                                 then.chi / now.chi,
+                                 then.areNoise(),
+                                 !implausible(model).contains(effect)}))
                     continue;
             }
             model = std::move(leaner);
@@ -195,6 +215,20 @@ public:
         if (any)
             return std::nullopt;
         return every;
+    }
+
+    /// Takes out what stands for something else; returns what that was.
+    std::set<std::string> takeOutImplausible(Model& model) const
+    {
+        auto strange = implausible(model);
+        std::erase_if(strange, [&](const std::string& effect) { return base_.has(effect); });
+        auto leaner = model;
+        for (const auto& effect : strange)
+            leaner = withoutEffect(leaner, effect);
+        if (strange.empty() || !fit(leaner, brief).usable())
+            return {};
+        model = std::move(leaner);
+        return strange;
     }
 
     /// What seems to miss a linear effect a little may only have another of its linear effects in a wrong shape, from
@@ -252,13 +286,14 @@ private:
 
 /// The model with every effect that the vote backs. Laws are at no strength; linear effects, the best first, are found
 /// one after the other on the responses, and stay at rest where that leaves more.
-Model withBacked(const Model& model, const Record& record, const std::vector<Score>& scores, const Search& search)
+Model withBacked(const Model& model, const Record& record, const std::vector<Score>& scores,
+                 const std::set<std::string>& without, const Search& search)
 {
     Model fuller = model;
     const auto still = withoutLaws(model, record, search.test().threads);
     double now = search.left(model).chi;
     for (const auto& s : scores) {  // lowest first
-        if (!s.vote.backs())
+        if (!s.vote.backs() || without.contains(s.effect->id()))
             continue;
         auto next = fuller;
         next.components.push_back(s.model.components.back());
@@ -281,15 +316,18 @@ Whole grown(const Model& base, const Record& record, Search& search, const Progr
     constexpr double worthARound = 1.0;  // dB
     search.chooseResiduals(base);
     auto now = search.left(whole.model);
+    std::set<std::string> strange;  // stood for something else in the last round: others come first in this one
     for (int n = 0; n < rounds && !now.isNoise(); ++n) {
         const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
         auto fuller = withBacked(whole.model, record,
-                                 score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, search);
+                                 score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, strange,
+                                 search);
         if (fuller.components.size() == whole.model.components.size())
             break;
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable())
             break;
+        strange = search.takeOutImplausible(fuller);
         search.chooseResiduals(fuller);
         now = search.left(whole.model);
         auto then = search.left(fuller);
@@ -298,8 +336,11 @@ Whole grown(const Model& base, const Record& record, Search& search, const Progr
             search.takeOut(fuller, false, [](const Tried& tried) { return tried.vote.uniqueDb > hardlyNeeded; });
             then = search.left(fuller);
         }
-        if (!(search.lost(now, then) > worthARound))
-            break;
+        if (!(search.lost(now, then) > worthARound)) {
+            if (strange.empty())
+                break;
+            continue;
+        }
         now = then;
         whole.model = std::move(fuller);
         whole.fit = summary;
@@ -345,6 +386,8 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     search.chooseResiduals(whole.model);
     const auto keeps = [&](const Tried& one) {
         const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
+        if (!one.plausible)
+            return false;
         return unknownLeft ? one.vote.standsAlone()
                            : one.vote.backs() || whole.fit.costPerResidual * one.times > atNoise || !one.staysNoise;
     };

@@ -2,18 +2,23 @@
 #include "Engine/Loudspeaker/Curve.h"
 #include "Engine/Loudspeaker/Effects/Effects.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
 
 namespace excursion {
 namespace {
 
-/// Flux modulation: the coil's flux is (Le + c(i)) i, so that Le(i) = Le + c(i) is flux per current and what the
-/// voltage sees is
-///     d(phi)/di = Le + c(i) + i dc/di.
-/// An even law saturates the iron; an odd one is the field of the coil that adds to the magnet's or takes from it. The
-/// flux depends on no position, so it makes no force; beside Le(x) the two differences add. Beyond the visited range
-/// the flux goes on with the slope that it has at the end.
-class InductanceCurrent final : public CurveLaw<InductanceCurrent> {
+/// Flux modulation: the coil's flux is (Le + c(i) g(x)) i, so that at rest Le(i) = Le + c(i) is flux per current and
+/// what the voltage sees is
+///     d(phi)/di = Le + g (c + i dc/di).
+/// An even law saturates the iron; an odd one is the field of the coil that adds to the magnet's or takes from it. Iron
+/// that the coil has left has less to saturate:
+///     g(x) = 1 + sum_n p_n s^n,  s = x/X within the visited range, n = 1 .. 3.
+/// Where Le(x, i) is a product of both laws g is Le(x)/Le; where data does not tell, g is 1. What changes with x makes
+/// a force, dg/dx int_0^i c j dj. Beyond the visited range the flux goes on with the slope that it has at the end.
+class InductanceCurrent final : public EffectOf<InductanceCurrent> {
 public:
     std::string id() const override { return "inductance-current"; }
     std::string title() const override { return "Flux modulation Le(i)"; }
@@ -25,7 +30,7 @@ public:
     std::string symptoms() const override
     {
         return "residual voltage that grows with frequency and is scaled by a curve of the current, wherever the cone "
-               "is; no residual force";
+               "is; hardly any residual force";
     }
     std::string remedy() const override
     {
@@ -40,28 +45,68 @@ public:
     {
         std::array<double, curve::maximumDegree + 1> b {};
         curve::prepare(e.degree, p, b.data());
-        if (std::abs(i) <= e.current)
-            return curve::at(e.degree, b.data(), i, e.current).value;
-        const double end = i > 0.0 ? e.current : -e.current;
-        return (curve::at(e.degree, b.data(), end, e.current).value * end + fluxSlope(e, b.data(), end) * (i - end))
-               / i;
+        return i == 0.0 ? 0.0 : fluxAt(e, b.data(), i).flux / i;
+    }
+
+    std::vector<Parameter> parameters(const Extent& e) const override
+    {
+        auto result = curve::parameters(e, "H");
+        for (int n = 1; n <= places; ++n)
+            result.push_back({.name = "p" + std::to_string(n), .unit = "1", .prior = plausiblePlace});
+        return result;
+    }
+    int coefficientCount(const Extent& e) const override { return e.degree + 1 + places; }
+
+    /// The curve's, then p_n.
+    template <class T>
+    void prepareFor(const Extent& e, const T* p, T* c) const
+    {
+        curve::prepare(e.degree, p, c);
+        std::copy_n(p + e.degree, places, c + e.degree + 1);
     }
 
     template <class T>
     void addTo(const Extent& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
-        sum.inductance += fluxSlope(e, c, at.i);
+        const T* p = c + e.degree + 1;
+        T s = at.x * (1.0 / e.displacement);
+        const bool outside = s > T(1.0) || s < T(-1.0);
+        if (outside)
+            s = s > T(0.0) ? T(1.0) : T(-1.0);
+        const T g = 1.0 + s * (p[0] + s * (p[1] + s * p[2]));
+        const T slope = outside ? T(0.0) : (p[0] + s * (2.0 * p[1] + 3.0 * s * p[2])) * (1.0 / e.displacement);
+        const auto own = fluxAt(e, c, at.i);
+        sum.inductance += g * own.slope;
+        sum.fluxSlope += slope * own.flux;
+        sum.force += slope * own.coenergy;
     }
 
 private:
-    /// c + i dc/di
+    static constexpr int places = 3;
+    static constexpr double plausiblePlace = 0.5;
+
     template <class T>
-    static T fluxSlope(const Extent& e, const T* c, T i)
+    struct Flux {
+        T flux, slope, coenergy;  ///< c i, c + i dc/di, int_0^i c j dj
+    };
+    template <class T>
+    static Flux<T> fluxAt(const Extent& e, const T* c, const T& i)
     {
-        if (i > T(e.current) || i < T(-e.current))
-            i = i > T(0.0) ? T(e.current) : T(-e.current);
-        const auto [value, slope] = curve::at(e.degree, c, i, e.current);
-        return value + i * slope;
+        T s = i * (1.0 / e.current), beyond = T(0.0);
+        if (s > T(1.0) || s < T(-1.0)) {
+            const T end = s > T(0.0) ? T(1.0) : T(-1.0);
+            beyond = (s - end) * e.current;
+            s = end;
+        }
+        T value = T(0.0), slope = T(0.0), integral = T(0.0);
+        for (int j = e.degree; j >= 0; --j) {
+            slope = slope * s + value;
+            value = value * s + c[j];
+            integral = integral * s + c[j] * (1.0 / (j + 2));
+        }
+        const T flux = value * s * e.current, fluxSlope = value + s * slope;
+        return {flux + fluxSlope * beyond, fluxSlope,
+                integral * s * s * (e.current * e.current) + beyond * (flux + 0.5 * fluxSlope * beyond)};
     }
 };
 
