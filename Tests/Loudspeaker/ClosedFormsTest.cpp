@@ -124,6 +124,29 @@ TEST_CASE("The voltage sees the slope of the flux: at a bias d(Le(i) i)/di, whic
     CHECK(alone.at(1.4 * I, 0.0, 0.0).inductance == Approx(alone.at(I, 0.0, 0.0).inductance).epsilon(1e-12));
 }
 
+TEST_CASE("A turned element of friction springs back along a line, a knee holds until it lets go", "[effects]")
+{
+    Alone alone(effectNamed("friction"));
+    const double reach = 0.1 * alone.extent.displacement, v = alone.extent.velocity;
+    const auto slope = [&](double knee, double turn, double direction, double g) {  // r dg/dx
+        alone.parameters = {0.5, reach, 0.0, knee, turn};
+        alone.prepare();
+        const std::vector<double> memory(4, g);
+        std::vector<double> rate(4);
+        alone.at(0.0, 0.0, direction * v, memory, &rate);
+        return rate[0] * reach / (direction * v);
+    };
+    for (const double g : {0.1, 0.5, 0.9}) {
+        CHECK(slope(0.0, 0.0, 1.0, g) == Approx(1.0 - g));  // Dahl
+        CHECK(slope(0.0, 0.0, -1.0, g) == Approx(1.0 + g));
+        CHECK(slope(0.0, 0.5, 1.0, g) == Approx(1.0 - g));  // Bouc and Wen
+        CHECK(slope(0.0, 0.5, -1.0, g) == Approx(1.0));
+        CHECK(slope(0.0, 0.5, 1.0, -g) == Approx(1.0));
+        CHECK(slope(1.0, 0.0, 1.0, g) == Approx(1.0 - g * g * g));
+    }
+    CHECK(slope(0.7, 0.3, 1.0, 1.0) == Approx(0.0).margin(1e-12));  // the limit stays
+}
+
 TEST_CASE("Friction and heat move the model as they move the virtual bench's loudspeaker", "[effects]")
 {
     constexpr double rate = 48000.0;
