@@ -72,7 +72,7 @@ LinearizePage::LinearizePage(Window& window)
     distortion_.told = tell;
     target_.told = tell;
     target_.reshaped = [this] { resized(); };
-    add({&name_, &recipes_, &drivers_, &load_, &adapt_, &mode_.box()});
+    add({&name_, &recipes_, &drivers_, &load_, &mode_.box(), &adapt_});
     for (auto* number : processor_.parameters().numbers()) {
         dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number, &window.history()));
         dials_.back().first->setText(number->getName(40), juce::dontSendNotification);
@@ -316,10 +316,6 @@ void LinearizePage::resized()
     const bool wide = getWidth() >= 960;
     load_.setBounds(head.removeFromRight(130));
     head.removeFromRight(8);
-    if (!box_) {
-        adapt_.setBounds(head.removeFromRight(64));
-        head.removeFromRight(8);
-    }
     drivers_.setBounds(head.removeFromRight(wide ? 220 : 180));
     head.removeFromRight(8);
     recipes_.setBounds(head.removeFromRight(wide ? 220 : 190));
@@ -343,7 +339,12 @@ void LinearizePage::resized()
     const int meters = power_.isVisible() ? 3 : 2, told = facts_.isVisible() ? 116 : 0,
               rest = 28 + 4 * 8 + meters * 34 + told,
               row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
-    mode_.box().setBounds(left.removeFromTop(28));
+    auto modes = left.removeFromTop(28);
+    if (!box_) {
+        adapt_.setBounds(modes.removeFromRight(72));
+        modes.removeFromRight(8);
+    }
+    mode_.box().setBounds(modes);
     left.removeFromTop(8);
     for (auto& dial : dials_) {
         if (!dial.first->isVisible())

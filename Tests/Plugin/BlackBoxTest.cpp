@@ -262,7 +262,7 @@ TEST_CASE("A model of the excursion keeps excursion, voltage and heat within the
             CHECK((y.array() - y[0]).cwiseAbs().maxCoeff() < 0.505 * range);
         CHECK(peakOf(out) <= 1.0001 * recipe.voltageLimit);
         CHECK(warmest < 1.01 * recipe.powerLimit);
-        CHECK(warmest > 0.3 * recipe.powerLimit);
+        CHECK(warmest > 0.2 * recipe.powerLimit);  // half of the time it is quiet
         const auto meters = processor.take();
         CHECK((meters.displacement > 0.0) == std::isfinite(range));
         CHECK(meters.powerReduction > 0.0);
