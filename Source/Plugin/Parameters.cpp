@@ -54,8 +54,8 @@ Parameters::Parameters(juce::AudioProcessor& processor)
         switchOf(k);
     coilResistance_ = number("coilResistance", "Coil resistance", {Settings::resistances, 100, 8.0, 1.0, "ohm"},
                              first.coilResistance);
-    targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 1, 100.0, 1.0, "Hz"}, first.target.low);
-    targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 1, 1000.0, 1.0, "Hz"}, first.target.high);
+    targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 100.0, 1.0, "Hz"}, first.target.low);
+    targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 10, 1000.0, 1.0, "Hz"}, first.target.high);
 }
 
 Settings Parameters::settings() const

@@ -64,8 +64,9 @@ void BlackBoxLinearizer::reset()
     std::vector<double>& z = z_;
     step_.see(reference_.data(), 0.0, z.data());
     step_.addImplicit(q_.data(), z.data());
-    auto x = reference_;
-    const double still = step_.advance(x.data(), 0.0, q_.data());
+    auto& scratch = passes_.front().e;  // an audio thread may call this
+    std::copy(reference_.begin(), reference_.end(), scratch.begin());
+    const double still = step_.advance(scratch.data(), 0.0, q_.data());
     for (std::size_t k = 0; k <= passes_.size() * preview_; ++k) {
         double* fresh = past_.next();
         fresh[0] = 0.0;
