@@ -54,7 +54,7 @@ Parameters::Parameters(juce::AudioProcessor& processor)
         switchOf(k);
     coilResistance_ = number("coilResistance", "Coil resistance", {Settings::resistances, 100, 8.0, 1.0, "ohm"},
                              first.coilResistance);
-    targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 100.0, 1.0, "Hz"}, first.target.low);
+    targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 300.0, 1.0, "Hz"}, first.target.low);
     targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 10, 1000.0, 1.0, "Hz"}, first.target.high);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Chain.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <numbers>
 
 using namespace excursion::test;
+using excursion::peakOf;
 using excursion::readWav;
 using excursion::SampleFormat;
 using excursion::writeWav;
