@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 import pytest
 
@@ -81,6 +83,36 @@ def test_an_effect_is_added(stiff, stiff_fit):
     with pytest.raises(excursion.Error, match="already has the effect") as refused:
         excursion.add(stiff.take, "stiffness", added.model)
     assert refused.value.kind == "usage"
+
+
+def test_a_model_follows_what_has_drifted(stiff, ladder):
+    before = copy.deepcopy(ladder.model.document)
+    for parameter in before["base"]["parameters"]:
+        if parameter["name"] in ("Re", "K"):
+            parameter["value"] *= 0.9
+    adapted = excursion.adapt(excursion.Model(before), stiff.take)
+    table = adapted.table()
+    assert list(table.index) == ["Re", "Rms", "K"]
+    for name in ("Re", "K"):
+        assert table.loc[name, "after"] == pytest.approx(stiff.truth["driver"][name], rel=0.01), name
+        assert table.loc[name, "share"] == pytest.approx(1 / 0.9 - 1, abs=0.02), name
+    assert adapted.warmer == pytest.approx((1 / 0.9 - 1) / 0.0039, rel=0.1)
+    assert adapted.error.loc["current", "db"] < adapted.error_before.loc["current", "db"] - 20
+    assert adapted.sentence and adapted.model["Re"] == table.loc["Re", "after"]
+    only = excursion.adapt(excursion.Model(before), stiff.take, ["Re"])
+    assert list(only.drift.index) == ["Re"]
+    with pytest.raises(excursion.Error):
+        excursion.adapt(excursion.Model(before), stiff.take, ["nonsense"])
+
+
+def test_a_flat_band_is_a_target(ladder):
+    rate, n = 48000, 24000
+    f = 100.0
+    voltage = 1e-3 * np.sin(2 * np.pi * f * np.arange(n) / rate)
+    own = excursion.predistort(ladder.model, voltage, rate)
+    flat = excursion.predistort(ladder.model, voltage, rate, target_flat=(80, 800))
+    assert flat.document["target"]["kind"] == "flat"
+    assert np.std(flat.voltage[n // 2 :]) != pytest.approx(np.std(own.voltage[n // 2 :]), rel=0.02)
 
 
 def test_without_its_effect_the_distortion_is_gone(stiff, ladder):

@@ -8,9 +8,8 @@
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
-#include "Engine/Loudspeaker/Drift.h"
 #include "Engine/Loudspeaker/ModelFile.h"
-#include "Engine/Predistortion/RealTime.h"
+#include "Engine/Upkeep/Adaptation.h"
 
 #include <nlohmann/json.hpp>
 
@@ -20,36 +19,10 @@
 namespace excursion::cli {
 namespace {
 
-constexpr double farther = 1.05;  // than was measured, which is of no matter
-
 struct AdaptArguments {
     std::string model, take, out;
     std::vector<std::string> parameters;
 };
-
-struct Adapted {
-    Drift drift;
-    Comparison before, after;
-    bool beyond = false;  ///< the cone goes farther than the laws were measured
-};
-
-Adapted adaptTo(const Model& model, const OpenTake& open, const std::vector<std::string>& names, Terminal& terminal)
-{
-    Adapted result;
-    if (const auto* spectra = open.take.asResponses()) {
-        result.before = compare(model, *spectra);
-        result.drift = followDrift(model, responsesOf(*spectra), names);
-        result.after = compare(result.drift.model, *spectra);
-        return result;
-    }
-    const auto record = recordFor(model, open);
-    const auto progress = terminal.progress();
-    result.before = compare(model, record, {0, false}, progress.part(0.0, 0.1));
-    result.drift = followDrift(model, record, names, {}, progress.part(0.1, 0.9));
-    result.beyond = visitedExtent(model, record).displacement > farther * measuredDisplacement(model);
-    result.after = compare(result.drift.model, record, {result.drift.search.substeps, false}, progress.part(0.9, 1.0));
-    return result;
-}
 
 std::vector<std::string> rowOf(const Drifted& one)
 {
@@ -81,28 +54,7 @@ nlohmann::ordered_json documentOf(const std::vector<Drifted>& all)
     return items;
 }
 
-/// What a person should know of how the error fell.
-std::string sentenceOn(const Adapted& adapted)
-{
-    const auto &before = adapted.before, &after = adapted.after;
-    constexpr double explained = 4.0;  // misfit up to which drift is all there is
-    if (!after.noiseKnown)
-        return {};
-    if (after.chi <= explained)
-        return before.chi <= explained ? "The model was right before: nothing has drifted that this take can see."
-                                       : "That is all that has changed: what is left is the noise.";
-    if (adapted.beyond)
-        return "In this take the cone goes farther than the laws of the model were measured: play it softer, or fit "
-               "the "
-               "model anew.";
-    return after.chi < 0.5 * before.chi
-               ? "Something is left that these parameters do not explain: compare the new model with the take."
-               : "These parameters are not what has changed: the error hardly fell. Compare the model with the take, "
-                 "or "
-                 "diagnose it.";
-}
-
-void print(const Adapted& adapted, Terminal& terminal)
+void print(const Adaptation& adapted, Terminal& terminal)
 {
     const auto& drift = adapted.drift;
     std::vector<std::vector<std::string>> rows;
@@ -137,7 +89,7 @@ void run(const AdaptArguments& options, Terminal& terminal)
     if (!open.take.report().fitForUse())
         return refuseTake(open, document, terminal);
     const auto names = options.parameters.empty() ? driftingParameters(model) : options.parameters;
-    const auto adapted = adaptTo(model, open, names, terminal);
+    const auto adapted = adaptTo(model, open.take, names, terminal.progress());
     const auto& drift = adapted.drift;
     writeModel(drift.model, options.out);
 

@@ -79,7 +79,7 @@ PredistortionControls controlsFrom(const PredistortArguments& options, const Mod
     controls.voltageLimit = options.voltageLimit.value_or(std::numeric_limits<double>::infinity());
     controls.powerLimit = options.powerLimit.value_or(std::numeric_limits<double>::infinity());
     controls.margin = options.margin;
-    controls.target = targetFrom(options.target, model);
+    controls.target = targetFrom(options.target, OwnLinearPart(model));
     return controls;
 }
 
@@ -88,7 +88,8 @@ void run(const PredistortArguments& options, Terminal& terminal)
     for (const auto& [name, value] : {std::pair {"--full-scale", options.fullScale},
                                       {"--limit-x", options.displacementLimit.value_or(1.0)},
                                       {"--limit-u", options.voltageLimit.value_or(1.0)},
-                                      {"--limit-p", options.powerLimit.value_or(1.0)}})
+                                      {"--limit-p", options.powerLimit.value_or(1.0)},
+                                      {"--coil-resistance", options.coilResistance.value_or(1.0)}})
         if (!(value > 0.0 && std::isfinite(value)))
             throw Error(Error::Kind::usage, std::string(name) + " must be a positive number.");
     requireFilePlace(options.out);
@@ -98,6 +99,8 @@ void run(const PredistortArguments& options, Terminal& terminal)
         return runBlackBox(options, blackBoxOf(modelDocumentFrom(field)), terminal);
     const auto model = modelFromJson(field);
     const auto wav = readPlayable(options.input, options.out);
+    if (options.coilResistance)
+        throw Error(Error::Kind::usage, "--coil-resistance is of models without physics; a driver knows its own.");
     if (options.powerLimit && !model.electrical())
         throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model has none; leave it out.");
     const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling};
@@ -107,7 +110,8 @@ void run(const PredistortArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage, "The predistortion cannot run: " + reason + ".");
     nlohmann::ordered_json target;
     if (options.target.asked())
-        target = tellTarget(model, controls, options.fullScale, terminal);
+        target = tellTarget(forecastTarget(model, controls, options.fullScale), controls.target.kind, options.fullScale,
+                            model.electrical() ? "V" : "N", terminal);
 
     auto bent = wav;
     const auto progress = terminal.progress();
@@ -203,6 +207,8 @@ void addPredistort(CLI::App& app, Terminal& terminal)
     verb->add_option("--limit-u", o->voltageLimit, "V that may come out at most (default: no limit)");
     verb->add_option("--limit-p", o->powerLimit,
                      "W of heat in the voice coil, Re i^2 averaged over 1 s (default: no limit)");
+    verb->add_option("--coil-resistance", o->coilResistance,
+                     "ohm: with it --limit-p is kept with a model without physics, too");
     verb->add_option("--margin", o->margin,
                      "the limits hold for every loudspeaker whose parameters differ by at most this share from the "
                      "model's, 0 to 0.3")

@@ -3,6 +3,7 @@
 #include "Cli/Predistorting.h"
 
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
+#include "Engine/BlackBox/BoxLinearPart.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
@@ -12,16 +13,42 @@
 
 namespace excursion::cli {
 
-/// A model without physics knows no cone: the region of its fit is the limit.
+namespace {
+
+PredistortionControls controlsFrom(const PredistortArguments& options, const RehearsedBox& model)
+{
+    constexpr double none = std::numeric_limits<double>::infinity();
+    PredistortionControls controls;
+    controls.amount = options.amount;
+    controls.voltageLimit = options.voltageLimit.value_or(none);
+    controls.margin = options.margin;
+    controls.displacementLimit = options.displacementLimit.value_or(tellsExcursion(model.box) ? model.region.farthest
+                                                                                              : none);
+    controls.powerLimit = options.powerLimit.value_or(none);
+    controls.coilResistance = options.coilResistance.value_or(0.0);
+    controls.target = targetFrom(options.target, ownLinearPart(model.box));
+    return controls;
+}
+
+/// What no limit can be kept of.
+void requireKnown(const PredistortArguments& options, const BlackBox& box)
+{
+    if (!tellsExcursion(box) && (options.displacementLimit || options.margin != 0.0))
+        throw Error(Error::Kind::usage, "--limit-x and --margin are of the excursion, and this model tells the "
+                                            + box.output + ": leave them out; it keeps to where it was fitted.");
+    if (options.powerLimit && box.input != "voltage")
+        throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model begins at the " + box.input
+                                            + "; leave it out.");
+    if (options.powerLimit && !options.coilResistance)
+        throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, whose resistance a model without physics "
+                                        "does not know: give it with --coil-resistance.");
+}
+
+}  // namespace
+
 void runBlackBox(const PredistortArguments& options, const BlackBox& box, Terminal& terminal)
 {
-    if (options.displacementLimit || options.powerLimit || options.margin != 0.0)
-        throw Error(Error::Kind::usage, "--limit-x, --limit-p and --margin are of a cone and a coil, which a model "
-                                        "without physics does not know: leave them out; it keeps to where it was "
-                                        "fitted.");
-    if (options.target.asked())
-        throw Error(Error::Kind::usage, "A target moves the resonance of a driver, which a model without physics does "
-                                        "not know: leave --target-f0, --target-q and --target-box out.");
+    requireKnown(options, box);
     const auto wav = readPlayable(options.input, options.out);
     const RehearsedBox model(box);
     const auto& gain = model.rehearsal;
@@ -44,10 +71,15 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
     const auto progress = terminal.progress();
     std::vector<std::vector<std::string>> rows;
     nlohmann::ordered_json channels = nlohmann::ordered_json::array();
-    bool limited = false;
+    bool limited = false, beyond = false;
     double loudest = 0.0;
-    const BlackBoxControls controls {options.amount,
-                                     options.voltageLimit.value_or(std::numeric_limits<double>::infinity())};
+    const auto controls = controlsFrom(options, model);
+    const bool moves = tellsExcursion(box);
+    nlohmann::ordered_json target;
+    if (options.target.asked())
+        target = tellTarget(
+            forecastTarget(model.box, model.region, model.rest, model.rehearsal, controls, options.fullScale),
+            controls.target.kind, options.fullScale, unit, terminal);
     for (std::size_t c = 0; c < bent.channels.size(); ++c) {
         BlackBoxPredistorter predistorter(model, rate, controls);
         const double before = options.fullScale * peakOf(wav.channels[c]),
@@ -56,19 +88,37 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
         const auto meters = predistorter.take();
         const double after = options.fullScale * peakOf(bent.channels[c]);
         loudest = std::max(loudest, after);
-        limited = limited || meters.reduction > noticed;
+        beyond = beyond || meters.regionReduction > noticed;
+        limited = limited || beyond || meters.displacementReduction > noticed || meters.voltageReduction > noticed
+                  || meters.powerReduction > noticed;
         channels.push_back({{"peakIn", before},
                             {"peakOut", after},
                             {"correction", meters.correction},
                             {"region", meters.region},
-                            {"reduction", meters.reduction}});
+                            {"reduction", meters.regionReduction},
+                            {"displacement", moves ? nlohmann::ordered_json(meters.displacement) : nullptr},
+                            {"power", meters.power},
+                            {"displacementReduction", meters.displacementReduction},
+                            {"voltageReduction", meters.voltageReduction},
+                            {"powerReduction", meters.powerReduction}});
         rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
                         significant(meters.correction) + " " + unit, fixed(100.0 * meters.region, 0) + " %",
-                        turnedDown(meters.reduction, true)});
+                        turnedDown(meters.regionReduction, true),
+                        moves ? significant(1e3 * meters.displacement) + " mm" : "not told",
+                        turnedDown(meters.displacementReduction, moves),
+                        turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
+        if (options.powerLimit) {
+            rows.back().push_back(significant(meters.power) + " W");
+            rows.back().push_back(turnedDown(meters.powerReduction, true));
+        }
     }
     publish(bent, options.out);
     auto told = documentOf(options, wav);
-    told.update({{"voltageLimit", numberOrNull(controls.inputLimit)},
+    told.update({{"voltageLimit", numberOrNull(controls.voltageLimit)},
+                 {"displacementLimit", numberOrNull(controls.displacementLimit)},
+                 {"powerLimit", numberOrNull(controls.powerLimit)},
+                 {"margin", controls.margin},
+                 {"target", target},
                  {"modelRate", box.linear.sampleRate},
                  {"distortionBeforeDb", gain.beforeDb},
                  {"distortionAfterDb", gain.afterDb},
@@ -76,8 +126,21 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
                  {"channels", channels},
                  {"limited", limited}});
     terminal.document(told);
-    terminal.table({"channel", "peak in", "out", "the correction", "of the region", "turned down"}, rows);
-    if (limited)
+    std::vector<std::string> heads {"channel",
+                                    "peak in",
+                                    "out",
+                                    "the correction",
+                                    "of the region",
+                                    "turned down",
+                                    "the cone moves",
+                                    "motion turned down",
+                                    "voltage turned down"};
+    if (options.powerLimit)
+        heads.insert(heads.end(), {"heat at most", "current turned down"});
+    terminal.table(heads, rows);
+    if (!moves)
+        terminal.say("The model tells the " + box.output + ", not the excursion, so no limit of that is kept.");
+    if (beyond)
         terminal.say("The signal goes beyond where the model was fitted (" + significant(box.stimulus.peak, 3) + " "
                      + unit + " peak, or what its states reached): there it was turned down.");
     sayLoudest(options, loudest, terminal);

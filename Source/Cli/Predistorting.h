@@ -24,6 +24,7 @@ struct PredistortArguments {
     double fullScale = 0.0;                                             ///< V or N
     std::optional<double> displacementLimit, voltageLimit, powerLimit;  ///< m, V or N, W
     double amount = 1.0, margin = 0.0;
+    std::optional<double> coilResistance;  ///< ohm, of a model without physics
     int oversampling = 2;
     TargetArguments target;
 };

@@ -4,8 +4,9 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
-#include "Engine/Predistortion/TargetForecast.h"
+#include "Engine/Import/LevelCurve.h"
 
+#include <array>
 #include <cmath>
 
 namespace excursion::cli {
@@ -46,21 +47,37 @@ void addTargetOptions(CLI::App& verb, TargetArguments& target)
     verb.add_option("--target-q", target.quality, "and with this total Q (default: the driver's own)");
     verb.add_option("--target-box", target.litres,
                     "litres: it is to move as the driver would in a closed box of that volume");
+    verb.add_option("--target-flat", target.flat, "Hz: its sound is to be flat from LOW to HIGH")
+        ->expected(2)
+        ->delimiter(',');
+    verb.add_option("--target-gains", target.gains,
+                    "a file of lines of Hz and dB: these gains in thirds of an octave, on its own sound");
+    verb.add_option("--target-response", target.response,
+                    "a file of lines of Hz and dB, as .frd: its sound is to follow that, as loud as on average there");
 }
 
-Target targetFrom(const TargetArguments& asked, const Model& model)
+Target targetFrom(const TargetArguments& asked, const OwnLinearPart& own)
 {
     Target target;
     if (!asked.asked())
         return target;
-    if (asked.litres && (asked.frequency || asked.quality))
+    const int kinds = (asked.frequency || asked.quality ? 1 : 0) + (asked.litres ? 1 : 0) + (asked.flat.empty() ? 0 : 1)
+                      + (asked.gains.empty() ? 0 : 1) + (asked.response.empty() ? 0 : 1);
+    if (kinds > 1)
         throw Error(Error::Kind::usage,
-                    "A closed box has its own resonance and Q: give --target-box, or --target-f0 and "
-                    "--target-q.");
-    const OwnResonance own(model);
+                    "A loudspeaker has one target, and a closed box has its own resonance and Q: give --target-box, or "
+                    "--target-f0 and --target-q, or one of --target-flat, --target-gains and --target-response.");
     if (asked.litres) {
         target.kind = Target::Kind::closedBox;
         target.volume = litre * *asked.litres;
+    } else if (!asked.flat.empty()) {
+        target.kind = Target::Kind::flat;
+        target.low = asked.flat.front();
+        target.high = asked.flat.back();
+    } else if (asked.equalizes()) {
+        target.kind = asked.gains.empty() ? Target::Kind::response : Target::Kind::bands;
+        const auto curve = readLevelCurve(asked.gains.empty() ? asked.response : asked.gains);
+        target.curve = targetCurve(curve.frequency, curve.db);
     } else {
         target.kind = Target::Kind::resonance;
         if (own.single) {
@@ -72,19 +89,19 @@ Target targetFrom(const TargetArguments& asked, const Model& model)
     return target;
 }
 
-nlohmann::ordered_json tellTarget(const Model& model, const PredistortionControls& controls, double fullScale,
-                                  Terminal& terminal)
+nlohmann::ordered_json tellTarget(const TargetForecast& told, Target::Kind kind, double fullScale,
+                                  const std::string& inputUnit, Terminal& terminal)
 {
-    const auto told = forecastTarget(model, controls, fullScale);
-    const std::string unit = model.electrical() ? " V" : " N";
+    const std::string unit = " " + inputUnit;
+    const auto moved = [](double metres) { return metres > 0.0 ? significant(1e3 * metres, 3) + " mm" : "not told"; };
     const auto row = [&](const char* name, const Resonance& one, const TargetForecast::Peaks& sine,
                          const TargetForecast::Peaks& pink) {
         return std::vector<std::string> {name,
                                          significant(one.frequency, 3) + " Hz",
                                          significant(one.quality, 3),
-                                         significant(1e3 * sine.displacement, 3) + " mm",
+                                         moved(sine.displacement),
                                          roomOf(sine),
-                                         significant(1e3 * pink.displacement, 3) + " mm",
+                                         moved(pink.displacement),
                                          significant(pink.voltage, 3) + unit,
                                          roomOf(pink)};
     };
@@ -95,9 +112,12 @@ nlohmann::ordered_json tellTarget(const Model& model, const PredistortionControl
     terminal.say("At full scale, " + significant(fullScale, 3) + unit
                  + ", as if there were no limit: the worst sine and pink noise. Up to: the level, of full scale, to "
                    "which both limits are kept without turning anything down. The target takes "
-                 + fixed(std::abs(told.lowGainDb), 1) + " dB " + (more ? "more" : "less")
-                 + " excursion and voltage at the lowest notes.");
-    return {{"kind", controls.target.kind == Target::Kind::closedBox ? "closed-box" : "resonance"},
+                 + (told.equalizes ? fixed(told.mostGainDb, 1) + " dB more voltage at most, at "
+                                         + significant(told.mostGainFrequency, 3) + " Hz."
+                                   : fixed(std::abs(told.lowGainDb), 1) + " dB " + (more ? "more" : "less")
+                                         + " excursion and voltage at the lowest notes."));
+    constexpr std::array names {"own", "resonance", "closed-box", "flat", "bands", "response"};
+    return {{"kind", names[static_cast<std::size_t>(kind)]},
             {"lowGainDb", told.lowGainDb},
             {"mostGainDb", told.mostGainDb},
             {"driver", documentOf(told.own, told.ownSine, told.ownPink)},

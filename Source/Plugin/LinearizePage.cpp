@@ -57,6 +57,12 @@ LinearizePage::LinearizePage(Window& window)
         }
     };
     load_.onClick = [this] { choose(); };
+    adapt_.setTooltip("Refits what drifts with temperature and age, Re, Rms and K, to the take that is open: a short "
+                      "recording will do");
+    adapt_.onClick = [this] {
+        window_.tell("The model is being adapted to the take.", false);
+        session().adapt(processor_.model());
+    };
     drivers_.setTitle("Factory drivers");
     recipes_.setTitle("Recipes");
     recipes_.setTooltip("Mode, limits and effects for a purpose");
@@ -66,7 +72,7 @@ LinearizePage::LinearizePage(Window& window)
     distortion_.told = tell;
     target_.told = tell;
     target_.reshaped = [this] { resized(); };
-    add({&name_, &recipes_, &drivers_, &load_, &mode_.box()});
+    add({&name_, &recipes_, &drivers_, &load_, &mode_.box(), &adapt_});
     for (auto* number : processor_.parameters().numbers()) {
         dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number, &window.history()));
         dials_.back().first->setText(number->getName(40), juce::dontSendNotification);
@@ -89,12 +95,18 @@ void LinearizePage::showModel(const AnyModel& model)
     const auto numbers = processor_.parameters().numbers();
     for (std::size_t k = 0; k < dials_.size(); ++k) {
         const auto& id = numbers[k]->paramID;
-        const bool shown = !box_ || (id != "displacementLimit" && id != "powerLimit" && id != "margin");
+        const bool moves = !box_ || std::isfinite(measuredDisplacement(box_->played)),
+                   coil = !box_ || box_->played.box.input == "voltage";
+        const bool shown = id == "displacementLimit" || id == "margin" ? moves
+                           : id == "powerLimit"                        ? coil
+                           : id == "coilResistance"                    ? box_ && coil
+                                                                       : true;
         dials_[k].first->setVisible(shown);
         dials_[k].second->slider().setVisible(shown);
     }
     facts_.setVisible(box_ != nullptr);
-    excursion_.setHead(box_ ? "Region" : "Excursion");
+    adapt_.setVisible(!box_);
+    excursion_.setHead(box_ && !std::isfinite(measuredDisplacement(box_->played)) ? "Region" : "Excursion");
     if (box_)
         showBox(box_->played);
     else
@@ -124,16 +136,7 @@ void LinearizePage::showBox(const PlayedBox& played)
     for (auto& one : switches_)
         one->button().setVisible(false);
     asked_ = {};
-    const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "";
-    facts_.setText(
-        words(box.kind).substring(0, 1).toUpperCase() + words(box.kind).substring(1) + ": " + words(box.output)
-            + " from " + words(box.input) + " at " + words(nominal(box.linear.sampleRate, "Hz")) + ".\nFitted with "
-            + words(engineering(box.stimulus.rms, unit, 3)) + " rms, "
-            + words(engineering(box.stimulus.lowest(), "Hz", 2)) + " to "
-            + words(engineering(box.stimulus.highest(), "Hz", 2)) + "; beyond that level the signal is turned "
-            + "down where it is linearized.\nAs the speaker, its " + words(box.output)
-            + " is heard, as loud as the signal was under the fit.",
-        juce::dontSendNotification);
+    showFacts();
     Plot response;
     response.title = "Linear part, where it was fitted";
     response.x = {"frequency", "Hz", true, 0.0, 0.0, {}};
@@ -158,6 +161,21 @@ void LinearizePage::showBox(const PlayedBox& played)
     forecastWords_.setText("Distortion " + words(decibels(gain.beforeDb)) + ", linearized "
                                + words(decibels(gain.afterDb)) + ": a gain of " + words(decibels(gain.gainDb())),
                            juce::dontSendNotification);
+}
+
+/// What the model is, and what is protected, which depends on what a person knows of the coil.
+void LinearizePage::showFacts()
+{
+    const auto& box = box_->played.box;
+    const std::string unit = box.input == "voltage" ? "V" : box.input == "force" ? "N" : "";
+    const auto kind = words(box.kind);
+    facts_.setText(kind.substring(0, 1).toUpperCase() + kind.substring(1) + ": " + words(box.output) + " from "
+                       + words(box.input) + " at " + words(nominal(box.linear.sampleRate, "Hz")) + ".\nFitted with "
+                       + words(engineering(box.stimulus.rms, unit, 3)) + " rms, "
+                       + words(engineering(box.stimulus.lowest(), "Hz", 2)) + " to "
+                       + words(engineering(box.stimulus.highest(), "Hz", 2)) + "; as loud it is heard.\n"
+                       + words(protectionOf(box_->played, processor_.parameters().settings().coilResistance)),
+                   juce::dontSendNotification);
 }
 
 void LinearizePage::showDistortion(const std::vector<double>& frequency, const std::vector<double>& before,
@@ -222,6 +240,19 @@ void LinearizePage::showForecast()
                            juce::dontSendNotification);
 }
 
+/// A model that has followed the take takes over, as a step that can be taken back.
+void LinearizePage::useAdapted()
+{
+    const auto adapted = session().takeAdapted();
+    if (!adapted)
+        return;
+    window_.use(adapted->model, "its last take");
+    facts_.setText("Since it was fitted: " + words(adapted->words), juce::dontSendNotification);
+    facts_.setVisible(true);
+    resized();
+    window_.tell(words(adapted->words), false);
+}
+
 /// What a host has moved.
 void LinearizePage::follow()
 {
@@ -238,12 +269,12 @@ void LinearizePage::follow()
 void LinearizePage::showMeters()
 {
     const auto meters = processor_.take();
-    const double range = measuredDisplacement(processor_.model()),
+    const double range = box_ ? measuredDisplacement(box_->played) : measuredDisplacement(processor_.model()),
                  reach = std::isfinite(range) ? meters.displacement / range : 0.0;
     const auto limits = processor_.parameters().controls(range).linearization;
     if (!processor_.standstill().empty())
         excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
-    else if (box_)
+    else if (box_ && !std::isfinite(range))
         excursion_.show(meters.region, whole(100.0 * meters.region) + " % of where it was fitted",
                         meters.displacementReduction);
     else
@@ -254,7 +285,11 @@ void LinearizePage::showMeters()
             meters.displacementReduction);
     voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V",
                   meters.voltageReduction);
-    power_.setVisible(!box_ && std::isfinite(limits.powerLimit));
+    if (const bool told = std::isfinite(limits.powerLimit) && (!box_ || limits.coilResistance > 0.0);
+        told != power_.isVisible()) {
+        power_.setVisible(told);
+        resized();
+    }
     power_.show(meters.power / limits.powerLimit, juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W",
                 meters.powerReduction);
     if (meters.faults > faults_)
@@ -265,9 +300,12 @@ void LinearizePage::showMeters()
 void LinearizePage::tick()
 {
     follow();
+    useAdapted();
+    adapt_.setEnabled(session().findings() != nullptr && !session().status().busy);
     showMeters();
-    if (!box_)
-        target_.tick();
+    if (box_)
+        showFacts();
+    target_.tick();
     showForecast();
 }
 
@@ -298,9 +336,15 @@ void LinearizePage::resized()
         std::count_if(dials_.begin(), dials_.end(), [](const auto& dial) { return dial.first->isVisible(); }));
     for (std::size_t k = 0; k < shown.size(); ++lines)
         k += k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]) ? 2 : 1;
-    const int rest = 28 + 3 * 8 + 3 * 30 + 3 * 4,
+    const int meters = power_.isVisible() ? 3 : 2, told = facts_.isVisible() ? 116 : 0,
+              rest = 28 + 4 * 8 + meters * 34 + told,
               row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
-    mode_.box().setBounds(left.removeFromTop(28));
+    auto modes = left.removeFromTop(28);
+    if (!box_) {
+        adapt_.setBounds(modes.removeFromRight(72));
+        modes.removeFromRight(8);
+    }
+    mode_.box().setBounds(modes);
     left.removeFromTop(8);
     for (auto& dial : dials_) {
         if (!dial.first->isVisible())
@@ -320,14 +364,13 @@ void LinearizePage::resized()
     }
     left.removeFromTop(8);
     for (auto* meter : {&excursion_, &voltage_, &power_}) {
-        if (box_ && meter == &power_)
-            break;  // a coil's
+        if (!meter->isVisible())
+            continue;
         meter->setBounds(left.removeFromTop(30));
         left.removeFromTop(4);
     }
     left.removeFromTop(8);
     facts_.setBounds(left.removeFromTop(juce::jmin(140, left.getHeight())));
-    target_.setVisible(!box_);
     for (auto* part : std::initializer_list<juce::Component*> {&laws_, &distortion_, &forecastWords_})
         part->setVisible(!targetPictured());
     if (targetPictured()) {
@@ -335,10 +378,8 @@ void LinearizePage::resized()
         target_.resized();
         return;
     }
-    if (!box_) {
-        target_.setBounds(area.removeFromTop(target_.head()));
-        target_.resized();
-    }
+    target_.setBounds(area.removeFromTop(target_.head()));
+    target_.resized();
     forecastWords_.setBounds(area.removeFromBottom(24));
     distortion_.setBounds(area.removeFromBottom(area.getHeight() * 9 / 20));
     laws_.setBounds(area);

@@ -32,18 +32,20 @@ public:
 private:
     void showDriver(const Model&);
     void showBox(const PlayedBox&);
+    void showFacts();
     void showDistortion(const std::vector<double>& frequency, const std::vector<double>& before,
                         const std::vector<double>& after, const std::string& title);
     void choose();
     void follow();
     void showMeters();
     void showForecast();
-    bool targetPictured() const { return !box_ && target_.pictured(); }
+    void useAdapted();
+    bool targetPictured() const { return target_.pictured(); }
 
     Processor& processor_;
     juce::Label name_, forecastWords_, facts_;
     juce::ComboBox drivers_, recipes_;
-    juce::TextButton load_ {"Load a model..."};
+    juce::TextButton load_ {"Load a model..."}, adapt_ {"Adapt"};
     ChoiceBox mode_;
     /// each behind its title
     std::vector<std::pair<std::unique_ptr<juce::Label>, std::unique_ptr<NumberDial>>> dials_;

@@ -42,7 +42,9 @@ Parameters::Parameters(juce::AudioProcessor& processor)
     margin_ = number("margin", "Model margin", {Settings::margins, 1000, 0.15, 100.0, "%"}, first.margin);
     for (std::size_t k = firstEffects; k < secondEffects; ++k)
         switchOf(k);
-    target_ = added(new Choice("target", "Target", {"Own linear part", "New resonance", "Closed box"}));
+    target_ = added(new Choice(
+        "target", "Target",
+        {"Own linear part", "New resonance", "Closed box", "Flat band", "Gains of a file", "Response of a file"}));
     targetF0_ = number("targetF0", "Target f0", {Settings::targetFrequencies, 10, 100.0, 1.0, "Hz"},
                        first.target.frequency);
     targetQ_ = number("targetQ", "Target Q", {Settings::targetQualities, 100, 0.8, 1.0, ""}, first.target.quality);
@@ -50,6 +52,10 @@ Parameters::Parameters(juce::AudioProcessor& processor)
                            first.target.volume);
     for (std::size_t k = secondEffects; k < catalogue().size(); ++k)
         switchOf(k);
+    coilResistance_ = number("coilResistance", "Coil resistance", {Settings::resistances, 100, 8.0, 1.0, "ohm"},
+                             first.coilResistance);
+    targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 300.0, 1.0, "Hz"}, first.target.low);
+    targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 10, 1000.0, 1.0, "Hz"}, first.target.high);
 }
 
 Settings Parameters::settings() const
@@ -62,9 +68,14 @@ Settings Parameters::settings() const
     settings.voltageLimit = voltageLimit_->get();
     settings.powerLimit = powerLimit_->get();
     settings.margin = margin_->get();
+    settings.coilResistance = coilResistance_->get();
     settings.trimDb = trim_->get();
     settings.target = {static_cast<Target::Kind>(target_->getIndex()), targetF0_->get(), targetQ_->get(),
                        targetVolume_->get()};
+    settings.target.low = targetLow_->get();
+    settings.target.high = targetHigh_->get();
+    for (std::size_t k = 0; k < curve_.size(); ++k)
+        settings.target.curve[k] = curve_[k].load(std::memory_order_relaxed);
     return settings;
 }
 
@@ -128,11 +139,16 @@ void Parameters::set(const Recipe& recipe, const Between& between)
     voltageLimit_->set(recipe.voltageLimit);
     powerLimit_->set(recipe.powerLimit);
     margin_->set(recipe.margin);
+    coilResistance_->set(recipe.coilResistance);
     trim_->set(recipe.trimDb);
     put(*target_, target_->proportionOf(static_cast<int>(recipe.target.kind)));
     targetF0_->set(recipe.target.frequency);
     targetQ_->set(recipe.target.quality);
     targetVolume_->set(recipe.target.volume);
+    targetLow_->set(recipe.target.low);
+    targetHigh_->set(recipe.target.high);
+    for (std::size_t k = 0; k < curve_.size(); ++k)
+        curve_[k].store(recipe.target.curve[k], std::memory_order_relaxed);
     for (std::size_t k = 0; k < effects_.size(); ++k)
         put(*effects_[k],
             std::find(recipe.off.begin(), recipe.off.end(), catalogue()[k]->id()) == recipe.off.end() ? 1.0f : 0.0f);

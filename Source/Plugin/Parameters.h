@@ -5,6 +5,8 @@
 #include "Plugin/Number.h"
 #include "Plugin/State.h"
 
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -15,7 +17,8 @@ namespace excursion::plugin {
 /// The parameters that a host sees and automates: those of a Recipe, and a switch for every effect of the catalogue.
 ///     mode, fullScale (V), amount (%), displacementLimit (% of what the model was measured at), voltageLimit (V),
 ///     trim (dB), effect-<id>, powerLimit (W), margin (%), effect-<id> of later effects, target, targetF0 (Hz),
-///     targetQ, targetVolume (l), effect-<id> of still later ones
+///     targetQ, targetVolume (l), effect-<id> of still later ones, coilResistance (ohm), targetLow, targetHigh (Hz)
+/// and, which no host sees, the curve of a target.
 /// No listener hangs at them, as those are called on the audio thread: who wants to know reads them, now and then.
 class Parameters {
 public:
@@ -38,18 +41,19 @@ public:
     Choice& mode() { return *mode_; }
     std::vector<Number*> numbers() const
     {
-        return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, margin_, trim_};
+        return {fullScale_, amount_, displacementLimit_, voltageLimit_, powerLimit_, coilResistance_, margin_, trim_};
     }
     Choice& target() { return *target_; }
-    std::vector<Number*> targetNumbers() const { return {targetF0_, targetQ_, targetVolume_}; }
+    std::vector<Number*> targetNumbers() const { return {targetF0_, targetQ_, targetVolume_, targetLow_, targetHigh_}; }
     const std::vector<OnOff*>& effects() const { return effects_; }
 
 private:
     Choice *mode_, *target_;
-    Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_;
-    Number *targetF0_, *targetQ_, *targetVolume_;
+    Number *fullScale_, *amount_, *displacementLimit_, *voltageLimit_, *trim_, *powerLimit_, *margin_, *coilResistance_;
+    Number *targetF0_, *targetQ_, *targetVolume_, *targetLow_, *targetHigh_;
     std::vector<OnOff*> effects_;  ///< in the order of the catalogue
-    mutable std::mutex mutex_;     ///< of what follows; never locked on the audio thread
+    std::array<std::atomic<double>, std::tuple_size_v<ThirdOctaves>> curve_ {};
+    mutable std::mutex mutex_;  ///< of what follows; never locked on the audio thread
     std::string title_, words_;
 };
 

@@ -71,6 +71,7 @@ std::vector<std::unique_ptr<Chain>> Processor::chains(const AnyModel& model, std
     double measured = std::numeric_limits<double>::infinity();
     if (const auto* box = std::get_if<LoadedBoxPointer>(&model)) {
         const double rate = options().sampleRate;
+        measured = measuredDisplacement((*box)->played);
         const auto controls = parameters_.controls(measured);
         for (std::size_t k = 0; k < channels; ++k)
             result.push_back(std::make_unique<Chain>(
@@ -131,7 +132,7 @@ void Processor::setModel(const AnyModel& model)
 void Processor::requirePlayable(const AnyModel& model, const Recipe& recipe) const
 {
     if (const auto* box = std::get_if<LoadedBoxPointer>(&model)) {
-        BlackBoxEngine((*box)->played, options().sampleRate, {});
+        BlackBoxEngine((*box)->played, options().sampleRate, PredistortionControls {});
         return;
     }
     requireRunnable(std::get<Model>(model), options());

@@ -45,6 +45,12 @@ struct Identification {
     bool operator==(const Identification&) const = default;
 };
 
+/// A model that has followed what drifted, and what that is, for a person.
+struct Adapted {
+    Model model;
+    std::string words;
+};
+
 /// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back,
 /// identify models without physics. Every
 /// method may be called from any thread but the audio thread, and returns at once; orders are carried out one after the
@@ -64,6 +70,7 @@ public:
     void shape(const ShapeWish&);  ///< of the model that was identified; in place of a wish that waits
     void fitPnlss(const PnlssWish&);
     void put(const Identification&);  ///< what there was before; not an order
+    void adapt(const Model&);         ///< to the take, by what drifts with temperature and age
     void saveReport(const std::string& path);
     void saveTake(const std::string& folder);
 
@@ -80,6 +87,8 @@ public:
     Status status() const;
     std::shared_ptr<const Findings> findings() const;  ///< null before the first take
     Identification identification() const;
+    /// What came of the latest order to adapt, once.
+    std::optional<Adapted> takeAdapted();
 
     void wait() const;  ///< until nothing is under way
 
@@ -105,6 +114,7 @@ private:
     Status status_;
     std::shared_ptr<const Findings> findings_;
     Identification identification_;
+    std::optional<Adapted> adapted_;
     std::jthread thread_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session does for the page Identify.
+// What a session does with other models than those of the ladder: those of the page Identify, and one that has drifted.
 #include "Engine/Error.h"
+#include "Engine/Upkeep/Adaptation.h"
 #include "Plugin/Session.h"
 
 #include <utility>
@@ -73,6 +74,31 @@ void Session::fitPnlss(const PnlssWish& wish)
         put({linear, fitted});
         say(fitted->words);
     });
+}
+
+void Session::adapt(const Model& model)
+{
+    order([this, model](const Progress& progress) {
+        const auto now = findings();
+        if (!now)
+            throw Error(Error::Kind::usage,
+                        "There is no take to adapt the model to: record or open a short one first.");
+        if (!now->report.fitForUse())
+            throw Error(Error::Kind::data, now->report.verdict());
+        const auto adapted = adaptTo(model, *now->take, driftingParameters(model), progress);
+        const auto words = wordsOn(adapted);
+        {
+            const std::lock_guard lock(mutex_);
+            adapted_ = Adapted {adapted.drift.model, words};
+        }
+        say(words);
+    });
+}
+
+std::optional<Adapted> Session::takeAdapted()
+{
+    const std::lock_guard lock(mutex_);
+    return std::exchange(adapted_, std::nullopt);
 }
 
 }  // namespace excursion::plugin

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/TargetPanel.h"
 
+#include "Engine/BlackBox/BoxLinearPart.h"
 #include "Engine/Error.h"
+#include "Engine/Import/LevelCurve.h"
 #include "Plugin/TargetPlots.h"
 
 #include <nlohmann/json.hpp>
@@ -11,10 +13,24 @@ namespace {
 
 constexpr int gap = 6, high = 26;
 
+/// Which of the settings a kind of target has.
+bool belongs(std::size_t setting, Target::Kind kind)
+{
+    switch (kind) {
+    case Target::Kind::own:
+    case Target::Kind::resonance: return setting < 2;
+    case Target::Kind::closedBox: return setting == 2;
+    case Target::Kind::flat: return setting > 2;
+    default: return false;
+    }
+}
+
 }  // namespace
 
 TargetPanel::TargetPanel(Window& window)
-    : processor_(window.processor()), kind_(processor_.parameters().target(), &window.history())
+    : processor_(window.processor()),
+      history_(window.history()),
+      kind_(processor_.parameters().target(), &window.history())
 {
     kind_.box().setTooltip("What the linearized driver is to move like");
     picture_.addItemList({"Laws and distortion", "What the target costs"}, 1);
@@ -42,7 +58,7 @@ TargetPanel::TargetPanel(Window& window)
     add(kind_.box());
     add(picture_);
     const auto numbers = processor_.parameters().targetNumbers();
-    const std::array titles {"f0", "Q", "Volume"};
+    const std::array titles {"f0", "Q", "Volume", "From", "To"};
     for (std::size_t k = 0; k < settings_.size(); ++k) {
         auto& one = settings_[k];
         one.title.setText(titles[k], juce::dontSendNotification);
@@ -52,9 +68,41 @@ TargetPanel::TargetPanel(Window& window)
         add(one.title);
         add(one.dial->slider());
     }
+    load_.setTooltip("Lines of frequency in Hz and dB, as in an .frd; or drop the file here");
+    load_.onClick = [this] { choose(); };
+    add(load_);
     add(words_);
     add(plots_);
     follow();
+}
+
+void TargetPanel::choose()
+{
+    chooser_ = std::make_unique<juce::FileChooser>("Load a curve", juce::File(), "*.frd;*.txt;*.csv");
+    chooser_->launchAsync(juce::FileBrowserComponent::openMode | juce::FileBrowserComponent::canSelectFiles,
+                          [this](const juce::FileChooser& chosen) {
+                              if (chosen.getResult() != juce::File())
+                                  use(chosen.getResult());
+                          });
+}
+
+void TargetPanel::use(const juce::File& file)
+{
+    try {
+        const auto read = readLevelCurve(file.getFullPathName().toStdString());
+        auto recipe = processor_.parameters().recipe();
+        const auto before = recipe;
+        recipe.target.curve = targetCurve(read.frequency, read.db);
+        const auto put = [this](const Recipe& which) { processor_.parameters().set(which); };
+        history_.did(
+            "Target curve", [put, before] { put(before); }, [put, recipe] { put(recipe); });
+        put(recipe);
+        if (told)
+            told("The target follows " + file.getFileName() + ".", false);
+    } catch (const Error& error) {
+        if (told)
+            told(words(error.what()), true);
+    }
 }
 
 void TargetPanel::choosePicture(bool target)
@@ -91,17 +139,25 @@ void TargetPanel::ask()
         return;
     asked_ = std::move(question);
     words_.setText("What the target costs is being computed.", juce::dontSendNotification);  // not the one before
+    const auto box = processor_.box();
     const auto model = withoutOff(processor_.model(), recipe);
     Answer answer;
-    answer.controls = controlsOf(recipe, model);
-    answer.unit = model.electrical() ? "V" : "N";
+    answer.controls = box ? controlsOf(static_cast<const Settings&>(recipe), measuredDisplacement(box->played))
+                          : controlsOf(recipe, model);
+    answer.unit = (box ? box->played.box.input == "voltage" : model.electrical()) ? "V" : "N";
     const bool own = recipe.target.kind == Target::Kind::own;
     answer.used = !own && (recipe.mode == Mode::linearize || recipe.mode == Mode::audition);
     if (own)
         answer.controls.target.kind = Target::Kind::resonance;
-    forecast_.ask([model, answer, volts = recipe.fullScale]() mutable {
+    forecast_.ask([model, box, answer, volts = recipe.fullScale]() mutable {
         try {
-            answer.told = forecastTarget(model, answer.controls, volts);
+            if (box && !box->played.rehearsal)
+                answer.refusal = "A model that is not turned around has no target.";
+            else if (box)
+                answer.told = forecastTarget(box->played.box, box->played.region, box->played.rest,
+                                             *box->played.rehearsal, answer.controls, volts);
+            else
+                answer.told = forecastTarget(model, answer.controls, volts);
         } catch (const Error& error) {
             answer.refusal = std::string(error.what()) + " The own linear part is played.";
         }
@@ -139,9 +195,11 @@ void TargetPanel::resized()
     picture_.setBounds(row);
     area.removeFromTop(gap);
     const auto kind = processor_.parameters().settings().target.kind;
-    const bool box = kind == Target::Kind::closedBox, rows = pictured() || kind != Target::Kind::own;
+    const bool rows = pictured() || kind != Target::Kind::own,
+               curve = kind == Target::Kind::bands || kind == Target::Kind::response;
+    load_.setVisible(rows && curve);
     for (std::size_t k = 0; k < settings_.size(); ++k) {
-        const bool shown = rows && box == (k == 2);
+        const bool shown = rows && belongs(k, kind);
         settings_[k].title.setVisible(shown);
         settings_[k].dial->slider().setVisible(shown);
     }
@@ -150,14 +208,16 @@ void TargetPanel::resized()
     if (rows) {
         row = area.removeFromTop(high);
         area.removeFromTop(gap);
+        load_.setBounds(row.withWidth(juce::jmin(160, row.getWidth())));
         for (std::size_t k = 0; k < settings_.size(); ++k) {
             auto& one = settings_[k];
             if (!one.title.isVisible())
                 continue;
-            auto cell = k == 0 ? row.removeFromLeft(row.getWidth() / 2 - gap / 2) : row;
-            if (k == 0)
+            const bool first = k == 0 || k == 3;
+            auto cell = first ? row.removeFromLeft(row.getWidth() / 2 - gap / 2) : row;
+            if (first)
                 row.removeFromLeft(gap);
-            one.title.setBounds(cell.removeFromLeft(k == 2 ? 56 : 24));
+            one.title.setBounds(cell.removeFromLeft(k == 2 ? 56 : k == 3 ? 44 : 24));
             one.dial->slider().setBounds(cell);
         }
     }

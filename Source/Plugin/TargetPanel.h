@@ -17,9 +17,9 @@
 
 namespace excursion::plugin {
 
-/// What a linearized driver is to move like, and what that costs: its own linear part, another resonance or a closed
-/// box, with response, excursion and voltage before it is used. While the own linear part is played, the picture shows
-/// what the resonance as it is set would do.
+/// What a linearized loudspeaker is to move or sound like, and what that costs: its own linear part, another resonance,
+/// a closed box, a flat band, or a curve of a file, with response, excursion and voltage before it is used. While the
+/// own linear part is played, the picture shows what the resonance as it is set would do.
 class TargetPanel : public juce::Component {
 public:
     explicit TargetPanel(Window&);
@@ -43,17 +43,22 @@ private:
         bool used = false;
     };
     void follow();
+    void choose();
+    void use(const juce::File&);
     void ask();
     void show(const Answer&);
 
     Processor& processor_;
+    History& history_;
     ChoiceBox kind_;
     juce::ComboBox picture_;
     struct Setting {
         juce::Label title;
         std::unique_ptr<NumberDial> dial;
     };
-    std::array<Setting, 3> settings_;  ///< f0, Q, volume
+    std::array<Setting, 5> settings_;  ///< f0, Q, volume, and the ends of a flat band
+    juce::TextButton load_ {"Load a curve..."};
+    std::unique_ptr<juce::FileChooser> chooser_;
     juce::Label words_;
     PlotGrid plots_ {"Response, excursion and voltage of the target"};
     Forecast<Answer> forecast_;

@@ -57,35 +57,51 @@ std::string named(const Resonance& one)
 
 std::vector<Plot> targetPlots(const TargetForecast& told, const PredistortionControls& limits, const std::string& unit)
 {
-    auto response = overFrequency(told, "Response", {"over the plateau", "dB", false, 0.0, 0.0, {}}, told.ownDb,
-                                  told.targetDb);
-    double highest = 0.0;
+    auto response = overFrequency(told, "Response",
+                                  {told.equalizes ? "sound" : "over the plateau", "dB", false, 0.0, 0.0, {}},
+                                  told.ownDb, told.targetDb);
+    double highest = -1e9;
     for (const auto* curve : {&told.ownDb, &told.targetDb})
         highest = std::max(highest, *std::max_element(curve->begin(), curve->end()));
-    response.y.least = floorDb;
     response.y.most = stepDb * std::ceil(highest / stepDb + 0.1);
-    auto excursion = overFrequency(told, "Excursion of a sine at 0 dBFS", {"excursion", "mm", false, 0.0, 0.0, {}},
-                                   scaled(told.ownMoves, 1e3), scaled(told.targetMoves, 1e3));
-    addLimit(excursion, 1e3 * limits.displacementLimit);
+    response.y.least = response.y.most + floorDb - stepDb;
+    std::vector<Plot> plots;
+    plots.push_back(std::move(response));
+    if (!told.ownMoves.empty()) {
+        plots.push_back(overFrequency(told, "Excursion of a sine at 0 dBFS", {"excursion", "mm", false, 0.0, 0.0, {}},
+                                      scaled(told.ownMoves, 1e3), scaled(told.targetMoves, 1e3)));
+        addLimit(plots.back(), 1e3 * limits.displacementLimit);
+    }
     auto voltage = overFrequency(told, (unit == "V" ? "Voltage" : "Force") + std::string(" of a sine at 0 dBFS"),
                                  {unit == "V" ? "voltage" : "force", unit, false, 0.0, 0.0, {}}, told.ownVoltage,
                                  told.targetVoltage);
     addLimit(voltage, limits.voltageLimit);
-    return {std::move(response), std::move(excursion), std::move(voltage)};
+    plots.push_back(std::move(voltage));
+    return plots;
 }
 
 std::string wordsOf(const TargetForecast& told, const std::string& unit, bool used)
 {
     const auto& pink = told.targetPink;
     const bool lower = told.lowGainDb >= 0.0;
-    std::string text = (used ? "In use: " : "Not in use: ") + named(told.played) + " in place of " + named(told.own)
-                       + ". It takes " + decibels(std::abs(told.lowGainDb)) + (lower ? " more" : " less")
-                       + " excursion and voltage at the lowest notes. Pink noise at 0 dBFS moves the cone "
-                       + engineering(pink.displacement, "m", 2)
-                       + " (own: " + engineering(told.ownPink.displacement, "m", 2) + ")";
-    // Where the cone would go too far the voltage at 0 dBFS is no matter.
-    if (!(pink.roomDb < 0.0 && pink.byDisplacement))
-        text += " and needs " + engineering(pink.voltage, unit, 2);
+    std::string text = used ? "In use: " : "Not in use: ";
+    if (told.equalizes)
+        text += "equalized, which takes " + decibels(told.mostGainDb) + " more voltage at most, at "
+                + engineering(told.mostGainFrequency, "Hz", 2) + ".";
+    else
+        text += named(told.played) + " in place of " + named(told.own) + ". It takes "
+                + decibels(std::abs(told.lowGainDb)) + (lower ? " more" : " less")
+                + " excursion and voltage at the lowest notes.";
+    if (told.ownMoves.empty()) {
+        text += " The model does not tell the excursion. Pink noise at 0 dBFS needs "
+                + engineering(pink.voltage, unit, 2);
+    } else {
+        text += " Pink noise at 0 dBFS moves the cone " + engineering(pink.displacement, "m", 2)
+                + " (own: " + engineering(told.ownPink.displacement, "m", 2) + ")";
+        // Where the cone would go too far the voltage at 0 dBFS is no matter.
+        if (!(pink.roomDb < 0.0 && pink.byDisplacement))
+            text += " and needs " + engineering(pink.voltage, unit, 2);
+    }
     if (!std::isfinite(pink.roomDb))
         return text + "; there is no limit.";
     if (pink.roomDb >= 0.0)

@@ -64,7 +64,7 @@ TEST_CASE("The distortion of random PNLSS models goes down as the rehearsal says
         const double before = distortionDb(simulate(model, vectorOf(u)).col(0), straight, 16384),
                      after = distortionDb(simulate(model, vectorOf(bent)).col(0), straight, 16384);
         INFO("seed " << seed << ": " << before << " to " << after << " dB; rehearsed " << box.rehearsal.beforeDb
-                     << " to " << box.rehearsal.afterDb << ", turned down by " << predistorter.take().reduction);
+                     << " to " << box.rehearsal.afterDb << ", turned down by " << predistorter.take().regionReduction);
         CHECK(box.rehearsal.gainDb() > 25.0);
         REQUIRE(box.rehearsal.frequency.size() > 15);
         REQUIRE(box.rehearsal.before.size() == box.rehearsal.frequency.size());
@@ -246,7 +246,7 @@ TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[pred
         REQUIRE(std::abs(sample) <= bound);
     }
     const auto meters = predistorter.take();
-    CHECK(meters.reduction > 20.0);
+    CHECK(meters.regionReduction > 20.0);
     CHECK(meters.region < 2.0);
 }
 

@@ -2,6 +2,7 @@
 // The whole way on the virtual bench: a PNLSS model of a noisy take, turned around, and the loudspeaker itself driven
 // with what comes out. The bench shares no line with the models.
 #include "BlackBox/RandomModels.h"
+#include "Predistortion/Programme.h"
 
 #include "Bench/Draw.h"
 #include "Engine/Estimate/Bla.h"
@@ -17,6 +18,18 @@
 using namespace excursion;
 
 namespace {
+
+/// Noise that is far too loud, and bursts at the resonance, for two seconds.
+std::vector<double> loudProgramme(double peak, double sampleRate)
+{
+    Draw draw(4);
+    auto u = pinkNoise(draw, static_cast<std::size_t>(2.0 * sampleRate));
+    for (std::size_t n = 0; n < u.size(); ++n) {
+        const double t = static_cast<double>(n) / sampleRate, burst = std::fmod(t, 0.5) < 0.2 ? 1.0 : 0.0;
+        u[n] = peak * (u[n] + burst * std::sin(2.0 * std::numbers::pi * 45.0 * t));
+    }
+    return u;
+}
 
 /// Power on the lines that were not played, of that on those that were: what a person measures as distortion.
 double onSilentLines(std::span<const double> period, const std::vector<int>& lines)
@@ -83,7 +96,23 @@ TEST_CASE("A loudspeaker of the bench is linearized by a PNLSS model of its take
         const auto told = box.rehearsal;
         WARN("seed " << seed << ": model " << fit.validationDb << " dB, told " << told.beforeDb << " to "
                      << told.afterDb << " dB; the loudspeaker " << was << " to " << is << " dB, turned down by "
-                     << predistorter.take().reduction << " dB");
+                     << predistorter.take().regionReduction << " dB");
         CHECK(was - is > 25.0);
+
+        // Far too loud, with a limit that a model of this error can promise: the loudspeaker itself keeps it.
+        PredistortionControls controls;
+        controls.displacementLimit = 0.6 * box.region.farthest;
+        controls.voltageLimit = stimulus.peak;
+        controls.margin = 0.05;
+        BlackBoxPredistorter careful(box, take.sampleRate, controls);
+        auto loud = loudProgramme(2.0 * stimulus.peak, take.sampleRate);
+        careful.process(loud.data(), loud.data(), loud.size());
+        const auto moved = bench::play(drawn.speaker, loud, take.sampleRate, {Quantity::displacement});
+        const double reached = peakOf(moved.find(Quantity::displacement)->samples) / controls.displacementLimit;
+        WARN("too loud: the loudspeaker goes to " << reached << " of its limit, told "
+                                                  << careful.take().displacement / controls.displacementLimit);
+        CHECK(reached < 1.0);
+        CHECK(reached > 0.7);
+        CHECK(peakOf(loud) <= controls.voltageLimit);
     }
 }

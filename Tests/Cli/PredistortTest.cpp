@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Chain.h"
+#include "Engine/Signal/Level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <numbers>
 
 using namespace excursion::test;
+using excursion::peakOf;
 using excursion::readWav;
 using excursion::SampleFormat;
 using excursion::writeWav;
@@ -297,31 +299,58 @@ TEST_CASE("predistort turns around a model without physics, and says what that g
     auto document = CubicModel().document();
     std::ofstream(model) << document.dump();
     const std::vector<std::string> command {"predistort", model, in, out, "--full-scale", "20"};
+    const auto sent = [&out] {  // V
+        auto volts = readWav(out).channels.at(0);
+        for (auto& sample : volts)
+            sample *= 20.0;
+        return volts;
+    };
+    // By itself it goes no farther than its stimulus did, which is less than 2 V at the resonance.
+    CHECK(runProgram(scratch.folder(), command).code == 1);
+    CHECK(peakOf(CubicModel::play(sent(), true)) < 1.5e-3);
     auto scripted = command;
-    scripted.emplace_back("--json");
+    scripted.insert(scripted.end(), {"--limit-x", "0.01", "--json"});
     const auto told = runProgram(scratch.folder(), scripted);
     INFO(told.out << told.err);
     REQUIRE(told.code == 0);
     const auto said = documentOf(told, "excursion-predistort");
     CHECK(said.at("gainDb").get<double>() > 25.0);
     CHECK(said.at("limited") == false);
-    auto volts = tone(2.0), bent = readWav(out).channels.at(0);
+    const auto volts = tone(2.0), bent = sent();
     REQUIRE(bent.size() == volts.size());
-    for (auto& sample : bent)
-        sample *= 20.0;
     const auto straight = CubicModel::play(volts, false);
     const double was = distance(CubicModel::play(volts, true), straight),
                  is = distance(CubicModel::play(bent, true), straight);
     CHECK(is < was / 18.0);  // 25 dB
     CHECK(runProgram(scratch.folder(), command).out.find("a gain of") != std::string::npos);
 
-    // What it was fitted under has to be known, and what is of a cone is refused.
-    auto limited = command;
-    limited.insert(limited.end(), {"--limit-x", "0.001"});
-    CHECK(runProgram(scratch.folder(), limited).code == 2);
-    auto aimed = command;
-    aimed.insert(aimed.end(), {"--target-f0", "30"});
-    CHECK(runProgram(scratch.folder(), aimed).code == 2);
+    // A limit of the excursion is kept, as the model tells that.
+    const auto with = [&](std::initializer_list<std::string> more) {
+        auto words = command;
+        words.insert(words.end(), more);
+        return runProgram(scratch.folder(), words);
+    };
+    CHECK(with({"--limit-x", "0.001"}).code == 1);
+    const double farthest = peakOf(CubicModel::play(sent(), true));
+    CHECK(farthest < 1.01e-3);
+    CHECK(farthest > 0.8e-3);
+    CHECK(peakOf(CubicModel::play(volts, true)) > 1.2e-3);
+    // So is one of the power, once the coil's resistance is given.
+    const auto cold = with({"--limit-p", "0.1"});
+    CHECK(cold.code == 2);
+    CHECK(cold.err.find("--coil-resistance") != std::string::npos);
+    CHECK(with({"--limit-p", "0.1", "--coil-resistance", "6"}).code == 1);
+    // Another resonance is put in its place.
+    const auto aimed = with({"--target-f0", "50", "--limit-x", "0.1"});
+    INFO(aimed.out << aimed.err);
+    CHECK(aimed.out.find(" 60.1 Hz") != std::string::npos);
+    CHECK(with({"--target-box", "10"}).code == 4);
+    // Of another output nothing is known of the excursion.
+    auto heard = document;
+    heard["linear"]["outputs"] = {"pressure"};
+    std::ofstream(model) << heard.dump();
+    CHECK(with({"--limit-x", "0.001"}).code == 2);
+    // What it was fitted under has to be known.
     document.erase("stimulus");
     std::ofstream(model) << document.dump();
     const auto refused = runProgram(scratch.folder(), command);

@@ -70,6 +70,7 @@ def main(path):
         one.mode = mode
         one.raw_state = with_model(one.raw_state, cubic())
         one.volts_at_0_dbfs = volts
+        one.excursion_limit = 400.0   # %: by itself it goes no farther than its stimulus did
         # Its latency depends on the rate, and this host takes out what it was told before it prepares: at 44100 Hz.
         one.process(np.zeros((2, 4800), np.float32), rate)
         assert str(one.mode) == mode

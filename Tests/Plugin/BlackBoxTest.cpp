@@ -6,6 +6,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 #include "Plugin/Processor.h"
 
 #include <catch2/catch.hpp>
@@ -221,6 +222,50 @@ TEST_CASE("The plugin's audition has less distortion than its speaker, at rates 
         INFO(sampleRate << " Hz: " << left[0] << " to " << left[1] << " dB");
         CHECK(left[0] > -45.0);
         CHECK(left[1] < left[0] - 20.0);
+    }
+}
+
+TEST_CASE("A model of the excursion keeps excursion, voltage and heat within their limits, played by its own class",
+          "[plugin][blackbox][protection]")
+{
+    for (const auto& box : boxes()) {
+        const auto& played = box->played;
+        if (!played.rehearsal)
+            continue;
+        const double range = measuredDisplacement(played), ohms = 6.0;
+        Processor processor;
+        auto recipe = processor.parameters().recipe();
+        recipe.mode = Mode::linearize;
+        recipe.fullScale = 4.0 * played.box.stimulus.peak;
+        recipe.displacementLimit = 0.5;
+        recipe.voltageLimit = 0.8 * played.box.stimulus.peak;
+        recipe.powerLimit = 0.2 * played.box.stimulus.rms * played.box.stimulus.rms / ohms;
+        recipe.coilResistance = ohms;
+        processor.parameters().set(recipe);
+        processor.setModel(box);
+        processor.prepareToPlay(rate, 512);
+        auto volts = noise(played.box.stimulus, 1.0, rate, 8, 6);
+        for (std::size_t n = 0; n < volts.size(); ++n)
+            volts[n] = std::clamp(3.0 * volts[n] * (n % 20000 < 10000 ? 0.2 : 1.0), -recipe.fullScale,
+                                  recipe.fullScale);
+        const auto out = through(processor, volts);
+        const auto y = simulated(*box, out);
+        double heat = 0.0, warmest = 0.0;
+        for (const double u : out) {
+            heat += (1.0 - std::exp(-1.0 / rate)) * (u * u / ohms - heat);
+            warmest = std::max(warmest, heat);
+        }
+        INFO(played.box.kind << " of the " << played.box.output << ": " << y.cwiseAbs().maxCoeff() / range
+                             << " of what was measured, " << peakOf(out) << " V of " << recipe.voltageLimit << ", "
+                             << warmest << " W of " << recipe.powerLimit);
+        if (std::isfinite(range))
+            CHECK((y.array() - y[0]).cwiseAbs().maxCoeff() < 0.505 * range);
+        CHECK(peakOf(out) <= 1.0001 * recipe.voltageLimit);
+        CHECK(warmest < 1.01 * recipe.powerLimit);
+        CHECK(warmest > 0.2 * recipe.powerLimit);  // half of the time it is quiet
+        const auto meters = processor.take();
+        CHECK((meters.displacement > 0.0) == std::isfinite(range));
+        CHECK(meters.powerReduction > 0.0);
     }
 }
 

@@ -159,7 +159,7 @@ TEST_CASE("What a person moved is undone and done again; what a host moved is no
     auto& parameters = processor.parameters();
     auto& number = *parameters.numbers()[0];
     const auto dials = plugin::all<plugin::Dial>(editor.body());
-    REQUIRE(dials.size() == parameters.numbers().size());
+    REQUIRE(dials.size() + 1 == parameters.numbers().size());  // a driver knows the resistance of its coil
     const double first = number.get();
     CHECK_FALSE(editor.history().canUndo());
 

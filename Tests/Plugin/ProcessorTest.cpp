@@ -218,9 +218,12 @@ TEST_CASE("An effect is switched off while audio runs, and a model replaced, wit
     CHECK(distance(period(95200), period(180000)) > 1e-2);  // another driver
 }
 
-TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
+namespace {
+
+/// Whatever a host and a person do, one after the other.
+void operateAtRandom(unsigned seed, int operations)
 {
-    std::mt19937 random(11);
+    std::mt19937 random(seed);
     Processor processor;
     double rate = 48000.0;
     int channels = 2;
@@ -229,7 +232,7 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
     auto kept = stateOf(processor);
     bool finite = true;
     const auto box = plugin::loadedBox(everyClass().front(), "a test");
-    for (int operation = 0; operation < 2000; ++operation) {
+    for (int operation = 0; operation < operations; ++operation) {
         switch (random() % 12) {
         case 0:
             rate = std::array {44100.0, 48000.0, 96000.0, 100.0, 1e6}[random() % 5];  // where no engine runs, too
@@ -252,7 +255,16 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
                 static_cast<float>(random() % 1001) / 1000.0f);
             break;
         }
-        case 6: processor.reset(); break;
+        case 6:
+            if (random() % 2 == 0) {  // what no parameter is
+                auto recipe = processor.parameters().recipe();
+                for (auto& level : recipe.target.curve)
+                    level = random() % 3 == 0 ? Target::notGiven : static_cast<double>(random() % 60) - 30.0;
+                processor.parameters().set(recipe);
+            } else {
+                processor.reset();
+            }
+            break;
         default: {
             juce::AudioBuffer<float> buffer(channels,
                                             static_cast<int>(random() % 5 == 0 ? random() % 3000 : random() % 200));
@@ -270,3 +282,9 @@ TEST_CASE("2,000 random operations leave finite samples", "[plugin]")
     }
     CHECK(finite);
 }
+
+}  // namespace
+
+TEST_CASE("2,000 random operations leave finite samples", "[plugin]") { operateAtRandom(11, 2000); }
+
+TEST_CASE("10,000 random operations leave finite samples", "[.minutes]") { operateAtRandom(12, 10000); }

@@ -32,9 +32,14 @@ Recipe drawn(std::mt19937& random)
     recipe.voltageLimit = within(Settings::voltages);
     recipe.powerLimit = within(Settings::powers);
     recipe.margin = within(Settings::margins);
+    recipe.coilResistance = within(Settings::resistances);
     recipe.trimDb = within(Settings::trims);
-    recipe.target = {static_cast<Target::Kind>(random() % 3), within(Settings::targetFrequencies),
+    recipe.target = {static_cast<Target::Kind>(random() % 6), within(Settings::targetFrequencies),
                      within(Settings::targetQualities), within(Settings::targetVolumes)};
+    recipe.target.low = within(Settings::targetEnds);
+    recipe.target.high = within(Settings::targetEnds);
+    for (auto& level : recipe.target.curve)
+        level = random() % 4 == 0 ? Target::notGiven : within(Settings::targetLevels);
     recipe.title = "of chance";
     return recipe;
 }
@@ -49,9 +54,19 @@ TEST_CASE(
     std::mt19937 random(2);
     const auto recipe = drawn(random);
     auto document = documentOf(recipe);
-    CHECK(document["version"] == 3);
+    CHECK(document["version"] == 4);
     CHECK(toJson(read(document)) == toJson(recipe));
     auto expected = recipe;
+    document["version"] = 3;
+    document.erase("coilResistance");
+    expected.coilResistance = 0.0;
+    for (const auto* later : {"low", "high", "curve"})
+        document["target"].erase(later);
+    document["target"]["kind"] = "closed-box";
+    expected.target = {Target::Kind::closedBox, recipe.target.frequency, recipe.target.quality, recipe.target.volume};
+    CHECK(toJson(read(document)) == toJson(expected));
+    document["version"] = 4;
+    CHECK_THROWS_WITH(read(document), Catch::Contains("coilResistance"));
     document["version"] = 2;
     document.erase("target");
     expected.target = {};
@@ -66,9 +81,9 @@ TEST_CASE(
     CHECK(toJson(read(document)) == toJson(expected));
     document["version"] = 2;
     CHECK_THROWS_WITH(read(document), Catch::Contains("powerLimit"));
-    for (const nlohmann::json& version : {nlohmann::json(4), nlohmann::json("2"), nlohmann::json(0)}) {
+    for (const nlohmann::json& version : {nlohmann::json(5), nlohmann::json("2"), nlohmann::json(0)}) {
         document["version"] = version;
-        CHECK_THROWS_WITH(read(document), Catch::Contains("1, 2 or 3"));
+        CHECK_THROWS_WITH(read(document), Catch::Contains("1, 2, 3 or 4"));
     }
     for (const auto& [key, value] :
          {std::pair {"powerLimit", 0.0}, {"powerLimit", 10001.0}, {"margin", -0.1}, {"margin", 0.31}}) {
@@ -157,5 +172,5 @@ TEST_CASE("Parameters keep their places when later versions have more of them", 
              "effect-friction "
              "effect-coil-heating effect-vented-box effect-doppler effect-cone-breakup effect-side-resonance target "
              "targetF0 "
-             "targetQ targetVolume");
+             "targetQ targetVolume coilResistance targetLow targetHigh");
 }

@@ -69,7 +69,7 @@ TEST_CASE("The plugin plays the target of its recipe, smoothly put in, and none 
     const Target target {Target::Kind::resonance, 35.0, 0.6, 0.02};
     processor.prepareToPlay(rate, 480);
     put(processor, Mode::linearize, target);
-    TargetFilter expected(processor.model(), rate);
+    TargetFilter expected(OwnLinearPart(processor.model()), rate);
     expected.aim(target);
     expected.jump();
     for (const double frequency : {20.0, 40.0, 100.0, 400.0}) {
@@ -142,4 +142,57 @@ TEST_CASE("The last page tells what a target costs, also while it is not in use,
     CHECK(told("out of reach"));
     // Without a cone there is no target.
     CHECK(panel.isVisible());
+}
+
+TEST_CASE("A flat band and the response of a file are targets of the last page, told before they are used, kept with "
+          "the state",
+          "[plugin][target]")
+{
+    Processor processor, other;
+    Editor editor(processor);
+    editor.go(PageName::linearize);
+    auto& panel = dynamic_cast<plugin::LinearizePage&>(editor.page(PageName::linearize)).target();
+    Target target;
+    target.kind = Target::Kind::flat;
+    target.low = 60.0;
+    target.high = 400.0;
+    target.curve[12] = 3.25;
+    target.curve[13] = Target::notGiven;
+    put(processor, Mode::speaker, target);
+    panel.choosePicture(true);
+    juce::String text;
+    for (int k = 0; k < 3000 && !text.contains("equalized"); ++k) {
+        editor.update();
+        for (auto* label : plugin::all<juce::Label>(panel))
+            if (label->getTitle() == "What the target costs")
+                text = label->getText();
+        juce::Thread::sleep(20);
+    }
+    INFO(text);
+    CHECK(text.startsWith("Not in use: equalized"));
+    const auto plots = plugin::all<plugin::PlotView>(panel);
+    REQUIRE(plots.size() == 3);
+    const auto& curve = plots.front()->plot().series[1];  // the target
+    double least = 1e9, most = -1e9;
+    for (std::size_t k = 0; k < curve.x.size(); ++k)
+        if (curve.x[k] > target.low && curve.x[k] < target.high) {
+            least = std::min(least, curve.y[k]);
+            most = std::max(most, curve.y[k]);
+        }
+    CHECK(most - least < 1.2);
+    const auto state = stateOf(processor);
+    other.setStateInformation(state.getData(), static_cast<int>(state.getSize()));
+    CHECK(other.parameters().recipe().target == target);
+    CHECK((stateOf(other) == state));
+
+    processor.prepareToPlay(rate, 480);
+    put(processor, Mode::linearize, target);
+    TargetFilter expected(OwnLinearPart(processor.model()), rate);
+    expected.aim(target);
+    expected.jump();
+    for (const double frequency : {60.0, 100.0, 400.0}) {
+        const auto found = gain(processor, frequency), truth = expected.at(frequency);
+        INFO(frequency << " Hz");
+        CHECK(std::abs(found - truth) < 2e-3 * std::abs(truth));
+    }
 }

@@ -235,7 +235,7 @@ TEST_CASE("A recipe is refused by field when it makes no sense", "[chain]")
     refused("voltageLimit", -1);
     refused("trimDb", 100);
     refused("off", nlohmann::json::array({"warp-drive"}));
-    refused("version", 4);
+    refused("version", 5);
     refused("target", "low");
 }
 

@@ -87,13 +87,13 @@ TEST_CASE("The own resonance is that of Thiele and Small", "[predistortion][targ
 {
     const auto truth = ownOf({});
     for (const auto& model : {midbass(), everything()}) {
-        const OwnResonance own(model);
+        const OwnLinearPart own(model);
         REQUIRE(own.single);
         CHECK(own.single->frequency == Approx(truth.frequency).epsilon(1e-12));
         CHECK(own.single->quality == Approx(truth.quality).epsilon(1e-12));
     }
     const auto mechanical = makeModel("mechanical");
-    const OwnResonance force(mechanical);
+    const OwnLinearPart force(mechanical);
     REQUIRE(force.single);
     CHECK(force.single->frequency == Approx(resonanceOf(mechanical.base().parameters)).epsilon(1e-12));
 }
@@ -102,12 +102,12 @@ TEST_CASE("In a vented box two resonances share the motion: no target, and a sen
           "[predistortion][target]")
 {
     auto model = withStrong(midbass(), effectNamed("vented-box"));
-    CHECK(OwnResonance(model).single);  // a port that takes hardly part is none
+    CHECK(OwnLinearPart(model).single);  // a port that takes hardly part is none
     for (auto& parameter : model.components.back().parameters)
         parameter.value = parameter.name == "Kb"   ? 3000.0
                           : parameter.name == "fB" ? 45.0
                                                    : std::min(parameter.value, 0.1);
-    const OwnResonance vented(model);
+    const OwnLinearPart vented(model);
     CHECK_FALSE(vented.single);
     CHECK_THROWS_WITH(vented.require({Target::Kind::resonance, 30.0, 0.7, 0.02}), Catch::Contains("vented box"));
     CHECK_NOTHROW(vented.require({}));
@@ -151,7 +151,7 @@ TEST_CASE("Predistorter and loudspeaker have the target's response, to below f0 
 TEST_CASE("The filter of a target is exact at 0 and at its resonance, and 1 far above", "[predistortion][target]")
 {
     for (const double rate : {44100.0, 48000.0, 96000.0}) {
-        TargetFilter filter(midbass(), rate);
+        TargetFilter filter(OwnLinearPart(midbass()), rate);
         const auto own = *filter.own().single;
         filter.aim({Target::Kind::resonance, 31.0, 0.6, 0.02});
         filter.jump();
@@ -180,7 +180,7 @@ TEST_CASE("A closed box is played as the driver would be in it", "[predistortion
     auto model = midbass();
     model.baseParameter("Le").value = driver.Le;
     model.path.parameters.front().value = driver.coneArea;
-    TargetFilter filter(model, 96000.0);
+    TargetFilter filter(OwnLinearPart(model), 96000.0);
     filter.aim({Target::Kind::closedBox, 40.0, 0.7, volume});
     filter.jump();
     for (double f = 5.0; f < 500.0; f *= 1.1) {
@@ -188,7 +188,7 @@ TEST_CASE("A closed box is played as the driver would be in it", "[predistortion
         CHECK(std::abs(db(std::abs(played / truth))) < 0.01);
     }
     // Where the area is not known, a box is none.
-    const OwnResonance own(midbass());
+    const OwnLinearPart own(midbass());
     CHECK_FALSE(own.suspensionVolume);
     CHECK_THROWS_WITH(own.require({Target::Kind::closedBox, 40.0, 0.7, volume}), Catch::Contains("area"));
     for (const Target& refused : {Target {Target::Kind::closedBox, 40.0, 0.7, volume}, {Target::Kind::resonance, 4.0}})
@@ -216,7 +216,7 @@ TEST_CASE("Linear to -90 dB at 75 % of xmax, towards a target as towards the own
         for (std::size_t n = 0; n < 2048; ++n)
             u[n] *= 0.5 - 0.5 * std::cos(pi * static_cast<double>(n) / 2048.0);
         const auto targeted = [&](std::vector<double> samples) {
-            TargetFilter filter(model, rate);
+            TargetFilter filter(OwnLinearPart(model), rate);
             filter.aim(controls.target);
             filter.jump();
             for (auto& sample : samples)
@@ -323,7 +323,7 @@ TEST_CASE("A target comes and goes without a click, and without one the samples 
         apart = std::max(apart, std::abs(out[n] - expected[n]));
     CHECK(apart < 1e-6 * peak(expected));
 
-    TargetFilter none(model, rate);
+    TargetFilter none(OwnLinearPart(model), rate);
     for (const double sample : noise(1000, 5.0))
         REQUIRE(none.step(sample) == sample);
 }

@@ -11,6 +11,7 @@ tables; its ``document`` is the program's JSON document. All numbers are in SI u
 Trouble is an ``excursion.Error`` with one sentence.
 """
 
+from ._adapt import Adapted, adapt
 from ._blackbox import Pnlss, Ranking, pnlss, rank
 from ._check import Check, check
 from ._comparison import Comparison, ResidualCurve, compare
@@ -41,6 +42,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "QUANTITIES",
+    "Adapted",
     "Added",
     "Check",
     "Comparison",
@@ -71,6 +73,7 @@ __all__ = [
     "Take",
     "Virtual",
     "WhatIf",
+    "adapt",
     "add",
     "bla",
     "check",

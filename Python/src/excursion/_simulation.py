@@ -131,6 +131,9 @@ def predistort(
     target_f0: float | None = None,
     target_q: float | None = None,
     target_box: float | None = None,
+    target_flat: tuple[float, float] | None = None,
+    target_response: PathLike | None = None,
+    coil_resistance: float | None = None,
     amount: float | None = None,
     oversampling: int | None = None,
     progress: Progress | None = None,
@@ -147,6 +150,9 @@ def predistort(
     :param target_f0: Hz at which the linearized loudspeaker is to resonate; by default where the driver does
     :param target_q: and with which total Q; by default the driver's own. What the two take is in the document, `target`
     :param target_box: in their place: litres of the closed box as in which it is to move
+    :param target_flat: in their place: Hz, between which two its sound is to be flat
+    :param target_response: in their place: a file of Hz and dB, such as an .frd, that its sound is to follow
+    :param coil_resistance: ohm; with it limit_p is kept with a model without physics, too
     :param amount: 0: the signal as it is, 1: fully linearized, the default
     :param oversampling: 1, 2 (the default) or 4
 
@@ -173,16 +179,20 @@ def predistort(
         "--target-f0": target_f0,
         "--target-q": target_q,
         "--target-box": target_box,
+        "--target-flat": target_flat,
+        "--coil-resistance": coil_resistance,
         "--amount": amount,
         "--oversampling": oversampling,
     }
     with Call(progress) as call:
+        if target_response is not None:
+            options["--target-response"] = call.path(target_response)
         soundfile.write(call.folder / "in.wav", u / scale, int(rate), subtype="DOUBLE", format="WAV")
         document = call.run(
             "predistort", [model_argument(call, model), "in.wav", "out.wav"], options, "excursion-predistort"
         )
         bent, _ = soundfile.read(call.folder / "out.wav", dtype="float64", always_2d=u.ndim == 2)
-        faults = sum(channel["faults"] for channel in document["channels"])
+        faults = sum(channel.get("faults", 0) for channel in document["channels"])
         if faults:
             _warn(f"The predistorter had to start anew {faults} times: the model is driven far beyond what it knows.")
         return Predistortion(document, bent * scale, float(rate))

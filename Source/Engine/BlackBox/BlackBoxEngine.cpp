@@ -9,6 +9,7 @@ namespace excursion {
 BlackBoxEngine::BlackBoxEngine(const PlayedBox& played, double sampleRate, const PredistortionControls& controls)
     : speaker_(played.box, played.region, played.rest, sampleRate),
       perOutput_(played.perOutput),
+      moves_(tellsExcursion(played.box)),
       waiting_(static_cast<std::size_t>(speaker_.latency()))
 {
     if (played.rehearsal)
@@ -37,7 +38,7 @@ void BlackBoxEngine::resetBending()
 void BlackBoxEngine::set(const PredistortionControls& controls)
 {
     if (bend_)
-        bend_->set({controls.amount, controls.voltageLimit});
+        bend_->set(controls);
 }
 
 void BlackBoxEngine::turn(bool bends)
@@ -74,11 +75,14 @@ ChainEngine::Meters BlackBoxEngine::take()
     Meters meters;
     const auto speaker = speaker_.take();
     meters.region = speaker.region;
+    if (moves_)
+        meters.speaker.displacement = speaker.output;
     meters.faults = speaker.faults + faults_.load(std::memory_order_relaxed);
     if (bend_) {
         const auto bend = bend_->take();
-        meters.predistorter.voltage = bend.out;
-        meters.predistorter.displacementReduction = bend.reduction;
+        meters.predistorter = bend;
+        // What keeps to where the fit was keeps the cone from going too far as well.
+        meters.predistorter.displacementReduction += bend.regionReduction;
         meters.region = std::max(meters.region, bend.region);
         meters.faults += bend.faults;
     }

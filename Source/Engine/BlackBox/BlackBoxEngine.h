@@ -15,8 +15,8 @@ namespace excursion {
 
 /// A model without physics in a chain: BlackBoxPredistorter, where the model can be turned around, and behind it the
 /// BlackBoxSpeaker. The model's output is heard at the level that the signal has under the stimulus of the fit (see
-/// PlayedBox::perOutput). Of the controls it knows amount and limit of the voltage; in place of an excursion it keeps
-/// to the region of the fit, which the meters tell as what the motion was turned down by.
+/// PlayedBox::perOutput). Besides the limits (see BlackBoxPredistorter) it keeps to the region of the fit, which the
+/// meters tell as what the motion was turned down by.
 class BlackBoxEngine : public ChainEngine {
 public:
     /// Throws Error (usage) for a rate that is more than 16 times the model's or less than a sixteenth.
@@ -38,6 +38,7 @@ private:
     std::optional<BlackBoxPredistorter> bend_;
     BlackBoxSpeaker speaker_;
     double perOutput_;
+    bool moves_;                   ///< the output is the excursion
     std::vector<double> waiting_;  ///< a ring: what is not played waits as long as the speaker takes
     std::size_t at_ = 0;
     std::array<double, longestPart> sound_ {};

@@ -37,7 +37,7 @@ BlackBoxLinearizer::BlackBoxLinearizer(const BlackBox& box, const Region& region
       slowFirst_(width_),
       slow_(width_),
       moved_(width_),
-      past_(1 + step_.seen() + width_, static_cast<std::size_t>(design.passes) * preview_ + 1)
+      past_(2 + step_.seen() + width_, static_cast<std::size_t>(design.passes) * preview_ + 1)
 {
     for (Eigen::Index k = 0; k < design.control.K.size(); ++k)
         K_[static_cast<std::size_t>(k)] = design.control.K[k];
@@ -64,11 +64,15 @@ void BlackBoxLinearizer::reset()
     std::vector<double>& z = z_;
     step_.see(reference_.data(), 0.0, z.data());
     step_.addImplicit(q_.data(), z.data());
+    auto& scratch = passes_.front().e;  // an audio thread may call this
+    std::copy(reference_.begin(), reference_.end(), scratch.begin());
+    const double still = step_.advance(scratch.data(), 0.0, q_.data());
     for (std::size_t k = 0; k <= passes_.size() * preview_; ++k) {
         double* fresh = past_.next();
         fresh[0] = 0.0;
         std::copy(z.begin(), z.end() - 1, fresh + 1);
         std::copy(q_.begin(), q_.end(), fresh + 1 + step_.seen());
+        fresh[1 + step_.seen() + width_] = still;
         past_.settle();
     }
     for (auto& pass : passes_) {
@@ -93,7 +97,7 @@ BlackBoxLinearizer::Sample BlackBoxLinearizer::step(double u, double largest, do
     for (std::size_t k = 0; k < width_; ++k)
         ahead[k] = q_[k] - slow_[k];
     passes_.front().ahead.settle();
-    step_.advance(reference_.data(), u, slow_.data());
+    fresh[1 + seen + width_] = step_.advance(reference_.data(), u, slow_.data());
     for (std::size_t k = 0; k < width_; ++k) {
         slowFirst_[k] += slowShare_ * (q_[k] - slowFirst_[k]);
         slow_[k] += slowShare_ * (slowFirst_[k] - slow_[k]);
@@ -108,6 +112,7 @@ BlackBoxLinearizer::Sample BlackBoxLinearizer::step(double u, double largest, do
         const double* const slow = then + 1 + seen;
         double w = -innerProduct(K_.data(), pass.e.data(), K_.size())
                    - innerProduct(g_.data(), pass.ahead.oldest(), g_.size());
+        const double wanted = then[0] + w;
         if (last) {
             w = std::clamp(w, -largest, largest);
             const double room = std::max(voltageLimit - std::abs(then[0]), 0.0);
@@ -123,7 +128,7 @@ BlackBoxLinearizer::Sample BlackBoxLinearizer::step(double u, double largest, do
             difference[k] = pass.q[k] - slow[k];
         const double y = step_.advance(pass.e.data(), w, difference);
         if (last)
-            sample = {then[0], w, y, distance};
+            sample = {then[0], w, wanted, slow[width_] + y, y, distance};
         else
             passes_[p + 1].ahead.settle();
     }

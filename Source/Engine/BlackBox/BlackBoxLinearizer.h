@@ -42,6 +42,8 @@ public:
     struct Sample {
         double input = 0.0;       ///< what came in `latency()` samples ago
         double correction = 0.0;  ///< what is to be added to it
+        double wanted = 0.0;      ///< both together, without any bound
+        double output = 0.0;      ///< what the model makes of both
         double residual = 0.0;    ///< what is left of the distortion, as the model has it
         double distance = 0.0;    ///< how far out in the region the box is, 1 at its border
     };
@@ -49,6 +51,9 @@ public:
     /// @param u              finite
     /// @param largest        the correction is kept to this
     /// @param voltageLimit   input and correction together are kept to this, as far as the correction can
+    /// The slow part of q, q_r: of the latest input, not of what comes out.
+    const std::vector<double>& slow() const { return slow_; }
+
     Sample step(double u, double largest = std::numeric_limits<double>::infinity(),
                 double voltageLimit = std::numeric_limits<double>::infinity());
 
@@ -83,7 +88,7 @@ private:
     double slowShare_;
     std::vector<double> reference_, z_, q_, slowFirst_, slow_, moved_;
     std::vector<Pass> passes_;
-    Window past_;  ///< u, z_r and q_r
+    Window past_;  ///< u, z_r, q_r and y_r
 };
 
 }  // namespace excursion

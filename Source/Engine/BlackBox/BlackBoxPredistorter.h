@@ -3,13 +3,14 @@
 
 #include "Engine/BlackBox/BlackBoxLinearizer.h"
 #include "Engine/BlackBox/BlackBoxRehearsal.h"
-#include "Engine/BlackBox/RegionLimiter.h"
+#include "Engine/BlackBox/BoxProtection.h"
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/Peak.h"
+#include "Engine/Predistortion/Predistorter.h"
+#include "Engine/Predistortion/TargetFilter.h"
 
 #include <atomic>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 namespace excursion {
@@ -26,30 +27,26 @@ struct RehearsedBox {
     BlackBoxRehearsal rehearsal;
 };
 
-struct BlackBoxControls {
-    double amount = 1.0;                                          ///< of the correction, 0 to 1
-    double inputLimit = std::numeric_limits<double>::infinity();  ///< of what comes out, in the input's unit
-    bool areSound() const { return amount >= 0.0 && amount <= 1.0 && inputLimit > 0.0; }
-};
-
 /// Bends the input of a loudspeaker that is known by a model without physics so that its output is that of the model's
 /// linear part:
-///     u -> RegionLimiter -> delay ------------------------------------------+-> out
-///              |-> to the model's rate -> BlackBoxLinearizer -> and back ->-+
+///     u -> TargetFilter -> BoxProtection -> delay ------------------------------------------+-> out
+///                              |-> to the model's rate -> BlackBoxLinearizer -> and back ->-+
 /// The signal itself is delayed and not filtered, at any rate: only the correction passes through the rates, and so is
 /// band-limited to the lower of the two. What comes out is never more than the peak of the fit's input and the largest
-/// correction that the rehearsal at that level asked for.
+/// correction that the rehearsal at that level asked for. Of the controls the limit of the excursion is of a model of
+/// the excursion only, that of the power where the coil's resistance is given; the amount goes to 1 where the excursion
+/// comes near its limit, as a protection that can be turned down is none.
 ///
 /// Everything but the construction is for the audio thread: no allocation, no lock, no exception. Blocks may have any
 /// length, and the output does not depend on how a signal is cut into blocks.
 class BlackBoxPredistorter {
 public:
     /// Throws Error (usage) for a rate that is more than 16 times the model's or less than a sixteenth.
-    BlackBoxPredistorter(const RehearsedBox&, double sampleRate, const BlackBoxControls& = {});
+    BlackBoxPredistorter(const RehearsedBox&, double sampleRate, const PredistortionControls& = {});
 
-    int latency() const { return limiter_.latency() + behind_; }  ///< samples; fixed
+    int latency() const { return protection_.latency() + behind_; }  ///< samples; fixed
     void reset();
-    void set(const BlackBoxControls&);  ///< followed smoothly; what is not sound is left as it was
+    void set(const PredistortionControls&);  ///< followed smoothly; what is not sound is left as it was
 
     /// Switched off the signal goes through as it is, but for samples that are no numbers. Once the correction has
     /// faded the model stands still; switched on again it hears the signal for 0.1 s, and then the correction comes in.
@@ -59,33 +56,47 @@ public:
     void process(const double* in, double* out, std::size_t n);
 
     /// Since the last call of take(); may be read from another thread.
-    struct Meters {
-        double out = 0.0;         ///< peak, in the input's unit
-        double correction = 0.0;  ///< peak of the correction
-        double region = 0.0;      ///< how far out the loudspeaker went, 1: as far as the fit has been
-        double reduction = 0.0;   ///< dB, by which the signal was turned down at most
-        int faults = 0;           ///< samples that were no numbers, since construction
+    struct Meters : Predistorter::Meters {  ///< displacement: of the model that is given what comes out
+        double correction = 0.0;            ///< peak of the correction
+        double region = 0.0;                ///< how far out the loudspeaker went, 1: as far as the fit has been
+        double regionReduction = 0.0;       ///< dB, by which the signal was turned down at most to stay there
     };
     Meters take();
 
 private:
-    double correctionFor(double u, double limit, double& region);
+    double correctionFor(double u, double limit);
 
-    RegionLimiter limiter_;
+    void follow(const BlackBoxLinearizer::Sample&, double limit);
+    double amountNow() const;
+    void standStill();
+    void look(double out, double correction);
+    void publish();
+
     RateConverter toModel_, back_;
     BlackBoxLinearizer linearizer_;
     double bound_, largest_;
     int behind_;
-    int memory_;  ///< samples of the model, in which it forgets that it stood still
+    TargetFilter target_;
+    BoxProtection protection_;
+    /// the model, given what comes out, where its output is the excursion
+    BlackBoxStep truth_;
+    std::vector<double> x_, z_, q_;
+    Rest rest_;
+    double still_;  ///< the output at rest
+    bool moves_;    ///< the output is the excursion
+    int memory_;    ///< samples of the model, in which it forgets that it stood still
     bool on_ = true, idle_ = false;
     int warm_ = 0;  ///< samples of the model, until the correction may come in
-    BlackBoxControls controls_;
-    Glide amount_;
+    PredistortionControls controls_;
+    /// gate_: whether there is a correction; near_, effort_: see BoxProtection
+    Glide gate_, amount_, near_, effort_;
     std::vector<double> delayed_, corrections_;  ///< rings; corrections_: those that came before their sample is due
     std::size_t at_ = 0, made_ = 0, used_ = 0;
     int early_ = 0;  ///< samples until the first correction is due
     int skip_ = 0;   ///< corrections that are of before the beginning
-    Peak out_, correction_, region_, reduction_;
+    Meters peak_;    ///< since it was published; of reductions the factors
+    Peak displacement_, out_, power_, correction_, region_;
+    Peak displacementReduction_, voltageReduction_, powerReduction_, regionReduction_;
     std::atomic<int> faults_ {0};
 };
 

@@ -29,6 +29,17 @@ double variance(const std::vector<double>& values)
     return std::max(square / n - sum * sum / (n * n), 0.0);
 }
 
+/// The largest magnitude without the mean.
+double reach(const std::vector<double>& values)
+{
+    double mean = 0.0, most = 0.0;
+    for (const double v : values)
+        mean += v / static_cast<double>(values.size());
+    for (const double v : values)
+        most = std::max(most, std::abs(v - mean));
+    return most;
+}
+
 /// Of a period, in bands of a third of an octave; in units that are the same for signals of one length.
 std::vector<double> bandPowers(const std::vector<double>& period, double rate, const std::vector<double>& centres)
 {
@@ -86,6 +97,7 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
         bent[t] -= straight[t];
     BlackBoxRehearsal best;
     best.beforeDb = decibelsOf(variance(bent) / signal);
+    best.apartBefore = reach(bent) / reach(straight);
     best.afterDb = std::numeric_limits<double>::infinity();
     if (best.beforeDb < nothing)
         throw Error(Error::Kind::data, "This model has no distortion to speak of at the level of its fit: there is "
@@ -136,6 +148,7 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
         for (std::size_t t = 0; t < leftOver.size(); ++t)
             leftOver[t] -= straight[t];
         best.afterDb = decibelsOf(variance(leftOver) / signal);
+        best.apartAfter = reach(leftOver) / reach(straight);
     }
     if (!(best.gainDb() >= worthwhile))
         throw Error(Error::Kind::data,

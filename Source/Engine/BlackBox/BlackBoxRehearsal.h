@@ -12,10 +12,12 @@ namespace excursion {
 /// What turning a black box around is worth, found out before it is used: the model plays what it was fitted under, as
 /// it is and with the correction, and its output is held against that of its linear part.
 struct BlackBoxRehearsal {
-    BlackBoxDesign design;              ///< the best of those tried
-    double beforeDb = 0.0;              ///< power of y - y_r over that of y_r, without means
-    double afterDb = 0.0;               ///< the same with the correction
-    double correction = 0.0;            ///< the largest correction that was needed, in the input's unit
+    BlackBoxDesign design;    ///< the best of those tried
+    double beforeDb = 0.0;    ///< power of y - y_r over that of y_r, without means
+    double afterDb = 0.0;     ///< the same with the correction
+    double correction = 0.0;  ///< the largest correction that was needed, in the input's unit
+    /// The largest |y - y_r| over the largest |y_r|, without means, as it is and with the correction
+    double apartBefore = 0.0, apartAfter = 0.0;
     std::vector<double> frequency;      ///< Hz, the bands of the stimulus
     std::vector<double> before, after;  ///< dB: distortion in that band over the linear part's output in it
     double gainDb() const { return beforeDb - afterDb; }

@@ -31,7 +31,8 @@ BlackBoxSpeaker::BlackBoxSpeaker(const BlackBox& box, const Region& region, cons
       none_(step_.combinations(), 0.0),
       made_(static_cast<std::size_t>(latency_) + 64),
       removed_(shareTime, box.linear.sampleRate),
-      recovery_(static_cast<int>(silenceTime * sampleRate) + latency_, static_cast<int>(riseTime * sampleRate))
+      recovery_(static_cast<int>(silenceTime * sampleRate) + latency_, static_cast<int>(riseTime * sampleRate)),
+      still_(box.linear.C.row(0).dot(rest.x) + box.F.row(0).dot(rest.q))
 {
     reset();
 }
@@ -63,6 +64,7 @@ double BlackBoxSpeaker::play(double u)
     furthest_ = std::max(furthest_, step_.combinationsAt(z_.data(), u, nullptr, q_.data()));
     const double y = step_.advance(x_.data(), u, q_.data());
     const double straight = linear_.advance(straight_.data(), u, none_.data());
+    farthest_ = std::max(farthest_, std::abs(y - still_));
     return y - removed_.step() * straight;
 }
 
@@ -96,6 +98,8 @@ void BlackBoxSpeaker::process(const double* in, double* out, std::size_t n)
     }
     region_.raise(furthest_);
     furthest_ = 0.0;
+    output_.raise(farthest_);
+    farthest_ = 0.0;
 }
 
 }  // namespace excursion

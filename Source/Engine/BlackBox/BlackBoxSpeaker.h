@@ -34,9 +34,10 @@ public:
     /// Since the last call of take(); may be read from another thread.
     struct Meters {
         double region = 0.0;  ///< how far out it went, 1: as far as the fit has been
+        double output = 0.0;  ///< peak, from rest
         int faults = 0;       ///< since construction
     };
-    Meters take() { return {region_.take(), faults_.load(std::memory_order_relaxed)}; }
+    Meters take() { return {region_.take(), output_.take(), faults_.load(std::memory_order_relaxed)}; }
 
 private:
     void rest();
@@ -52,8 +53,8 @@ private:
     std::size_t in_ = 0, out_ = 0;
     Glide removed_;
     Recovery recovery_;
-    double furthest_ = 0.0;
-    Peak region_;
+    double still_, furthest_ = 0.0, farthest_ = 0.0;  ///< still_: the output at rest
+    Peak region_, output_;
     std::atomic<int> faults_ {0};
 };
 

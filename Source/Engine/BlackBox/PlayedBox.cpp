@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/BlackBox/PlayedBox.h"
 
+#include "Engine/BlackBox/BoxMotion.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
 
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 namespace excursion {
 namespace {
@@ -43,6 +45,24 @@ PlayedBox::PlayedBox(const BlackBox& wanted, const Progress& progress)
             throw;
         refusal = error.what();
     }
+}
+
+double measuredDisplacement(const PlayedBox& played)
+{
+    return tellsExcursion(played.box) ? played.region.farthest : std::numeric_limits<double>::infinity();
+}
+
+std::string protectionOf(const PlayedBox& played, double coilResistance)
+{
+    const bool moves = tellsExcursion(played.box), coil = played.box.input == "voltage";
+    const std::string power = coil && coilResistance > 0.0 ? " and power" : "";
+    std::string text = moves ? "Excursion, voltage" + power : "Voltage" + power;
+    text += " and the region of the fit are limited";
+    if (!moves)
+        text += "; the excursion is not told";
+    if (coil && power.empty())
+        text += "; the power needs the coil's resistance";
+    return text + ".";
 }
 
 std::string wordsOf(const PlayedBox& played)

@@ -25,8 +25,14 @@ struct PlayedBox {
     double perOutput = 0.0;
 };
 
+/// The excursion up to which the fit has been, m; infinite where the model tells none.
+double measuredDisplacement(const PlayedBox&);
+
 /// For a person, before it is used: what the model is, the distortion that it makes as it was fitted, what is left of
 /// it with the correction and the gain, in dB, or why there is none; and that a current is not the sound.
 std::string wordsOf(const PlayedBox&);
+
+/// What is protected while it is linearized, and what cannot be as the model does not tell it.
+std::string protectionOf(const PlayedBox&, double coilResistance);
 
 }  // namespace excursion

@@ -111,6 +111,7 @@ Region visitedBy(const BlackBox& box)
         PlainRecursion run(box);
         run.x = rest.x;
         run.q = rest.q;
+        const double still = box.linear.C.row(0).dot(rest.x) + box.F.row(0).dot(rest.q);
         const auto input = playedAs(box.stimulus, rate, period, seed);
         for (int t = -period / 2; t < period; ++t) {
             const double y = run.step(input[static_cast<std::size_t>((t + period) % period)]);
@@ -124,6 +125,7 @@ Region visitedBy(const BlackBox& box)
             places.push_back(run.s);
             outputs += y;
             power += y * y;
+            region.farthest = std::max(region.farthest, std::abs(y - still));
         }
     }
     const auto count = static_cast<double>(places.size());

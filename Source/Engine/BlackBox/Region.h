@@ -14,6 +14,7 @@ struct Region {
     Eigen::VectorXd centre;  ///< seen + 1
     Eigen::MatrixXd W;       ///< square
     double output = 0.0;     ///< rms of the model's output there, without its mean
+    double farthest = 0.0;   ///< the largest output there, from that at rest
 
     double distance(const Eigen::VectorXd& place) const { return (W * (place - centre)).norm(); }
 };

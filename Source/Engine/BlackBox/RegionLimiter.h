@@ -4,29 +4,26 @@
 #include "Engine/BlackBox/BlackBoxStep.h"
 #include "Engine/BlackBox/RateConverter.h"
 #include "Engine/Predistortion/PeakHold.h"
-#include "Engine/Predistortion/Recovery.h"
 
 #include <vector>
 
 namespace excursion {
 
-/// Turns a signal down so that the linear part of a black box stays in the region that its fit has visited, and the
-/// input within its peak: what is beyond, nobody has measured. Looks ahead: the gain is there before the sample is,
-/// without a step. A low tone that sets in at once far beyond takes the loudspeaker out for its first half period
-/// nevertheless (at 20 times the peak 1.7 times as far as the fit has been), as what is turned down has a memory; the
-/// peak of the input is kept at any time. A sample that is no number, or beyond 100 times the peak, is silence, and so
-/// is what is around it.
+/// By how much a signal has to be turned down so that the linear part of a black box stays in the region that its fit
+/// has visited, and the input within its peak: what is beyond, nobody has measured. It is told of a sample before that
+/// is due. A low tone that sets in at once far beyond takes the loudspeaker out of the region for its first half period
+/// nevertheless, as what is turned down has a memory; the peak of the input is kept at any time, and a limit of the
+/// excursion is Protection's.
 class RegionLimiter {
 public:
     RegionLimiter(const BlackBox&, const Region&, double sampleRate);
 
-    int latency() const { return static_cast<int>(delayed_.size()); }
+    int reach() const { return converter_.reach(); }  ///< samples by which the answer is late
     void reset();
 
-    /// @returns the sample of latency() ago, turned down where it is on; then gain() is by how much
-    double step(double sample, bool on);
-    double gain() const { return gain_; }
-    bool faulty() const { return faulty_; }  ///< the latest sample was none
+    /// @param sample  finite
+    /// @returns the factor, 0 to 1, of the sample of reach() ago and those around it
+    double step(double sample);
 
 private:
     double levelOf(double sample);
@@ -38,11 +35,7 @@ private:
     PaddedMatrix whiten_;
     double out_ = 0.0;  ///< how far out the latest place is
     PeakHold hold_;
-    Recovery recovery_;
-    double level_ = 1.0, gain_ = 1.0, sum_ = 0.0;
-    std::vector<double> gains_, delayed_;
-    std::size_t gainAt_ = 0, at_ = 0;
-    bool faulty_ = false;
+    double level_ = 1.0;
 };
 
 }  // namespace excursion

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/Foresight.h"
 
-#include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Numerics/Exponential.h"
 
 #include <algorithm>
@@ -9,15 +8,14 @@
 
 namespace excursion {
 
-Foresight::Foresight(const Model& model, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps,
-                     double step, double since)
+Foresight::Foresight(const LinearMotion& motion, const Reference& reference, const Eigen::VectorXd& times,
+                     Eigen::Index steps, double step, double since)
     : coasting(times.size(), reference.basis().cols()), driven(Eigen::MatrixXd::Zero(times.size(), steps))
 {
-    const auto linear = smallSignal(linearPart(model));
-    const auto n = linear.A.rows();
+    const auto n = motion.A.rows();
     // The input beside the state.
     const auto after = [&](double time) {
-        const auto [decay, phi] = exponential(linear.A, linear.B, time, 1);
+        const auto [decay, phi] = exponential(motion.A, motion.B, time, 1);
         Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
         all.topLeftCorner(n, n) = decay;
         all.topRightCorner(n, 1) = phi;
@@ -26,11 +24,12 @@ Foresight::Foresight(const Model& model, const Reference& reference, const Eigen
     const Eigen::MatrixXd onward = after(step);
     for (Eigen::Index i = 0; i < times.size(); ++i) {
         // x after a time, per state at its start and per input that is held meanwhile
-        const Eigen::RowVectorXd all = after(times[i]).row(1);
+        const Eigen::RowVectorXd all = motion.displacement * after(times[i]).topRows(n);
         coasting.row(i) = all.head(n) * reference.basis();
         // From the end of the last step that has begun by then; the time grows by a step each round.
         const auto last = std::min(steps, static_cast<Eigen::Index>(std::floor((times[i] + since) / step)));
-        Eigen::RowVectorXd then = after(times[i] + since - static_cast<double>(last) * step).row(1);
+        Eigen::RowVectorXd then = motion.displacement
+                                  * after(times[i] + since - static_cast<double>(last) * step).topRows(n);
         if (last < steps)
             driven(i, last) = last > 0 ? then[n] : all[n];
         for (Eigen::Index k = last - 1; k >= 0; --k) {

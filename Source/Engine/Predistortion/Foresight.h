@@ -21,8 +21,8 @@ struct Foresight {
     /// @param steps      so many from now on
     /// @param step       s, of each
     /// @param since      s, by which the first of them began before now, less than a step
-    Foresight(const Model&, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps, double step,
-              double since);
+    Foresight(const LinearMotion&, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps,
+              double step, double since);
 };
 
 /// The largest factors of three parts, the last ones first to be kept, with which |rest + sum_b factor_b part_b| stays

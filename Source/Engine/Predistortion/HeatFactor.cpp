@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/HeatFactor.h"
 
-#include "Engine/Predistortion/Inverse.h"
 #include "Engine/Predistortion/RealTime.h"
 
 #include <algorithm>
@@ -16,49 +15,16 @@ constexpr double slope = 10.0, target = 0.985;                  // of the limit
 constexpr double descent = 0.96;
 constexpr double largestExcess = 30.0, near = 0.3, closeLook = 0.25, tooMuch = 1.5;
 
-constexpr int points = 33;
-constexpr double farthest = 4.0;  // of what was measured
-
-double gridOf(const Model& model)
-{
-    const double measured = measuredDisplacement(model);
-    return std::isfinite(measured) ? farthest * measured / (points - 1) : 0.0;
-}
-
-/// The heat that holds a cone at points of the grid, by the inverse at rest there.
-std::vector<double> holdingHeat(const Model& model, double sampleRate, double grid)
-{
-    std::vector<double> heat {0.0};
-    if (!model.electrical() || !(grid > 0.0))
-        return heat;
-    Inverse inverse(model, sampleRate);
-    const double ohms = model.baseParameter("Re").value,
-                 perMetre = model.baseParameter("K").value / model.baseParameter("Bl").value;
-    for (int k = 1; k < points; ++k) {
-        double worst = heat.back();
-        for (const double x : {k * grid, -k * grid}) {
-            inverse.reset();
-            MotionPoint there;
-            there.x = x;
-            there.i = perMetre * x;
-            for (int settle = 0; settle < 8; ++settle)
-                inverse.step(there);
-            worst = std::max(worst, ohms * inverse.current() * inverse.current());
-        }
-        heat.push_back(worst);
-    }
-    return heat;
-}
-
 }  // namespace
 
-HeatFactor::HeatFactor(const Model& model, double sampleRate)
-    : ohms_(model.electrical() ? model.baseParameter("Re").value : 0.0),
+HeatFactor::HeatFactor(const LinearMotion& motion, double sampleRate)
+    : ohms_(motion.ohms),
+      byInput_(motion.currentByInput),
       share_(ticks::share(PredistortionControls::averagingTime, sampleRate)),
       forgetting_(ticks::share(forgetting, sampleRate)),
-      load_(model, sampleRate),
-      grid_(gridOf(model)),
-      holding_(holdingHeat(model, sampleRate, grid_)),
+      load_(motion, sampleRate),
+      grid_(motion.holdingStep),
+      holding_(motion.holding),
       ahead_(ticks::in(hold, sampleRate)),
       expected_(ticks::in(hold, sampleRate)),
       heats_(ticks::in(hold, sampleRate)),
@@ -83,7 +49,7 @@ void HeatFactor::add(double u)
 {
     if (!loads_)
         return;
-    const double i = load_.step(u).i;
+    const double i = load_.step(u).i + byInput_ * u;
     peak_ = std::max(peak_, ohms_ * i * i);
 }
 

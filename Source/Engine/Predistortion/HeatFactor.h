@@ -17,7 +17,7 @@ namespace excursion {
 /// than that; then its amount goes down, too.
 class HeatFactor {
 public:
-    HeatFactor(const Model&, double sampleRate);
+    HeatFactor(const LinearMotion&, double sampleRate);
     void reset();
 
     void add(double u);  ///< a sample, V
@@ -35,7 +35,7 @@ public:
     double mean() const { return mean_; }              ///< y, W
 
 private:
-    double ohms_, share_, forgetting_;
+    double ohms_, byInput_, share_, forgetting_;
     Reference load_;      ///< for the current of what is added
     bool loads_ = false;  ///< it runs
     bool leads_ = false;  ///< y down to a limit that has been lowered

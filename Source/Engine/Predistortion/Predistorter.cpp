@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/Predistorter.h"
 
+#include "Engine/Predistortion/DriverMotion.h"
 #include "Engine/Predistortion/Subnormals.h"
 
 #include <algorithm>
@@ -23,8 +24,9 @@ double decibelsDown(double factor) { return factor < 1.0 ? -20.0 * std::log10(st
 
 Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, const PredistortionControls& controls)
     : oversampling_((requireRunnable(model, options), options.oversampling)),
-      target_(model, options.sampleRate),
-      protection_(undonePart(model), options, 0.5 * oversampling_.latency() + 1.0 / options.oversampling),
+      target_(OwnLinearPart(model), options.sampleRate),
+      protection_(linearMotion(undonePart(model), options.sampleRate), options,
+                  0.5 * oversampling_.latency() + 1.0 / options.oversampling),
       linearizer_(undonePart(model), options.sampleRate * options.oversampling),
       plausible_(model),
       recovery_(static_cast<int>(restTime * options.sampleRate), static_cast<int>(returnTime * options.sampleRate)),

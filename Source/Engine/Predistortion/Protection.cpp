@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/Protection.h"
 
-#include "Engine/Loudspeaker/SmallSignal.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,8 +24,6 @@ constexpr double wishHoldTime = 0.1, wishReleaseTime = 0.3;  // s
 constexpr double settlingTime = 0.5;                         // s, in which a driver forgets
 constexpr double muteTime = 0.02, muteReleaseTime = 0.05;    // s
 
-double resonance(const Model& model) { return resonanceOf(model.base().parameters); }
-
 double reciprocal(double limit) { return std::isfinite(limit) ? 1.0 / limit : 0.0; }
 
 Eigen::VectorXd coastingTimes(double f0) { return Eigen::VectorXd::LinSpaced(coastingPoints + 1, 0.0, swing / f0); }
@@ -43,42 +39,23 @@ Eigen::VectorXd planTimes(double f0, double rate, int known, int planStep)
     return times;
 }
 
-/// The largest sum over the parameters of |d ln|X| / d ln p| where a voltage moves the cone far.
-double worstSensitivity(const Model& model)
-{
-    std::vector<double> frequency;
-    for (int k = 0; k < 24; ++k)
-        frequency.push_back(resonance(model) * 0.1 * std::pow(30.0, k / 23.0));
-    const auto response = respond(model, {Quantity::displacement}, frequency, true).front();
-    const auto parameters = parametersOf(model);
-    double worst = 0.0;
-    for (std::size_t f = 0; f < frequency.size(); ++f) {
-        double sum = 0.0;
-        for (std::size_t p = 0; p < parameters.size(); ++p)
-            sum += std::abs((response.gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(p))
-                             * parameters[p]->value / response.value[f])
-                                .real());
-        worst = std::max(worst, sum);
-    }
-    return worst;
-}
-
 int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
 
 }  // namespace
 
-Protection::Protection(const Model& model, const RealTimeOptions& options, double delay)
+Protection::Protection(const LinearMotion& motion, const RealTimeOptions& options, double delay)
     : rate_(options.sampleRate),
       committed_(roundedUp(delay - 0.5, planStep)),
       settled_(ticks::in(settlingTime, rate_)),
-      split_(firstCorner * resonance(model), secondCorner * resonance(model), rate_),
-      wish_ {Reference(model, rate_ / wishStep), Reference(model, rate_ / wishStep),
-             Reference(model, rate_ / wishStep)},
-      coast_(model, wish_.front(), coastingTimes(resonance(model)), 0, 1.0, 0.0),
-      ahead_(
-          model, wish_.front(), planTimes(resonance(model), rate_, roundedUp(committed_ + latency, planStep), planStep),
-          roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_, (committed_ - delay + 0.5) / rate_),
-      uncertainty_(worstSensitivity(model)),
+      split_(firstCorner * motion.resonance, secondCorner * motion.resonance, rate_),
+      wish_ {Reference(motion, rate_ / wishStep), Reference(motion, rate_ / wishStep),
+             Reference(motion, rate_ / wishStep)},
+      coast_(motion, wish_.front(), coastingTimes(motion.resonance), 0, 1.0, 0.0),
+      ahead_(motion, wish_.front(),
+             planTimes(motion.resonance, rate_, roundedUp(committed_ + latency, planStep), planStep),
+             roundedUp(committed_ + latency, planStep) / planStep, planStep / rate_,
+             (committed_ - delay + 0.5) / rate_),
+      uncertainty_(motion.uncertainty),
       sent_(static_cast<std::size_t>(committed_), 0.0),
       displacement_(limitTime, rate_ / tick),
       voltage_(limitTime, rate_ / tick),
@@ -89,8 +66,8 @@ Protection::Protection(const Model& model, const RealTimeOptions& options, doubl
       reachHold_(ticks::in(wishHoldTime, rate_)),
       held_ {Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_), Factor(wishReleaseTime, rate_)},
       loud_(rate_),
-      cool_(model, rate_),
-      heated_(model.electrical())
+      cool_(motion, rate_),
+      heated_(motion.ohms > 0.0)
 {
     static_assert(tick % wishStep == 0);
     std::array<double, window> weight {};
@@ -123,8 +100,8 @@ void Protection::reset()
     sum_.fill(0.0);
     oldest_ = sentAt_ = 0;
     summed_ = place_ = muteFor_ = 0;
-    share_ = reach_ = 0.0;
-    undiminished_ = settled_;
+    share_ = reach_ = offset_ = reserve_ = 0.0;
+    undiminished_ = untouched_ = settled_;
     for (auto& gain : gain_) {  // as after factors of 1
         gain.fill(0.0);
         for (std::size_t k = 0; k < gain.size(); ++k)
@@ -140,7 +117,7 @@ void Protection::reset()
         held.reset();
     loud_.reset();
     cool_.reset();
-    mute_ = 1.0;
+    mute_ = most_ = 1.0;
     factors_ = {};
 }
 
@@ -171,14 +148,15 @@ Protection::Values Protection::forWish()
     if (limit > 0.0 || power_.value() > 0.0) {
         state_ = wish_[0].state() + wish_[1].state() + wish_[2].state();
         coasted_.noalias() = coast_.coasting * state_;
-        const double farthest = coasted_.cwiseAbs().maxCoeff();
+        coasted_.array() += offset_;
+        const double farthest = coasted_.cwiseAbs().maxCoeff() + reserve_;
         reach_ = reachHold_.step(farthest * limit);
         farthest_ = limit > 0.0 ? std::min(farthest, wishShare / limit) : farthest;
         if (farthest * limit > wishShare) {
             for (std::size_t b = 0; b < bands; ++b)
                 wishes_.col(static_cast<Eigen::Index>(b)).noalias() = coast_.coasting * wish_[b].state();
-            coasted_.setZero();
-            need = largestWithin(coasted_, wishes_, need, wishShare / limit);
+            coasted_.setConstant(offset_);
+            need = largestWithin(coasted_, wishes_, need, std::max(0.0, wishShare / limit - reserve_));
         }
         factors_.displacement = wishShare / std::max(wishShare, farthest * limit);
     }
@@ -217,14 +195,15 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
     const Eigen::Map<const Eigen::Vector3d> now(factors.data());
     rest_.noalias() = ahead_.coasting * cone;
     rest_.noalias() += ahead_.driven * drive_;
+    rest_.array() += offset_;
     drive_.noalias() = partDrives_ * now;
     future_ = rest_;
     future_.noalias() += ahead_.driven * drive_;
-    share_ = future_.cwiseAbs().maxCoeff() * limit;
+    share_ = (future_.cwiseAbs().maxCoeff() + reserve_) * limit;
     if (share_ > planShare) {
         for (Eigen::Index b = 0; b < parts_.cols(); ++b)  // a product of two matrices would allocate
             parts_.col(b).noalias() = ahead_.driven * partDrives_.col(b);
-        factors = largestWithin(rest_, parts_, factors, planShare / limit);
+        factors = largestWithin(rest_, parts_, factors, std::max(0.0, planShare / limit - reserve_));
     }
 }
 
@@ -246,14 +225,19 @@ void Protection::decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Out
     }
 
     factors_ = {};
+    offset_ = last.offset;
+    reserve_ = last.reserve;
+    most_ = last.most;
     auto factors = forWish();
     factors_.voltage = loud_.decide(voltage_.value(), voltage_.value() != voltage, last.asked, last.wanted);
     factors_.power = cool_.decide(power_.value(), !power_.still(), last.heat, loud_.peak(), farthest_);
     for (auto& factor : factors)
-        factor *= factors_.voltage * factors_.power * mute_;
+        factor *= factors_.voltage * factors_.power * mute_ * most_;
     plan(cone, last.astray, factors);
     if (share_ > planShare)
         factors_.displacement = std::min(factors_.displacement, planShare / share_);
+    const bool untouched = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
+    untouched_ = untouched ? std::min(untouched_ + 1, settled_) : 0;
     for (std::size_t b = 0; b < bands; ++b)
         for (std::size_t k = 0; k < gain_[b].size(); ++k)
             gain_[b][k] += factors[b] * shape_[k];
@@ -271,11 +255,12 @@ double Protection::step(double u, bool sound)
         out += gain_[b][static_cast<std::size_t>(place_)] * std::exchange(delayed_[b][oldest_], values[b]);
     }
     oldest_ = oldest_ + 1 == latency ? 0 : oldest_ + 1;
+    left *= most_;
     loud_.add(left);
     cool_.add(loud_.factor() * left);
     if (on_ && ++summed_ == wishStep) {
         for (std::size_t b = 0; b < bands; ++b)
-            wish_[b].step(sum_[b] / wishStep);
+            wish_[b].step(most_ * sum_[b] / wishStep);
         sum_.fill(0.0);
         summed_ = 0;
     }

@@ -5,6 +5,7 @@
 #include "Engine/Predistortion/Foresight.h"
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/HeatFactor.h"
+#include "Engine/Predistortion/LinearMotion.h"
 #include "Engine/Predistortion/PeakHold.h"
 #include "Engine/Predistortion/RealTime.h"
 #include "Engine/Predistortion/Reference.h"
@@ -42,7 +43,7 @@ public:
     static constexpr std::size_t bands = Bands::count;
 
     /// @param delay  samples from the cone, as decide() is told of it, to the next input
-    Protection(const Model&, const RealTimeOptions&, double delay);
+    Protection(const LinearMotion&, const RealTimeOptions&, double delay);
 
     void reset();
 
@@ -58,6 +59,9 @@ public:
         double asked = 0.0, wanted = 0.0;  ///< peaks of what went into the linearizer and of what it asked for, V
         double heat = 0.0;                 ///< mean of Re i^2, W
         bool astray = false;               ///< the cone was not given all that was asked for
+        double offset = 0.0;               ///< m, where the cone is beside the linear motion, and stays for a while
+        double reserve = 0.0;              ///< m, by how far it may be from all of that
+        double most = 1.0;                 ///< factor that no band may pass, for other reasons
     };
     void decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Outcome&);
 
@@ -75,6 +79,8 @@ public:
         double displacement = 1.0, voltage = 1.0, power = 1.0;
     };
     const Factors& factors() const { return factors_; }
+    /// Nothing that leaves now was turned down: it is what came in, but for rounding.
+    bool untouched() const { return untouched_ > latency / tick + 1; }
 
 private:
     static constexpr int window = latency - tick + 1;  ///< samples over which a factor is smoothed
@@ -121,11 +127,14 @@ private:
     std::array<PeakHold, bands> wishHold_;  ///< of 1 - factor
     PeakHold reachHold_;                    ///< of how far the wish would coast, in limits
     double reach_ = 0.0, farthest_ = 0.0;   ///< farthest_: m, how far it would coast with the limit kept
+    double offset_ = 0.0, reserve_ = 0.0;   ///< m, see Outcome
     std::array<Factor, bands> held_;        ///< for the excursion
     VoltageFactor loud_;
     HeatFactor cool_;
     bool heated_;           ///< there is a coil
     int undiminished_ = 0;  ///< ticks with factors of 1
+    double most_ = 1.0;     ///< see Outcome
+    int untouched_ = 0;     ///< ticks in which nothing was turned down
     double mute_ = 1.0;
     int muteFor_ = 0;
     Factors factors_;

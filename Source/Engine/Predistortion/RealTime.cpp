@@ -26,6 +26,8 @@ bool PredistortionControls::isValid(std::string* reason) const
         return refuse(reason, "a limit must be positive");
     if (!(margin >= 0.0 && margin <= 0.3))
         return refuse(reason, "the margin must lie between 0 and 0.3");
+    if (!(coilResistance >= 0.0 && coilResistance < 1e6))
+        return refuse(reason, "the resistance of a coil cannot be negative");
     return target.isValid(reason);
 }
 

@@ -32,13 +32,16 @@ struct PredistortionControls {
     double powerLimit = std::numeric_limits<double>::infinity();
     /// the limits hold for every driver whose parameters differ by no more than this share from the model's; 0 to 0.3
     double margin = 0.0;
+    /// ohm, of the coil of a model without physics, without which there is no limit of the power; 0: not known. A
+    /// driver knows its own.
+    double coilResistance = 0.0;
     Target target = {};  ///< what the cone is to move like, with any amount
     bool isValid(std::string* reason) const;
     /// The same for the audio thread, which has no use for a reason.
     bool areSound() const
     {
         return amount >= 0.0 && amount <= 1.0 && displacementLimit > 0.0 && voltageLimit > 0.0 && powerLimit > 0.0
-               && margin >= 0.0 && margin <= 0.3 && target.areSound();
+               && margin >= 0.0 && margin <= 0.3 && coilResistance >= 0.0 && coilResistance < 1e6 && target.areSound();
     }
 
     /// s: the heat is Re i^2, averaged by a low-pass of first order with this time constant

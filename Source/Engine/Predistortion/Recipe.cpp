@@ -11,7 +11,7 @@ namespace excursion {
 namespace {
 
 constexpr auto formatName = "excursion-recipe";
-constexpr int formatVersion = 3;
+constexpr int formatVersion = 4;
 
 struct Names {
     std::string_view name, title;
@@ -22,9 +22,10 @@ constexpr std::array<Names, modes.size()> names {{{"bypass", "Bypass"},
                                                   {"linearize", "Linearize"},
                                                   {"audition", "Audition"}}};
 
-constexpr std::array<std::string_view, 3> targetKinds {"own", "resonance", "closed-box"};
+constexpr std::array<std::string_view, 6> targetKinds {"own", "resonance", "closed-box", "flat", "bands", "response"};
 
-/// Version 1 knew neither a limit of the power nor a margin, version 2 no target.
+/// Version 1 knew neither a limit of the power nor a margin, version 2 no target, version 3 no resistance and
+/// no target that equalizes.
 int versionOf(const JsonField& field)
 {
     const auto number = field.at("version");
@@ -32,28 +33,55 @@ int versionOf(const JsonField& field)
     while (version > 1 && number.value() != version)
         --version;
     if (number.value() != version)
-        number.refuse("1, 2 or 3, the versions that this program reads");
+        number.refuse("1, 2, 3 or 4, the versions that this program reads");
     field.requireFormat(formatName, version);
     return version;
 }
 
-Target targetFrom(const JsonField& field)
+ThirdOctaves curveFrom(const JsonField& field)
 {
-    const std::vector<std::string> kinds(targetKinds.begin(), targetKinds.end());
+    const auto items = field.items();
+    ThirdOctaves curve {};
+    if (items.size() != curve.size())
+        field.refuse("a level for each third of an octave from 20 Hz to 20 kHz, " + std::to_string(curve.size())
+                     + " of them, null where none is given");
+    for (std::size_t k = 0; k < curve.size(); ++k)
+        curve[k] = items[k].value().is_null()
+                       ? Target::notGiven
+                       : items[k].numberWithin(Settings::targetLevels.least, Settings::targetLevels.most);
+    return curve;
+}
+
+Target targetFrom(const JsonField& field, int version)
+{
+    const std::vector<std::string> kinds(targetKinds.begin(),
+                                         version > 3 ? targetKinds.end() : targetKinds.begin() + 3);
     const auto within = [&field](const char* key, const Settings::Range& range) {
         return field.at(key).numberWithin(range.least, range.most);
     };
     const auto kind = std::find(kinds.begin(), kinds.end(), field.at("kind").oneOf(kinds)) - kinds.begin();
-    return {static_cast<Target::Kind>(kind), within("f0", Settings::targetFrequencies),
-            within("q", Settings::targetQualities), within("volume", Settings::targetVolumes)};
+    Target target {static_cast<Target::Kind>(kind), within("f0", Settings::targetFrequencies),
+                   within("q", Settings::targetQualities), within("volume", Settings::targetVolumes)};
+    if (version > 3) {
+        target.low = within("low", Settings::targetEnds);
+        target.high = within("high", Settings::targetEnds);
+        target.curve = curveFrom(field.at("curve"));
+    }
+    return target;
 }
 
 nlohmann::ordered_json documentOf(const Target& target)
 {
+    auto curve = nlohmann::ordered_json::array();
+    for (const double level : target.curve)
+        curve.push_back(level == Target::notGiven ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(level));
     return {{"kind", targetKinds[static_cast<std::size_t>(target.kind)]},
             {"f0", target.frequency},
             {"q", target.quality},
-            {"volume", target.volume}};
+            {"volume", target.volume},
+            {"low", target.low},
+            {"high", target.high},
+            {"curve", curve}};
 }
 
 }  // namespace
@@ -71,10 +99,13 @@ bool Recipe::isValid(std::string* reason) const
            && check(voltages.holds(voltageLimit), "the limit of the voltage must lie between 0.01 and 1000 V")
            && check(powers.holds(powerLimit), "the limit of the power must lie between 0.01 and 10000 W")
            && check(margins.holds(margin), "the margin must lie between 0 and 0.3")
+           && check(resistances.holds(coilResistance), "the resistance of a coil must lie between 0 and 1000 ohm")
            && check(trims.holds(trimDb), "the trim must lie between -60 and 24 dB")
            && check(targetFrequencies.holds(target.frequency) && targetQualities.holds(target.quality)
-                        && targetVolumes.holds(target.volume),
-                    "a target must lie between 5 and 5000 Hz, a Q of 0.2 and 3, and 0.1 and 1000 l");
+                        && targetVolumes.holds(target.volume) && targetEnds.holds(target.low)
+                        && targetEnds.holds(target.high) && target.areSound(),
+                    "a target must lie between 5 and 5000 Hz, a Q of 0.2 and 3, 0.1 and 1000 l, in a band of 20 to "
+                    "20000 Hz, with levels of -200 to 300 dB");
 }
 
 Model withoutOff(const Model& model, const Recipe& recipe)
@@ -95,6 +126,7 @@ PredistortionControls controlsOf(const Settings& settings, double measuredDispla
     if (settings.powerLimit < Settings::powers.most)
         controls.powerLimit = settings.powerLimit;
     controls.margin = settings.margin;
+    controls.coilResistance = settings.coilResistance;
     controls.target = settings.target;
     return controls;
 }
@@ -117,6 +149,7 @@ nlohmann::ordered_json toJson(const Recipe& recipe)
             {"voltageLimit", recipe.voltageLimit},
             {"powerLimit", recipe.powerLimit},
             {"margin", recipe.margin},
+            {"coilResistance", recipe.coilResistance},
             {"trimDb", recipe.trimDb},
             {"target", documentOf(recipe.target)},
             {"off", recipe.off}};
@@ -144,9 +177,11 @@ Recipe recipeFromJson(const JsonField& field)
         recipe.powerLimit = within("powerLimit", Settings::powers);
         recipe.margin = within("margin", Settings::margins);
     }
+    if (version > 3)
+        recipe.coilResistance = within("coilResistance", Settings::resistances);
     recipe.trimDb = within("trimDb", Settings::trims);
     if (version > 2)
-        recipe.target = targetFrom(field.at("target"));
+        recipe.target = targetFrom(field.at("target"), version);
     known.clear();
     for (const auto* effect : catalogue())
         known.push_back(effect->id());

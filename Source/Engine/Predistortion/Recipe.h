@@ -36,6 +36,7 @@ struct Settings {
     double voltageLimit = 100.0;     ///< V
     double powerLimit = 10000.0;     ///< W, of the coil's heat averaged over a second; the most there is: none
     double margin = 0.0;             ///< of the model's parameters, see PredistortionControls
+    double coilResistance = 0.0;     ///< ohm, for models without physics; 0: not known, and no limit of the power
     double trimDb = 0.0;             ///< of the output
     Target target;                   ///< of linearization
 
@@ -44,12 +45,14 @@ struct Settings {
         bool holds(double value) const { return value >= least && value <= most; }
     };
     static constexpr Range fullScales {0.01, 1000.0}, amounts {0.0, 1.0}, displacements {0.05, 4.0},
-        voltages {0.01, 1000.0}, powers {0.01, 10000.0}, margins {0.0, 0.3}, trims {-60.0, 24.0};
-    /// of a target: Hz, Q, m^3
-    static constexpr Range targetFrequencies {5.0, 5000.0}, targetQualities {0.2, 3.0}, targetVolumes {1e-4, 1.0};
+        voltages {0.01, 1000.0}, powers {0.01, 10000.0}, margins {0.0, 0.3}, resistances {0.0, 1000.0},
+        trims {-60.0, 24.0};
+    /// of a target: Hz, Q, m^3, Hz of the ends of a band, dB of a curve
+    static constexpr Range targetFrequencies {5.0, 5000.0}, targetQualities {0.2, 3.0}, targetVolumes {1e-4, 1.0},
+        targetEnds {20.0, 20000.0}, targetLevels {-200.0, 300.0};
 };
 
-/// All that a person sets: how a model is used, whichever it is. As a document, format "excursion-recipe", version 3
+/// All that a person sets: how a model is used, whichever it is. As a document, format "excursion-recipe", version 4
 /// (Docs/Formats.md).
 struct Recipe : Settings {
     std::string title;

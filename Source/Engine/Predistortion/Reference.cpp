@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -32,17 +33,32 @@ Reference::Reference(const Model& model, double sampleRate) : electrical_(model.
 {
     const auto linear = smallSignal(linearPart(model));
     const auto& A = linear.A;
-    const auto n = A.rows();
-    order_ = static_cast<std::size_t>(n);
-    rows_ = roundedUpToLanes(order_);
-
-    auto [transition, phi] = exponential(A, linear.B, 1.0 / sampleRate, 4);
-    Eigen::MatrixXd inputs = bySamples(phi), outputs = Eigen::MatrixXd::Zero(5, n);
+    Eigen::MatrixXd outputs = Eigen::MatrixXd::Zero(5, A.rows());
     outputs(0, 1) = outputs(1, 2) = outputs(4, 0) = 1.0;
     outputs.row(2) = A.row(2);
     outputs.row(3) = A.row(2) * A;
     accelerationInput_ = linear.B[2];
     jerkInput_ = A.row(2).dot(linear.B);
+    prepare(A, linear.B, std::move(outputs), sampleRate);
+}
+
+Reference::Reference(const LinearMotion& motion, double sampleRate)
+{
+    Eigen::MatrixXd outputs = Eigen::MatrixXd::Zero(5, motion.A.rows());
+    outputs.row(0) = motion.displacement;
+    if (motion.current.size() > 0)
+        outputs.row(4) = motion.current;
+    prepare(motion.A, motion.B, std::move(outputs), sampleRate);
+}
+
+void Reference::prepare(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, Eigen::MatrixXd outputs, double sampleRate)
+{
+    const auto n = A.rows();
+    order_ = static_cast<std::size_t>(n);
+    rows_ = roundedUpToLanes(order_);
+
+    auto [transition, phi] = exponential(A, B, 1.0 / sampleRate, 4);
+    Eigen::MatrixXd inputs = bySamples(phi);
 
     const auto modes = modesOf(A);
     dense_ = !modes.apart;

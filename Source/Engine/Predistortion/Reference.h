@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Model.h"
+#include "Engine/Predistortion/LinearMotion.h"
 
 #include <Eigen/Core>
 
@@ -34,6 +35,9 @@ public:
     /// @param sampleRate  Hz, of step()
     Reference(const Model&, double sampleRate);
 
+    /// Of any linear motion; of its points x and i are told, in the same states as those of a driver.
+    Reference(const LinearMotion&, double sampleRate);
+
     void reset();
     const MotionPoint& step(double u);  ///< V, or N of a driver without a coil; returns the motion at this sample
 
@@ -48,8 +52,11 @@ public:
 private:
     using Rows = std::vector<double>;
 
+    /// @param outputs  x, v, a, j and i per state
+    void prepare(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, Eigen::MatrixXd outputs, double sampleRate);
+
     std::size_t order_, rows_;  ///< rows_: the order, padded to a multiple of lanes
-    bool electrical_;
+    bool electrical_ = false;
     Eigen::Index pairs_ = 0;  ///< how many blocks of two there are, at the state's beginning
     bool dense_ = false;
     Rows transition_;  ///< if dense, by columns

@@ -13,8 +13,12 @@ constexpr double highestTarget = 0.25;  // of the sample rate
 
 }  // namespace
 
-TargetFilter::TargetFilter(const Model& model, double sampleRate)
-    : own_(model), sampleRate_(sampleRate), frequency_(targetTime, sampleRate), quality_(targetTime, sampleRate)
+TargetFilter::TargetFilter(const OwnLinearPart& own, double sampleRate)
+    : own_(own),
+      equalizer_(sampleRate),
+      sampleRate_(sampleRate),
+      frequency_(targetTime, sampleRate),
+      quality_(targetTime, sampleRate)
 {
     aim({});
     reset();
@@ -37,6 +41,7 @@ void TargetFilter::aim(const Target& target)
     frequency_.aim(std::log(target_.frequency));
     quality_.aim(std::log(target_.quality));
     settled_ = settled_ && frequency_.still() && quality_.still();
+    equalizer_.aim(own_.gains(target));
 }
 
 void TargetFilter::jump()
@@ -45,12 +50,14 @@ void TargetFilter::jump()
     quality_.jump();
     set(target_);
     settled_ = true;
+    equalizer_.jump();
 }
 
 void TargetFilter::reset()
 {
     jump();
     first_ = second_ = 0.0;
+    equalizer_.reset();
 }
 
 void TargetFilter::set(const Resonance& wanted)
@@ -76,7 +83,7 @@ double TargetFilter::step(double u)
     const double high = u - second_, v1 = a1_ * first_ + a2_ * high, v2 = second_ + a2_ * first_ + a3_ * high;
     first_ = 2.0 * v1 - first_;
     second_ = 2.0 * v2 - second_;
-    return u + byFirst_ * v1 + bySecond_ * v2;
+    return equalizer_.step(u + byFirst_ * v1 + bySecond_ * v2);
 }
 
 std::complex<double> TargetFilter::at(double frequency) const
@@ -85,7 +92,7 @@ std::complex<double> TargetFilter::at(double frequency) const
     const double ft = target_.frequency, stretched = ft * std::tan(std::numbers::pi * frequency / sampleRate_)
                                                      / std::tan(std::numbers::pi * ft / sampleRate_);
     const std::complex<double> s(0.0, stretched);
-    return (s * s + s * own.frequency / own.quality + own.frequency * own.frequency)
+    return equalizer_.at(frequency) * (s * s + s * own.frequency / own.quality + own.frequency * own.frequency)
            / (s * s + s * ft / target_.quality + ft * ft);
 }
 

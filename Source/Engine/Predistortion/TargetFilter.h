@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Predistortion/Equalizer.h"
 #include "Engine/Predistortion/Glide.h"
 #include "Engine/Predistortion/Target.h"
 
@@ -14,15 +15,15 @@ namespace excursion {
 /// with s = (wt/tan(wt T/2)) (z - 1)/(z + 1). So it is exact at 0 and at ft, and at half the sample rate it is 1, as
 /// T(s) is at infinity; elsewhere the frequency is off by (w T)^2/12 relatively, 2e-5 at 120 Hz and 48 kHz. With the
 /// driver's own resonance both factors are zero, and y is u, bit by bit. A new target is followed along the logarithms
-/// of ft and Qt within some 50 ms; the states know no jump.
+/// of ft and Qt within some 50 ms; the states know no jump. What equalizes comes behind it.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class TargetFilter {
 public:
     /// @param sampleRate  Hz, of step()
-    TargetFilter(const Model&, double sampleRate);
+    TargetFilter(const OwnLinearPart&, double sampleRate);
 
-    const OwnResonance& own() const { return own_; }
+    const OwnLinearPart& own() const { return own_; }
     void aim(const Target&);  ///< one that is not sound is left
     void jump();              ///< to where it was aimed
     void reset();             ///< as jump(), and as after silence
@@ -36,7 +37,8 @@ private:
     void set(const Resonance&);
     Resonance within(Resonance) const;
 
-    OwnResonance own_;
+    OwnLinearPart own_;
+    Equalizer equalizer_;
     double sampleRate_;
     Resonance target_;
     Glide frequency_, quality_;  ///< logarithms

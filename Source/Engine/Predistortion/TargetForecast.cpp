@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 namespace excursion {
@@ -25,46 +26,18 @@ constexpr double pi = std::numbers::pi;
 
 double inDecibels(double factor) { return 20.0 * std::log10(factor); }
 
+using Peak = ForecastSubject::Peak;
+
 /// A driver that is linearized towards a target, played to without limits.
 class Rehearsed {
 public:
-    Rehearsed(const Model& model, const PredistortionControls& controls, const Target& target)
-        : filter_(model, rate), linearizer_(undonePart(model), rate), controls_(controls)
+    Rehearsed(const Model& model, const OwnLinearPart& own, double amount, const Target& target)
+        : filter_(own, rate), linearizer_(undonePart(model), rate), amount_(amount)
     {
         filter_.aim(target);
         filter_.jump();
     }
 
-    /// @param signal  V, peak of `volts`; what comes before `from` is not judged
-    TargetForecast::Peaks judge(const std::vector<double>& signal, std::size_t from)
-    {
-        auto peak = played(signal, from, 1.0);
-        TargetForecast::Peaks peaks {peak.displacement, peak.voltage, 0.0, true};
-        if (const double room = controls_.displacementLimit / peak.displacement; room < 1.0)
-            peaks.voltage = played(signal, from, room).voltage;
-        if (std::isinf(controls_.displacementLimit) && std::isinf(controls_.voltageLimit)) {
-            peaks.roomDb = none;
-            return peaks;
-        }
-        // How far a linearized driver goes is proportional to the signal, what voltage that takes is nearly so.
-        double level = 1.0;
-        for (int k = 0; k < 10; ++k) {
-            const double byMotion = controls_.displacementLimit / peak.displacement,
-                         byVoltage = controls_.voltageLimit / peak.voltage, room = std::min(byMotion, byVoltage);
-            peaks.byDisplacement = byMotion < byVoltage;
-            if (room >= 1.0 && (room < 1.003 || level >= mostRoom))
-                break;
-            level = std::min(level * std::clamp(0.999 * room, 0.1, mostRoom), mostRoom);
-            peak = played(signal, from, level);
-        }
-        peaks.roomDb = inDecibels(level);
-        return peaks;
-    }
-
-private:
-    struct Peak {
-        double displacement = 0.0, voltage = 0.0;
-    };
     /// Infinite where a driver beyond its laws asks for no number.
     Peak played(const std::vector<double>& signal, std::size_t from, double level)
     {
@@ -72,7 +45,7 @@ private:
         linearizer_.reset();
         Peak peak;
         for (std::size_t n = 0; n < signal.size(); ++n) {
-            const double out = linearizer_.step(filter_.step(level * signal[n]), controls_.amount, none),
+            const double out = linearizer_.step(filter_.step(level * signal[n]), amount_, none),
                          x = linearizer_.cone().motion().x;
             if (!std::isfinite(out))
                 peak.voltage = none;
@@ -86,19 +59,47 @@ private:
         return peak;
     }
 
+private:
     TargetFilter filter_;
     Linearizer linearizer_;
-    PredistortionControls controls_;
+    double amount_;
 };
 
+/// @param signal  V, peak of `volts`; what comes before `from` is not judged
+TargetForecast::Peaks judged(const ForecastSubject::Play& play, const PredistortionControls& controls,
+                             const std::vector<double>& signal, std::size_t from)
+{
+    auto peak = play(signal, from, 1.0);
+    TargetForecast::Peaks peaks {peak.displacement, peak.voltage, 0.0, true};
+    if (const double room = controls.displacementLimit / peak.displacement; room < 1.0)
+        peaks.voltage = play(signal, from, room).voltage;
+    if (std::isinf(controls.displacementLimit) && std::isinf(controls.voltageLimit)) {
+        peaks.roomDb = none;
+        return peaks;
+    }
+    // How far a linearized driver goes is proportional to the signal, what voltage that takes is nearly so.
+    double level = 1.0;
+    for (int k = 0; k < 10; ++k) {
+        const double byMotion = peak.displacement > 0.0 ? controls.displacementLimit / peak.displacement : none,
+                     byVoltage = controls.voltageLimit / peak.voltage, room = std::min(byMotion, byVoltage);
+        peaks.byDisplacement = byMotion < byVoltage;
+        if (room >= 1.0 && (room < 1.003 || level >= mostRoom))
+            break;
+        level = std::min(level * std::clamp(0.999 * room, 0.1, mostRoom), mostRoom);
+        peak = play(signal, from, level);
+    }
+    peaks.roomDb = inDecibels(level);
+    return peaks;
+}
+
 /// Two periods, the first of which is for settling.
-std::vector<double> pink(double low, double volts)
+std::vector<double> pink(const ForecastSubject& subject, double low, double volts)
 {
     MultisineOptions options;
-    options.sampleRate = rate;
+    options.sampleRate = subject.sampleRate;
     options.period = 32768;
     options.bandLow = low;
-    options.bandHigh = 5000.0;
+    options.bandHigh = std::min({5000.0, subject.highest, 0.4 * subject.sampleRate});
     auto signal = multisine(options, chooseLines(options), 0);
     const double scale = volts / peakOf(signal);
     for (auto& sample : signal)
@@ -108,7 +109,8 @@ std::vector<double> pink(double low, double volts)
     return signal;
 }
 
-TargetForecast::Peaks worstSine(Rehearsed& driver, double low, double high, double volts)
+TargetForecast::Peaks worstSine(const ForecastSubject::Play& play, const PredistortionControls& controls, double rate,
+                                double low, double high, double volts)
 {
     TargetForecast::Peaks worst {0.0, 0.0, none, true};
     for (int k = 0; k < sines; ++k) {
@@ -118,7 +120,7 @@ TargetForecast::Peaks worstSine(Rehearsed& driver, double low, double high, doub
         std::vector<double> signal(length);
         for (std::size_t n = 0; n < length; ++n)
             signal[n] = volts * std::sin(2.0 * pi * f * static_cast<double>(n) / rate);
-        const auto peaks = driver.judge(signal, from);
+        const auto peaks = judged(play, controls, signal, from);
         worst.displacement = std::max(worst.displacement, peaks.displacement);
         worst.voltage = std::max(worst.voltage, peaks.voltage);
         if (peaks.roomDb < worst.roomDb) {
@@ -131,38 +133,43 @@ TargetForecast::Peaks worstSine(Rehearsed& driver, double low, double high, doub
 
 }  // namespace
 
-TargetForecast forecastTarget(const Model& model, const PredistortionControls& controls, double volts)
+TargetForecast forecastTarget(const ForecastSubject& subject, const PredistortionControls& controls, double volts)
 {
     if (!(volts > 0.0 && std::isfinite(volts)))
         throw Error(Error::Kind::usage, "What a target costs is told for a voltage above zero.");
-    requireRunnable(model, {rate, 1});
-    const OwnResonance resonance(model);
-    resonance.require(controls.target);
+    const auto& own = subject.own;
+    own.require(controls.target);
     TargetForecast told;
-    const double f0 = resonanceOf(model.base().parameters);
-    told.own = resonance.single.value_or(Resonance {f0, none});
-    told.played = resonance.single ? resonance.played(controls.target) : told.own;
+    told.equalizes = controls.target.equalizes();
+    told.own = own.single.value_or(Resonance {subject.resonance, none});
+    told.played = own.single ? own.played(controls.target) : told.own;
     const double lower = std::min(told.own.frequency, told.played.frequency),
                  higher = std::max(told.own.frequency, told.played.frequency);
 
-    TargetFilter filter(model, rate);
+    TargetFilter filter(own, subject.sampleRate);
     filter.aim(controls.target);
     filter.jump();
     const auto gain = [&filter](double f) { return std::abs(filter.at(f)); };
     told.lowGainDb = inDecibels(gain(0.0));
     constexpr double perOctave = 24.0;
-    const double least = std::max(5.0, lower / 4.0), most = std::min(20.0 * higher, 0.4 * rate);
+    double least = std::max(5.0, lower / 4.0), most = 20.0 * higher;
+    if (controls.target.kind == Target::Kind::flat)
+        most = std::max(most, 2.0 * controls.target.high);
+    else if (told.equalizes)
+        most = 20000.0;
+    most = std::min({most, 0.4 * subject.sampleRate, subject.highest});
     for (double f = least; f < most; f *= std::exp2(1.0 / perOctave))
         told.frequency.push_back(f);
-    const auto motion = respond(linearPart(model), {Quantity::displacement}, told.frequency).front().value;
-    const double flat = plateau(model);
     told.mostGainDb = told.lowGainDb;
-    for (std::size_t k = 0; k < told.frequency.size(); ++k) {
-        const double f = told.frequency[k], w = 2.0 * pi * f, x = std::abs(motion[k]), more = gain(f);
-        told.ownDb.push_back(inDecibels(w * w * x / flat));
-        told.targetDb.push_back(inDecibels(w * w * x * more / flat));
-        told.ownMoves.push_back(volts * x);
-        told.targetMoves.push_back(volts * x * more);
+    for (const double f : told.frequency) {
+        const double more = gain(f), sound = subject.soundDb(f);
+        told.ownDb.push_back(sound);
+        told.targetDb.push_back(sound + inDecibels(more));
+        if (subject.motion) {
+            const double x = std::abs(subject.motion(f));
+            told.ownMoves.push_back(volts * x);
+            told.targetMoves.push_back(volts * x * more);
+        }
         told.ownVoltage.push_back(volts);
         told.targetVoltage.push_back(volts * more);
         if (inDecibels(more) > told.mostGainDb + 1e-9) {
@@ -171,11 +178,12 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
         }
     }
 
-    const auto signal = pink(std::min(20.0, lower / 3.0), volts);
+    const auto signal = pink(subject, std::min(20.0, lower / 3.0), volts);
     const auto judge = [&](const Target& target, TargetForecast::Peaks& byPink, TargetForecast::Peaks& bySine) {
-        Rehearsed driver(model, controls, target);
-        byPink = driver.judge(signal, signal.size() / 2);
-        bySine = worstSine(driver, lower / 4.0, 4.0 * higher, volts);
+        const auto play = subject.linearized(target);
+        byPink = judged(play, controls, signal, signal.size() / 2);
+        bySine = worstSine(play, controls, subject.sampleRate, lower / 4.0,
+                           std::min(4.0 * higher, 0.4 * subject.sampleRate), volts);
     };
     judge({}, told.ownPink, told.ownSine);
     if (controls.target.kind == Target::Kind::own) {
@@ -185,6 +193,36 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
         judge(controls.target, told.targetPink, told.targetSine);
     }
     return told;
+}
+
+TargetForecast forecastTarget(const Model& model, const PredistortionControls& controls, double volts)
+{
+    requireRunnable(model, {rate, 1});
+    ForecastSubject subject;
+    subject.own = OwnLinearPart(model);
+    subject.resonance = resonanceOf(model.base().parameters);
+    subject.sampleRate = rate;
+    const auto straight = linearPart(model);
+    subject.motion = [straight](double f) {
+        return respond(straight, {Quantity::displacement}, {f}).front().value.front();
+    };
+    if (controls.target.equalizes()) {
+        subject.soundDb = [straight](double f) {
+            return inDecibels(std::abs(respond(straight, {Quantity::pressure}, {f}).front().value.front()));
+        };
+    } else {
+        subject.soundDb = [motion = subject.motion, flat = plateau(model)](double f) {
+            const double w = 2.0 * pi * f;
+            return inDecibels(w * w * std::abs(motion(f)) / flat);
+        };
+    }
+    subject.linearized = [&model, &own = subject.own, amount = controls.amount](const Target& target) {
+        auto driver = std::make_shared<Rehearsed>(model, own, amount, target);
+        return [driver](const std::vector<double>& signal, std::size_t from, double level) {
+            return driver->played(signal, from, level);
+        };
+    };
+    return forecastTarget(subject, controls, volts);
 }
 
 }  // namespace excursion

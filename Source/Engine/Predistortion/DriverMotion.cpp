@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Predistortion/DriverMotion.h"
+
+#include "Engine/Loudspeaker/Resonance.h"
+#include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Predistortion/Inverse.h"
+#include "Engine/Predistortion/RealTime.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr int points = 33;
+constexpr double farthest = 4.0;  // of what was measured
+
+double stepOf(const Model& model)
+{
+    const double measured = measuredDisplacement(model);
+    return std::isfinite(measured) ? farthest * measured / (points - 1) : 0.0;
+}
+
+/// The heat that holds a cone at points of the grid, by the inverse at rest there.
+std::vector<double> holdingHeat(const Model& model, double sampleRate, double grid)
+{
+    std::vector<double> heat {0.0};
+    if (!model.electrical() || !(grid > 0.0))
+        return heat;
+    Inverse inverse(model, sampleRate);
+    const double ohms = model.baseParameter("Re").value,
+                 perMetre = model.baseParameter("K").value / model.baseParameter("Bl").value;
+    for (int k = 1; k < points; ++k) {
+        double worst = heat.back();
+        for (const double x : {k * grid, -k * grid}) {
+            inverse.reset();
+            MotionPoint there;
+            there.x = x;
+            there.i = perMetre * x;
+            for (int settle = 0; settle < 8; ++settle)
+                inverse.step(there);
+            worst = std::max(worst, ohms * inverse.current() * inverse.current());
+        }
+        heat.push_back(worst);
+    }
+    return heat;
+}
+
+double worstSensitivity(const Model& model, double f0)
+{
+    std::vector<double> frequency;
+    for (int k = 0; k < 24; ++k)
+        frequency.push_back(f0 * 0.1 * std::pow(30.0, k / 23.0));
+    const auto response = respond(model, {Quantity::displacement}, frequency, true).front();
+    const auto parameters = parametersOf(model);
+    double worst = 0.0;
+    for (std::size_t f = 0; f < frequency.size(); ++f) {
+        double sum = 0.0;
+        for (std::size_t p = 0; p < parameters.size(); ++p)
+            sum += std::abs((response.gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(p))
+                             * parameters[p]->value / response.value[f])
+                                .real());
+        worst = std::max(worst, sum);
+    }
+    return worst;
+}
+
+}  // namespace
+
+LinearMotion linearMotion(const Model& model, double sampleRate)
+{
+    const auto linear = smallSignal(linearPart(model));
+    const auto n = linear.A.rows();
+    LinearMotion motion;
+    motion.A = linear.A;
+    motion.B = linear.B;
+    motion.displacement = Eigen::RowVectorXd::Unit(n, 1);
+    motion.current = Eigen::RowVectorXd::Unit(n, 0);
+    motion.resonance = resonanceOf(model.base().parameters);
+    motion.uncertainty = worstSensitivity(model, motion.resonance);
+    motion.ohms = model.electrical() ? model.baseParameter("Re").value : 0.0;
+    motion.holdingStep = stepOf(model);
+    motion.holding = holdingHeat(model, sampleRate, motion.holdingStep);
+    return motion;
+}
+
+}  // namespace excursion

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Predistortion/LinearMotion.h"
+
+namespace excursion {
+
+/// Of a driver's linear part; its uncertainty is the largest sum over the parameters of |d ln|X| / d ln p| where a
+/// voltage moves the cone far.
+/// @param sampleRate  Hz, of the inverse that tells what holds the cone
+LinearMotion linearMotion(const Model&, double sampleRate);
+
+}  // namespace excursion

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Upkeep/Adaptation.h"
+
+#include "Engine/Document/Engineering.h"
+#include "Engine/Error.h"
+#include "Engine/Predistortion/RealTime.h"
+
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr double farther = 1.05;   // than was measured, which is of no matter
+constexpr double explained = 4.0;  // misfit up to which drift is all there is
+
+void requireSameKind(const Model& model, const PreparedTake& take)
+{
+    const auto* spectra = take.asResponses();
+    const bool coil = spectra ? spectra->find(Quantity::voltage) != nullptr
+                              : take.measurement().input().quantity == Quantity::voltage;
+    if (model.electrical() == coil)
+        return;
+    throw Error(Error::Kind::data,
+                coil ? "The model has no coil, but the take drives one by a voltage; fit a model to this take."
+                     : "The model has a coil, but the take drives the cone by a force; fit a model to this take.");
+}
+
+}  // namespace
+
+Adaptation adaptTo(const Model& model, const PreparedTake& take, const std::vector<std::string>& names,
+                   const Progress& progress)
+{
+    requireSameKind(model, take);
+    Adaptation result;
+    if (const auto* spectra = take.asResponses()) {
+        result.before = compare(model, *spectra);
+        result.drift = followDrift(model, responsesOf(*spectra), names);
+        result.after = compare(result.drift.model, *spectra);
+        return result;
+    }
+    auto record = makeRecord(take.measurement());
+    adapt(record, model);
+    result.before = compare(model, record, {0, false}, progress.part(0.0, 0.1));
+    result.drift = followDrift(model, record, names, {}, progress.part(0.1, 0.9));
+    result.beyond = visitedExtent(model, record).displacement > farther * measuredDisplacement(model);
+    result.after = compare(result.drift.model, record, {result.drift.search.substeps, false}, progress.part(0.9, 1.0));
+    return result;
+}
+
+std::string sentenceOn(const Adaptation& adapted)
+{
+    const auto &before = adapted.before, &after = adapted.after;
+    if (!after.noiseKnown)
+        return {};
+    if (after.chi <= explained)
+        return before.chi <= explained ? "The model was right before: nothing has drifted that this take can see."
+                                       : "That is all that has changed: what is left is the noise.";
+    if (adapted.beyond)
+        return "In this take the cone goes farther than the laws of the model were measured: play it softer, or fit "
+               "the model anew.";
+    return after.chi < 0.5 * before.chi
+               ? "Something is left that these parameters do not explain: compare the new model with the take."
+               : "These parameters are not what has changed: the error hardly fell. Compare the model with the take, "
+                 "or diagnose it.";
+}
+
+std::string wordsOn(const Adaptation& adapted)
+{
+    std::string text;
+    for (const auto* group : {&adapted.drift.parameters, &adapted.drift.figures})
+        for (const auto& one : *group) {
+            const std::string unit = one.unit == "1" ? "" : one.unit;
+            text += (text.empty() ? "" : ", ") + one.name + " " + engineering(one.before, unit, 3) + " to "
+                    + engineering(one.after, unit, 3) + " (" + (one.share() >= 0.0 ? "+" : "")
+                    + plainText(100.0 * one.share(), 1) + " %)";
+        }
+    text += ".";
+    if (adapted.drift.warmer)
+        text += " A copper coil with this Re is " + plainText(std::abs(*adapted.drift.warmer), 1) + " K "
+                + (*adapted.drift.warmer >= 0.0 ? "warmer" : "colder") + " than it was.";
+    if (const auto sentence = sentenceOn(adapted); !sentence.empty())
+        text += " " + sentence;
+    return text;
+}
+
+}  // namespace excursion

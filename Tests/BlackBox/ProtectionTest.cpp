@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What comes out of a black box's predistorter is given to the model as its own class simulates it, without any bound:
+// excursion, voltage and heat are counted there, not by the meters.
+#include "BlackBox/RandomModels.h"
+#include "Predistortion/Programme.h"
+
+#include "Engine/BlackBox/BlackBoxPredistorter.h"
+#include "Engine/BlackBox/BoxMotion.h"
+#include "Engine/Linear/Response.h"
+
+#include <catch2/catch.hpp>
+
+#include <limits>
+#include <map>
+
+using namespace excursion;
+
+namespace {
+
+constexpr double protectedRate = 48000.0;
+constexpr double none = std::numeric_limits<double>::infinity();
+
+struct Known {
+    Pnlss model;
+    RehearsedBox box;
+    double resonance;
+};
+
+const Known& known(std::uint64_t seed)
+{
+    static std::map<std::uint64_t, Known> all;
+    if (const auto found = all.find(seed); found != all.end())
+        return found->second;
+    const auto stimulus = pinkStimulus(1.5);
+    const auto model = randomPnlss(seed, protectedRate, stimulus);
+    const auto box = boxOf(model, stimulus);
+    return all.emplace(seed, Known {model, RehearsedBox(box), BoxMotion(box).linear.resonance}).first->second;
+}
+
+Eigen::VectorXd moved(const Pnlss& model, const std::vector<double>& out)
+{
+    return simulate(model, Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()))).col(0);
+}
+
+/// Largest running mean of u^2/ohms over a second.
+double heatOf(const std::vector<double>& out, double rate, double ohms)
+{
+    double mean = 0.0, most = 0.0;
+    const double share = 1.0 - std::exp(-1.0 / rate);
+    for (const double u : out) {
+        mean += share * (u * u / ohms - mean);
+        most = std::max(most, mean);
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("Whatever is played, a black box goes no farther than its limit", "[protection]")
+{
+    Draw draw(3);
+    double worst = 0.0, kept = 0.0;
+    for (int run = 0; run < 60; ++run) {
+        const auto& one = known(21 + run % 6);
+        const double limit = one.box.region.farthest * draw.within(0.15, 0.9);
+        PredistortionControls controls;
+        controls.displacementLimit = limit;
+        if (run % 3 == 1)
+            controls.amount = draw.within(0.0, 1.0);
+        if (run % 4 == 1)
+            controls.voltageLimit = one.box.box.stimulus.peak * draw.within(0.1, 1.0);
+        auto programme = drawnProgramme(draw, one.resonance, protectedRate, 1.5);
+        const double level = one.box.box.stimulus.peak * std::exp(draw.within(-1.5, 3.0));
+        for (auto& sample : programme.samples)
+            sample *= level;
+        BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
+        std::vector<double> out(programme.samples.size());
+        predistorter.process(programme.samples.data(), out.data(), out.size());
+        const double reached = moved(one.model, out).cwiseAbs().maxCoeff() / limit;
+        const auto meters = predistorter.take();
+        INFO("run " << run << ": " << programme.name << " at " << level / one.box.box.stimulus.peak
+                    << " of the peak, limit " << limit / one.box.region.farthest << " of the region, amount "
+                    << controls.amount << ", " << controls.voltageLimit << " V: reached " << reached << ", told "
+                    << meters.displacement / limit);
+        CHECK(reached < 1.01);
+        CHECK(peakOf(out) <= controls.voltageLimit);
+        worst = std::max(worst, reached);
+        kept += reached / 60.0;
+    }
+    INFO("worst " << worst << ", mean " << kept);
+    CHECK(kept > 0.5);  // it does not simply turn all down
+}
+
+TEST_CASE("The heat of a coil that is counted to take all of a black box's voltage keeps its limit", "[protection]")
+{
+    Draw draw(5);
+    for (int run = 0; run < 8; ++run) {
+        const auto& one = known(21 + run % 6);
+        const double ohms = draw.within(3.0, 8.0), rms = one.box.box.stimulus.rms;
+        PredistortionControls controls;
+        controls.powerLimit = rms * rms / ohms * std::exp(draw.within(-2.5, -0.3));
+        auto programme = drawnProgramme(draw, one.resonance, protectedRate, 3.0);
+        for (auto& sample : programme.samples)
+            sample *= one.box.box.stimulus.peak * draw.within(0.3, 1.5);
+        // Without the resistance nothing is known of the heat
+        BlackBoxPredistorter unknown(one.box, protectedRate, controls);
+        std::vector<double> out(programme.samples.size());
+        unknown.process(programme.samples.data(), out.data(), out.size());
+        CHECK(unknown.take().powerReduction == 0.0);
+        const double before = heatOf(out, protectedRate, ohms);
+        controls.coilResistance = ohms;
+        BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
+        predistorter.process(programme.samples.data(), out.data(), out.size());
+        const double heat = heatOf(out, protectedRate, ohms);
+        INFO("run " << run << ": " << programme.name << ", limit " << controls.powerLimit << " W, without it " << before
+                    << " W, with it " << heat << " W");
+        CHECK(heat < 1.01 * controls.powerLimit);
+        CHECK(heat > 0.3 * std::min(before, controls.powerLimit));
+        CHECK(std::abs(predistorter.take().power - heat) < 0.05 * controls.powerLimit);
+    }
+}
+
+TEST_CASE("A black box that is switched on amid the loudest is kept to its limit from then on", "[protection]")
+{
+    for (const std::uint64_t seed : {21U, 23U}) {
+        const auto& one = known(seed);
+        PredistortionControls controls;
+        controls.displacementLimit = 0.5 * one.box.region.farthest;
+        BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
+        predistorter.turn(false);
+        predistorter.reset();
+        std::vector<double> u(static_cast<std::size_t>(2.0 * protectedRate));
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = 0.5 * one.box.box.stimulus.peak
+                   * std::sin(2.0 * std::numbers::pi * 0.7 * one.resonance * static_cast<double>(n) / protectedRate);
+        std::vector<double> out(u.size());
+        const std::size_t on = u.size() / 2;
+        predistorter.process(u.data(), out.data(), on);
+        predistorter.turn(true);
+        predistorter.process(u.data() + on, out.data() + on, u.size() - on);
+        const auto x = moved(one.model, out);
+        // The cone has to come back by itself.
+        const auto from = static_cast<Eigen::Index>(on + 0.1 * protectedRate);
+        INFO("seed " << seed << ": before " << x.head(static_cast<Eigen::Index>(on)).cwiseAbs().maxCoeff()
+                     << " m, limit " << controls.displacementLimit << " m");
+        CHECK(x.head(static_cast<Eigen::Index>(on)).cwiseAbs().maxCoeff() > 1.2 * controls.displacementLimit);
+        CHECK(x.tail(x.size() - from).cwiseAbs().maxCoeff() < 1.01 * controls.displacementLimit);
+    }
+}
+
+TEST_CASE("The margin keeps a loudspeaker within the limit that moves farther than its black box says", "[protection]")
+{
+    Draw draw(9);
+    for (int run = 0; run < 6; ++run) {
+        const auto& one = known(21 + run);
+        PredistortionControls controls;
+        controls.margin = 0.15;
+        controls.displacementLimit = 0.5 * one.box.region.farthest;
+        auto programme = drawnProgramme(draw, one.resonance, protectedRate, 1.5);
+        for (auto& sample : programme.samples)
+            sample *= 2.0 * one.box.box.stimulus.peak;
+        BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
+        std::vector<double> out(programme.samples.size());
+        predistorter.process(programme.samples.data(), out.data(), out.size());
+        const double farther = 1.15 * moved(one.model, out).cwiseAbs().maxCoeff() / controls.displacementLimit;
+        INFO("run " << run << ": " << programme.name << " reached " << farther);
+        CHECK(farther < 1.01);
+    }
+}
+
+TEST_CASE("A model of no excursion keeps voltage and region, and says nothing of an excursion", "[protection]")
+{
+    auto box = known(22).box.box;
+    box.output = "pressure";
+    CHECK_FALSE(tellsExcursion(box));
+    const RehearsedBox rehearsed(box);
+    PredistortionControls controls;
+    controls.displacementLimit = 1e-9;
+    controls.voltageLimit = 0.3 * box.stimulus.peak;
+    BlackBoxPredistorter predistorter(rehearsed, protectedRate, controls);
+    Draw draw(2);
+    auto u = pinkNoise(draw, 48000);
+    for (auto& sample : u)
+        sample *= box.stimulus.peak;
+    std::vector<double> out(u.size());
+    predistorter.process(u.data(), out.data(), out.size());
+    CHECK(peakOf(out) <= controls.voltageLimit);
+    CHECK(peakOf(out) > 0.5 * controls.voltageLimit);
+    const auto meters = predistorter.take();
+    CHECK(meters.displacement == 0.0);
+    CHECK(meters.displacementReduction == 0.0);
+    CHECK(meters.voltageReduction > 1.0);
+}
+
+TEST_CASE("The motion of a black box is foreseen as its linear part has it", "[protection]")
+{
+    for (const double rate : {4000.0, 12000.0, 48000.0}) {
+        const auto stimulus = pinkStimulus(1.5);
+        auto model = randomPnlss(24, 48000.0, stimulus);
+        model.linear = randomPnlss(24, rate, stimulus).linear;
+        const auto box = boxOf(model, stimulus);
+        const BoxMotion motion(box);
+        const auto moves = [&](double f) { return std::abs(respond(box.linear, {f}).front()(0, 0)); };
+        INFO(rate << " Hz: resonance " << motion.linear.resonance << " Hz, off by " << motion.error);
+        CHECK(motion.error < (rate < 5000.0 ? 0.05 : 2e-3));
+        // Where |w x/u| is largest
+        for (const double f : {0.8, 1.25})
+            CHECK(f * moves(f * motion.linear.resonance) < moves(motion.linear.resonance));
+    }
+}
