@@ -46,7 +46,7 @@ Adapted adaptTo(const Model& model, const OpenTake& open, const std::vector<std:
     const auto progress = terminal.progress();
     result.before = compare(model, record, {0, false}, progress.part(0.0, 0.1));
     result.drift = followDrift(model, record, names, {}, progress.part(0.1, 0.9));
-    result.beyond = visitedExtent(model, record).displacement > farther * measuredDisplacement(model);
+    result.beyond = visitedRange(model, record).displacement > farther * measuredDisplacement(model);
     result.after = compare(result.drift.model, record, {result.drift.search.substeps, false}, progress.part(0.9, 1.0));
     return result;
 }
@@ -85,17 +85,18 @@ nlohmann::ordered_json documentOf(const std::vector<Drifted>& all)
 std::string sentenceOn(const Adapted& adapted)
 {
     const auto &before = adapted.before, &after = adapted.after;
-    constexpr double explained = 4.0;  // misfit up to which drift is all there is
+    constexpr double explained = 4.0;  // chi squared per value up to which drift is all there is
     if (!after.noiseKnown)
         return {};
-    if (after.chi <= explained)
-        return before.chi <= explained ? "The model was right before: nothing has drifted that this take can see."
-                                       : "That is all that has changed: what is left is the noise.";
+    if (after.chiSquaredPerValue <= explained)
+        return before.chiSquaredPerValue <= explained
+                   ? "The model was right before: nothing has drifted that this take can see."
+                   : "That is all that has changed: what is left is the noise.";
     if (adapted.beyond)
         return "In this take the cone goes farther than the laws of the model were measured: play it softer, or fit "
                "the "
                "model anew.";
-    return after.chi < 0.5 * before.chi
+    return after.chiSquaredPerValue < 0.5 * before.chiSquaredPerValue
                ? "Something is left that these parameters do not explain: compare the new model with the take."
                : "These parameters are not what has changed: the error hardly fell. Compare the model with the take, "
                  "or "
@@ -119,10 +120,12 @@ void print(const Adapted& adapted, Terminal& terminal)
     for (std::size_t k = 0; k < adapted.after.channels.size(); ++k) {
         const auto &before = adapted.before.channels[k].total, &after = adapted.after.channels[k].total;
         rows.push_back({titleOf(adapted.after.channels[k]), fixed(before.db, 1), fixed(after.db, 1),
-                        decibelText(after.noiseFloorDb), misfitText(before.chi, adapted.before.noiseKnown),
-                        misfitText(after.chi, adapted.after.noiseKnown)});
+                        decibelText(after.noiseFloorDb),
+                        chiSquaredText(before.chiSquaredPerValue, adapted.before.noiseKnown),
+                        chiSquaredText(after.chiSquaredPerValue, adapted.after.noiseKnown)});
     }
-    terminal.table({"channel", "error dB before", "after", "noise dB", "misfit before", "after"}, rows);
+    terminal.table(
+        {"channel", "error dB before", "after", "noise dB", std::string(chiSquaredTitle) + " before", "after"}, rows);
     if (const auto sentence = sentenceOn(adapted); !sentence.empty())
         terminal.say(wrapped(sentence));
 }

@@ -54,13 +54,13 @@ void printLevels(const Comparison& comparison, const std::string& unit, Terminal
             const auto kinds = k < channel.kindsByLevel.size() ? channel.kindsByLevel[k] : ErrorKinds {};
             rows.push_back({k == 0 ? std::string(name(channel.quantity)) : std::string(),
                             comparison.levels[k] > 0.0 ? significant(comparison.levels[k], 3) : "-", fixed(level.db, 1),
-                            decibelText(level.noiseFloorDb), misfitText(level.chi, comparison.noiseKnown),
-                            decibelText(kinds.linear), decibelText(kinds.odd), decibelText(kinds.even),
-                            kindOf(level, kinds)});
+                            decibelText(level.noiseFloorDb),
+                            chiSquaredText(level.chiSquaredPerValue, comparison.noiseKnown), decibelText(kinds.linear),
+                            decibelText(kinds.odd), decibelText(kinds.even), kindOf(level, kinds)});
         }
-    terminal.table(
-        {"channel", unit + " rms", "error dB", "noise dB", "misfit", "excited dB", "odd dB", "even dB", "mostly"},
-        rows);
+    terminal.table({"channel", unit + " rms", "error dB", "noise dB", chiSquaredTitle, "excited dB", "odd dB",
+                    "even dB", "mostly"},
+                   rows);
     terminal.say(
         "Excited, odd, even: the error on the lines that were played, and on the odd and even lines between them.");
 }

@@ -122,7 +122,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
         const double before = options.fullScale * peakOf(wav.channels[c]),
                      share = 1.0 / static_cast<double>(bent.channels.size());
         bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
-        const auto meters = predistorter.take();
+        const auto meters = predistorter.collectMeters();
         const double after = options.fullScale * peakOf(bent.channels[c]);
         loudest = std::max(loudest, after);
         faults += meters.faults;

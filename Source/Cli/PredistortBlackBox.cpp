@@ -53,7 +53,7 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
         const double before = options.fullScale * peakOf(wav.channels[c]),
                      share = 1.0 / static_cast<double>(bent.channels.size());
         bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
-        const auto meters = predistorter.take();
+        const auto meters = predistorter.collectMeters();
         const double after = options.fullScale * peakOf(bent.channels[c]);
         loudest = std::max(loudest, after);
         limited = limited || meters.reduction > noticed;

@@ -150,7 +150,7 @@ std::string beyond(const Model& model, const Measurement& take)
     double range = 0.0;
     for (const auto& component : model.components)
         if (const auto law = component.effect->law(); law && law->argument == "x")
-            range = std::max(range, component.extent.displacement);
+            range = std::max(range, component.operatingRange.displacement);
     const auto* x = take.find(Quantity::displacement);
     const double peak = x ? peakOf(x->samples) : 0.0;
     if (range == 0.0 || peak <= 1.05 * range)

@@ -126,7 +126,7 @@ void TargetPanel::tick()
     if (!pictured())
         return;
     ask();
-    if (const auto answer = forecast_.take())
+    if (const auto answer = forecast_.collect())
         show(*answer);
 }
 

@@ -83,7 +83,7 @@ TEST_CASE("A loudspeaker of the bench is linearized by a PNLSS model of its take
         const auto told = box.rehearsal;
         WARN("seed " << seed << ": model " << fit.validationDb << " dB, told " << told.beforeDb << " to "
                      << told.afterDb << " dB; the loudspeaker " << was << " to " << is << " dB, turned down by "
-                     << predistorter.take().reduction << " dB");
+                     << predistorter.collectMeters().reduction << " dB");
         CHECK(was - is > 25.0);
     }
 }

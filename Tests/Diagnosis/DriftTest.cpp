@@ -132,7 +132,7 @@ TEST_CASE("Where nothing has drifted nothing moves, and what does not drift is n
     const auto record = recordOf(shortTake(speaker), before);
     const auto wrong = followDrift(before, record, driftingParameters(before)),
                right = followDrift(before, record, {"Bl"});
-    CHECK(compare(wrong.model, record).chi > 20.0 * compare(right.model, record).chi);
+    CHECK(compare(wrong.model, record).chiSquaredPerValue > 20.0 * compare(right.model, record).chiSquaredPerValue);
     CHECK(right.model.baseParameter("Bl").value == Approx(speaker.Bl).epsilon(3e-3));
     CHECK_FALSE(right.warmer);
 }

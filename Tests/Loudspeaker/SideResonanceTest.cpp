@@ -46,7 +46,7 @@ TEST_CASE("Parts on the cone are those of the independent bench", "[effects]")
                                       {"Rms", speaker.Rms},
                                       {"K", speaker.K}})
         model.baseParameter(name).value = value;
-    model = withEffect(model, effectNamed("side-resonance"), Extent {});
+    model = withEffect(model, effectNamed("side-resonance"), OperatingRange {});
     auto& p = model.components.back().parameters;
     for (std::size_t k = 0; k < 2; ++k) {
         p[3 * k].value = speaker.sideResonance[k].mass;

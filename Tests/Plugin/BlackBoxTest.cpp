@@ -174,7 +174,7 @@ TEST_CASE("A model without physics is turned around by the plugin, with the gain
             const Eigen::VectorXd straight = simulate(plain, vectorOf(volts));
             const double before = distortionDb(simulated(*box, volts), straight, 16384),
                          after = distortionDb(simulated(*box, bent), straight, 16384);
-            const auto meters = processor.take();
+            const auto meters = processor.collectMeters();
             INFO("from " << before << " to " << after << " dB, turned down by " << meters.displacementReduction << ", "
                          << meters.region);
             CHECK(meters.displacementReduction == 0.0);
@@ -325,7 +325,7 @@ TEST_CASE("Models are rehearsed, taken back and handed over while audio runs on 
         }
         while (juce::dispatchNextMessageOnSystemQueue(true)) {}
         CHECK(processor.box() != nullptr);
-        CHECK(processor.take().faults == 0);
+        CHECK(processor.collectMeters().faults == 0);
         processor.setModel(processor.model());
         CHECK(processor.getLatencySamples() == driver);
     }

@@ -196,13 +196,13 @@ TEST_CASE("A driver with any effects written and read is the same")
     holds("driver", 60, [] {
         auto model = makeModel(*rc::gen::element<std::string>("electrodynamic", "mechanical"));
         model.name = anyName();
-        Extent extent;
-        extent.displacement = 1e-3 * (1.5 + within1());
-        extent.degree = between(2, 8);
-        extent.lowFrequency = 10.0 + within1();
+        OperatingRange operatingRange;
+        operatingRange.displacement = 1e-3 * (1.5 + within1());
+        operatingRange.degree = between(2, 8);
+        operatingRange.lowFrequency = 10.0 + within1();
         for (const auto* effect : catalogue())
             if (*rc::gen::arbitrary<bool>() && (model.electrical() || !effect->electrical()))
-                model = withEffect(model, *effect, extent);
+                model = withEffect(model, *effect, operatingRange);
         for (auto* parameter : parametersOf(model)) {
             parameter->value = std::clamp(parameter->value * (1.0 + 0.3 * within1()) + 0.01 * std::abs(within1()),
                                           parameter->lower, parameter->upper);

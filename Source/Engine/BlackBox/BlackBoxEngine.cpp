@@ -69,14 +69,14 @@ void BlackBoxEngine::process(double* volts, std::size_t n, Fade& played)
     }
 }
 
-ChainEngine::Meters BlackBoxEngine::take()
+ChainEngine::Meters BlackBoxEngine::collectMeters()
 {
     Meters meters;
-    const auto speaker = speaker_.take();
+    const auto speaker = speaker_.collectMeters();
     meters.region = speaker.region;
     meters.faults = speaker.faults + faults_.load(std::memory_order_relaxed);
     if (bend_) {
-        const auto bend = bend_->take();
+        const auto bend = bend_->collectMeters();
         meters.predistorter.voltage = bend.out;
         meters.predistorter.displacementReduction = bend.reduction;
         meters.region = std::max(meters.region, bend.region);

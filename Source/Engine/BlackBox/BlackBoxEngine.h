@@ -32,7 +32,7 @@ public:
     void setLinearShareRemoved(double share) override { speaker_.setLinearShareRemoved(share); }
     void process(double* volts, std::size_t n, Fade& played) override;
     void publish() override {}
-    Meters take() override;
+    Meters collectMeters() override;
 
 private:
     std::optional<BlackBoxPredistorter> bend_;

@@ -153,9 +153,9 @@ void BlackBoxPredistorter::process(const double* in, double* out, std::size_t n)
     reduction_.raise(least < 1.0 ? -20.0 * std::log10(std::max(least, 1e-5)) : 0.0);
 }
 
-BlackBoxPredistorter::Meters BlackBoxPredistorter::take()
+BlackBoxPredistorter::Meters BlackBoxPredistorter::collectMeters()
 {
-    return {out_.take(), correction_.take(), region_.take(), reduction_.take(),
+    return {out_.readAndReset(), correction_.readAndReset(), region_.readAndReset(), reduction_.readAndReset(),
             faults_.load(std::memory_order_relaxed)};
 }
 

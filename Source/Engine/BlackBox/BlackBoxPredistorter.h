@@ -58,7 +58,7 @@ public:
     /// @param in, out  n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);
 
-    /// Since the last call of take(); may be read from another thread.
+    /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
         double out = 0.0;         ///< peak, in the input's unit
         double correction = 0.0;  ///< peak of the correction
@@ -66,7 +66,7 @@ public:
         double reduction = 0.0;   ///< dB, by which the signal was turned down at most
         int faults = 0;           ///< samples that were no numbers, since construction
     };
-    Meters take();
+    Meters collectMeters();
 
 private:
     double correctionFor(double u, double limit, double& region);

@@ -50,14 +50,14 @@ public:
 
     /// What a model leaves of a channel.
     struct Channel {
-        double chi = 0.0;    ///< mean squared residual in units of the noise
+        double chiSquaredPerValue = 0.0;  ///< mean squared residual in units of the noise
         double power = 0.0;  ///< of the error over that of the noise; infinite where the noise is not known
 
         bool isNoise() const { return power <= ErrorPower::most; }
     };
     /// What a model leaves; no channels where a law's memory runs away.
     struct Left {
-        double chi = std::numeric_limits<double>::infinity();  ///< of all channels
+        double chiSquaredPerValue = std::numeric_limits<double>::infinity();  ///< of all channels
         double cost = std::numeric_limits<double>::infinity();
         std::vector<Channel> channels;
 
@@ -66,7 +66,7 @@ public:
             return !channels.empty()
                    && std::all_of(channels.begin(), channels.end(), [](const Channel& c) { return c.isNoise(); });
         }
-        bool isNoise() const { return areNoise() && chi < atNoise; }
+        bool isNoise() const { return areNoise() && chiSquaredPerValue < atNoise; }
     };
     Left left(const Model& model) const
     {
@@ -81,7 +81,7 @@ public:
         if (!sum)
             return left;
         left.cost = sum->cost;
-        left.chi = sum->cost / std::max(1.0, sum->rows);
+        left.chiSquaredPerValue = sum->cost / std::max(1.0, sum->rows);
         for (std::size_t c = 0; c < record_.channels.size(); ++c) {
             double cost = 0.0, rows = 0.0;
             ErrorPower power;
@@ -108,8 +108,8 @@ public:
         for (std::size_t c = 0; c < less.channels.size(); ++c) {
             const double sure = record_.noiseKnown && !less.channels[c].isNoise() ? sureNoise : 0.0;
             const double least = record_.noiseKnown ? 0.5 * (1.0 - sure) : 0.0;
-            most = std::max(most, decibels(std::max(more.channels[c].chi - sure, least)
-                                           / std::max({less.channels[c].chi - sure, least, 1e-300})));
+            most = std::max(most, decibels(std::max(more.channels[c].chiSquaredPerValue - sure, least)
+                                           / std::max({less.channels[c].chiSquaredPerValue - sure, least, 1e-300})));
             if (record_.noiseKnown)
                 most = std::max(
                     most, decibels(std::max(more.channels[c].power, 1.0) / std::max(less.channels[c].power, 1.0)));
@@ -143,7 +143,7 @@ public:
                     then = left(leaner);
             }
             one.vote = votedBy(effect, vote, then, now);
-            one.times = then.chi / now.chi;
+            one.times = then.chiSquaredPerValue / now.chiSquaredPerValue;
             one.staysNoise = then.areNoise();
             one.leaner = std::move(leaner);
         }
@@ -184,7 +184,10 @@ public:
                 if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
                     continue;
                 const auto then = left(leaner), now = left(model);
-                if (keeps(Tried {votedBy(effect, tried.vote, then, now), {}, then.chi / now.chi, then.areNoise()}))
+                if (keeps(Tried {votedBy(effect, tried.vote, then, now),
+                                 {},
+                                 then.chiSquaredPerValue / now.chiSquaredPerValue,
+                                 then.areNoise()}))
                     continue;
             }
             model = std::move(leaner);
@@ -231,14 +234,14 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
 {
     Model fuller = model;
     const auto still = withoutLaws(model, record, search.test().threads);
-    double now = search.left(model).chi;
+    double now = search.left(model).chiSquaredPerValue;
     for (const auto& s : scores) {  // lowest first
         if (!s.vote.backs())
             continue;
         auto next = fuller;
         next.components.push_back(s.model.components.back());
         if (s.effect->linear() && fitNewestByResponse(next, still).usable())
-            if (const double then = search.left(next).chi; then < now) {
+            if (const double then = search.left(next).chiSquaredPerValue; then < now) {
                 fuller = std::move(next);
                 now = then;
                 continue;
@@ -311,17 +314,18 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     if (const auto loud = fittedToLoudest(base, record, options); loud && !search.left(whole.model).isNoise()) {
         auto other = grown(*loud, record, search, progress.part(0.4, 0.7));
         search.chooseResiduals(whole.model);
-        if (other.fit.usable() && search.left(other.model).chi < search.left(whole.model).chi)
+        if (other.fit.usable()
+            && search.left(other.model).chiSquaredPerValue < search.left(whole.model).chiSquaredPerValue)
             whole = std::move(other);
     }
     if (!whole.fit.usable())
         return whole;
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
     search.chooseResiduals(whole.model);
-    const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
+    const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
     auto tried = search.takeOut(whole.model, true, [&](const Tried& one) {
         return unknownLeft ? one.vote.standsAlone()
-                           : one.vote.backs() || whole.fit.costPerResidual * one.times > atNoise || !one.staysNoise;
+                           : one.vote.backs() || whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
     });
     if (!tried) {
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));

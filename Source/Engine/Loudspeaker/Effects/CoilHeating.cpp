@@ -33,7 +33,7 @@ public:
     bool slow() const override { return true; }
     std::string sizedBy() const override { return "Re"; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         constexpr double plausibleRise = 10.0;  // Re doubles at a current of a third of the visited peak
         const auto time = [&e](const char* name, double likely, double least, double most) -> Parameter {
@@ -53,12 +53,12 @@ public:
                 time("slow", 4.0, 0.5, 100.0)};
     }
 
-    int memorySize(const Extent&) const override { return 2; }
-    int coefficientCount(const Extent&) const override { return 4; }
+    int memorySize(const OperatingRange&) const override { return 2; }
+    int coefficientCount(const OperatingRange&) const override { return 4; }
 
     /// Coefficients: the rise of both stages, ohm/W, and their rates, 1/s.
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         using std::exp;
         c[0] = p[0];
@@ -68,7 +68,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         const T rise = c[0] * memory[0] + c[1] * memory[1];
         const T power = (rise + e.scale) * at.i * at.i;

@@ -40,7 +40,7 @@ public:
         return quantity == Quantity::pressure || quantity == Quantity::velocity || quantity == Quantity::acceleration;
     }
 
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         std::vector<Parameter> result;
         for (int k = 1; k <= modes; ++k) {
@@ -62,7 +62,7 @@ public:
     }
     /// Broader and narrower modes are found from one of this quality, which is too narrow to stand for two at once.
     /// They lie so close that the next one is always within the width of a mode.
-    std::vector<Part> parts(const Extent&) const override
+    std::vector<Part> parts(const OperatingRange&) const override
     {
         constexpr double quality = 12.0, step = 0.75 / quality, aboveBand = 0.1;  // octaves
         std::vector<Part> parts;
@@ -76,7 +76,7 @@ public:
     }
 
     /// A mode rings, above the band in which the cone moves as one piece, and what swings is a part of the cone.
-    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+    bool plausible(const OperatingRange& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 1.5;
@@ -93,12 +93,12 @@ public:
         return true;
     }
 
-    int memorySize(const Extent&) const override { return 2 * modes; }
-    int coefficientCount(const Extent&) const override { return each * modes; }
+    int memorySize(const OperatingRange&) const override { return 2 * modes; }
+    int coefficientCount(const OperatingRange&) const override { return each * modes; }
 
     /// Coefficients of a mode: w^2, w/Q, g and h.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::exp;
         for (int k = 0; k < modes; ++k, p += each, c += each) {
@@ -112,7 +112,7 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>&) const
+    void addTo(const OperatingRange&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>&) const
     {
         for (int k = 0; k < modes; ++k, c += each, memory += 2, rate += 2) {
             rate[0] = memory[1];
@@ -121,8 +121,8 @@ public:
     }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>& at, const T& acceleration, const T* memory, const T* rate,
-                 Emission<T>& sum) const
+    void radiate(const OperatingRange&, const T* c, const Motion<T>& at, const T& acceleration, const T* memory,
+                 const T* rate, Emission<T>& sum) const
     {
         for (int k = 0; k < modes; ++k, c += each, memory += 2, rate += 2) {
             sum.acceleration += c[2] * (rate[1] - acceleration);

@@ -33,7 +33,7 @@ public:
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         std::vector<Parameter> result;
         result = curve::parameters(e, "N s/m");
@@ -53,16 +53,16 @@ public:
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"Rms(v)", "N s/m", "v", "m/s", "Rms"}; }
-    double lawAt(const Extent& e, const double* p, double v) const override
+    double lawAt(const OperatingRange& e, const double* p, double v) const override
     {
         std::array<double, curve::maximumDegree + 5> c {};
         prepareFor(e, p, c.data());
         return at(e, c.data(), v);
     }
-    int coefficientCount(const Extent& e) const override { return e.degree + 5; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 5; }
 
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::sqrt;
         // Powers of s: with y = 2 s - 1 Horner's rule is applied to whole polynomials, p <- p (2 s - 1) + b_j.
@@ -84,7 +84,7 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& motion, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& motion, const T*, T*, Balance<T>& sum) const
     {
         sum.force -= at(e, c, motion.v) * motion.v;
     }
@@ -93,7 +93,7 @@ private:
     static constexpr double rounding = 0.02;
 
     template <class T>
-    [[gnu::always_inline]] static T at(const Extent& e, const T* c, const T& v)
+    [[gnu::always_inline]] static T at(const OperatingRange& e, const T* c, const T& v)
     {
         using std::sqrt;
         T w = v * (1.0 / e.velocity);

@@ -32,25 +32,26 @@ public:
     bool felt() const override { return false; }
     bool shownBy(Quantity quantity) const override { return quantity == Quantity::pressure; }
 
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         return {{.name = "1/c", .unit = "s/m", .lower = 0.0, .strength = true}};
     }
-    int coefficientCount(const Extent&) const override { return 1; }
+    int coefficientCount(const OperatingRange&) const override { return 1; }
 
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         c[0] = p[0];
     }
 
     template <class T>
-    void addTo(const Extent&, const T*, const Motion<T>&, const T*, T*, Balance<T>&) const
+    void addTo(const OperatingRange&, const T*, const Motion<T>&, const T*, T*, Balance<T>&) const
     {
     }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>& at, const T&, const T*, const T*, Emission<T>& sum) const
+    void radiate(const OperatingRange&, const T* c, const Motion<T>& at, const T&, const T*, const T*,
+                 Emission<T>& sum) const
     {
         sum.lateness -= c[0] * at.x;
     }

@@ -29,13 +29,13 @@ public:
     bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Bl(x)", "N/A", "x", "m", "Bl"}; }
-    double lawAt(const Extent& e, const double* p, double x) const override
+    double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
         const T difference = curve::at(e.degree, c, at.x, e.displacement).value;
         sum.force += difference * at.i;

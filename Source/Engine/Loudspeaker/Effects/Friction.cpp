@@ -42,7 +42,7 @@ public:
     bool undone() const override { return false; }
     std::string sizedBy() const override { return "K"; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         const double springForce = e.scale * e.displacement, X = e.displacement;
         // its sign says nothing: a search that passes through the single element at 0 must not hit a wall
@@ -52,12 +52,12 @@ public:
                 {.name = "spread", .unit = "octaves", .value = 2.0, .prior = anySpread}};
     }
 
-    int memorySize(const Extent&) const override { return elements; }
-    int coefficientCount(const Extent&) const override { return 1 + elements; }
+    int memorySize(const OperatingRange&) const override { return elements; }
+    int coefficientCount(const OperatingRange&) const override { return 1 + elements; }
 
     /// Coefficients: the limit of one element, then 1/r_k.
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         using std::exp;
         c[0] = p[0] * (1.0 / elements);
@@ -66,7 +66,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         const T speed = size(at.v, rounding * e.velocity);
         T carried = T(0.0);

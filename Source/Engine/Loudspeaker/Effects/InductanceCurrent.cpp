@@ -36,7 +36,7 @@ public:
     bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(i)", "H", "i", "A", "Le"}; }
-    double lawAt(const Extent& e, const double* p, double i) const override
+    double lawAt(const OperatingRange& e, const double* p, double i) const override
     {
         std::array<double, curve::maximumDegree + 1> b {};
         curve::prepare(e.degree, p, b.data());
@@ -48,7 +48,7 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
         sum.inductance += fluxSlope(e, c, at.i);
     }
@@ -56,7 +56,7 @@ public:
 private:
     /// c + i dc/di
     template <class T>
-    static T fluxSlope(const Extent& e, const T* c, T i)
+    static T fluxSlope(const OperatingRange& e, const T* c, T i)
     {
         if (i > T(e.current) || i < T(-e.current))
             i = i > T(0.0) ? T(e.current) : T(-e.current);

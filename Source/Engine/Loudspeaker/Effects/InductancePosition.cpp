@@ -43,12 +43,12 @@ public:
     bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
-    double lawAt(const Extent& e, const double* p, double x) const override
+    double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
     }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         auto result = curve::parameters(e, "H");
         for (int n = 1; n <= loops; ++n)
@@ -58,12 +58,12 @@ public:
         result.push_back({.name = "way", .unit = "1", .lower = -1.0, .upper = 1.0, .prior = 0.5});
         return result;
     }
-    int memorySize(const Extent&) const override { return 2 * loops; }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1 + 2 * loops + 2; }
+    int memorySize(const OperatingRange&) const override { return 2 * loops; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + 2 * loops + 2; }
 
     /// The curve's, then each loop's rate and inductance, d = exp(depth)/g_0 and w.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::exp;
         curve::prepare(e.degree, p, c);
@@ -78,7 +78,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         using std::sqrt;
         const auto [value, slope] = curve::at(e.degree, c, at.x, e.displacement);

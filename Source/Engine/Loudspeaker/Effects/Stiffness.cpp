@@ -37,7 +37,7 @@ public:
     bool electrical() const override { return false; }
     bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         auto result = curve::parameters(e, "N/m");
         for (int k = 1; k <= yields; ++k)
@@ -50,17 +50,17 @@ public:
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"K(x)", "N/m", "x", "m", "K"}; }
-    double lawAt(const Extent& e, const double* p, double x) const override
+    double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement)
                + curve::beyond(p[0], e.degree > 1 ? p[1] : 0.0, x, e.displacement);
     }
-    int memorySize(const Extent& e) const override { return e.relaxed ? 2 * yields : 0; }
-    int coefficientCount(const Extent& e) const override { return e.degree + 3 + 2 * yields; }
+    int memorySize(const OperatingRange& e) const override { return e.relaxed ? 2 * yields : 0; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 3 + 2 * yields; }
 
     /// The curve's, its two ends', then each yield's rate and weight.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         curve::prepare(e.degree, p, c);
         c[e.degree + 1] = p[0];
@@ -74,7 +74,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         const int n = memorySize(e) / 2;
         const T* yield = c + e.degree + 3;
