@@ -15,13 +15,16 @@ void drawCone(const double* c, NetworkDrawing& into)
 
 class Electrodynamic final : public EffectOf<Electrodynamic>, public NetworkParts {
 public:
-    std::string id() const override { return "electrodynamic"; }
-    std::string title() const override { return "Linear electrodynamic driver"; }
-    std::string physics() const override { return "A coil in a magnetic field drives a mass on a damped spring."; }
-    std::string symptoms() const override { return "One resonance in the impedance; no distortion."; }
-    std::string remedy() const override { return "None is needed."; }
-    bool electrical() const override { return true; }
-    bool linear() const override { return true; }
+    Electrodynamic()
+        : EffectOf({.id = "electrodynamic",
+                    .title = "Linear electrodynamic driver",
+                    .physics = "A coil in a magnetic field drives a mass on a damped spring.",
+                    .symptoms = "One resonance in the impedance; no distortion.",
+                    .remedy = "None is needed.",
+                    .electrical = true,
+                    .linear = true})
+    {
+    }
 
     std::vector<Parameter> parameters(const OperatingRange&) const override
     {
@@ -58,13 +61,16 @@ public:
 
 class Mechanical final : public EffectOf<Mechanical>, public NetworkParts {
 public:
-    std::string id() const override { return "mechanical"; }
-    std::string title() const override { return "Linear mechanical driver"; }
-    std::string physics() const override { return "A force drives a mass on a damped spring."; }
-    std::string symptoms() const override { return "One resonance in the receptance; no distortion."; }
-    std::string remedy() const override { return "None is needed."; }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
+    Mechanical()
+        : EffectOf({.id = "mechanical",
+                    .title = "Linear mechanical driver",
+                    .physics = "A force drives a mass on a damped spring.",
+                    .symptoms = "One resonance in the receptance; no distortion.",
+                    .remedy = "None is needed.",
+                    .electrical = false,
+                    .linear = true})
+    {
+    }
 
     std::vector<Parameter> parameters(const OperatingRange&) const override
     {

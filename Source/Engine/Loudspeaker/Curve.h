@@ -113,6 +113,8 @@ inline std::vector<Parameter> parameters(const OperatingRange& operatingRange, c
 template <class Self>
 class CurveLaw : public EffectOf<Self> {
 public:
+    using EffectOf<Self>::EffectOf;
+
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         return curve::parameters(e, this->law()->unit);

@@ -117,19 +117,31 @@ struct Part {
     std::vector<std::vector<double>> starts;
 };
 
-/// One physical effect. A subclass is the whole of it: its words, its parameters, its memory, what it adds to the
+/// What an effect is called and how a person knows it, and the two facts that decide where it can be.
+struct EffectCard {
+    std::string id;           ///< "force-factor"
+    std::string title;        ///< "Force factor Bl(x)"
+    std::string physics;      ///< one sentence
+    std::string symptoms;     ///< what betrays it, in words a person can check on a plot
+    std::string remedy;       ///< what a designer can do about it
+    bool electrical = false;  ///< needs a coil; a mechanical-only driver has none
+    bool linear = false;      ///< changes the frequency response, adds no distortion
+};
+
+/// One physical effect. A subclass is the whole of it: its card, its parameters, its memory, what it adds to the
 /// driver's two equations and what to the sound that leaves it, written once through EffectOf for any number type.
 class Effect {
 public:
+    explicit Effect(EffectCard card) : card_(std::move(card)) {}
     virtual ~Effect() = default;
 
-    virtual std::string id() const = 0;                    ///< "force-factor"
-    virtual std::string title() const = 0;                 ///< "Force factor Bl(x)"
-    virtual std::string physics() const = 0;               ///< one sentence
-    virtual std::string symptoms() const = 0;              ///< what betrays it, in words a person can check on a plot
-    virtual std::string remedy() const = 0;                ///< what a designer can do about it
-    virtual bool electrical() const = 0;                   ///< needs a coil; a mechanical-only driver has none
-    virtual bool linear() const = 0;                       ///< changes the frequency response, adds no distortion
+    const std::string& id() const { return card_.id; }
+    const std::string& title() const { return card_.title; }
+    const std::string& physics() const { return card_.physics; }
+    const std::string& symptoms() const { return card_.symptoms; }
+    const std::string& remedy() const { return card_.remedy; }
+    bool electrical() const { return card_.electrical; }
+    bool linear() const { return card_.linear; }
     virtual bool felt() const { return true; }             ///< acts on coil and cone; else it is heard or seen only
     virtual bool shownBy(Quantity) const { return true; }  ///< a channel of that quantity can show it
     virtual bool undone() const { return felt(); }  ///< predistortion reckons with it; else it leaves it as it is
@@ -194,6 +206,9 @@ public:
                       Emission<double>&) const = 0;
     virtual void emit(const OperatingRange&, const Jet* coefficients, const Motion<Jet>&, const Jet& acceleration,
                       const Jet* memory, const Jet* memoryRate, Emission<Jet>&) const = 0;
+
+private:
+    EffectCard card_;
 };
 
 /// Lets a subclass write its physics once:
@@ -207,6 +222,8 @@ public:
 template <class Self>
 class EffectOf : public Effect {
 public:
+    using Effect::Effect;
+
     void prepare(const OperatingRange& e, const double* p, double* c) const final { self().prepareFor(e, p, c); }
     void prepare(const OperatingRange& e, const Jet* p, Jet* c) const final { self().prepareFor(e, p, c); }
     void contribute(const OperatingRange& e, const double* c, const Motion<double>& motion, const double* memory,

@@ -10,19 +10,16 @@ namespace {
 /// The cone's acceleration over its area Sd, heard a time of flight tau later.
 class Radiation final : public EffectOf<Radiation> {
 public:
-    std::string id() const override { return "path"; }
-    std::string title() const override { return "Path to the microphone"; }
-    std::string physics() const override
+    Radiation()
+        : EffectOf({.id = "path",
+                    .title = "Path to the microphone",
+                    .physics = "The cone's acceleration makes the pressure in front of it, a time of flight later.",
+                    .symptoms = "A pressure like the acceleration, with a phase that falls with frequency.",
+                    .remedy = "None is needed.",
+                    .electrical = false,
+                    .linear = true})
     {
-        return "The cone's acceleration makes the pressure in front of it, a time of flight later.";
     }
-    std::string symptoms() const override
-    {
-        return "A pressure like the acceleration, with a phase that falls with frequency.";
-    }
-    std::string remedy() const override { return "None is needed."; }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     bool felt() const override { return false; }
 
     /// Both are held until a channel of pressure is there to see them.

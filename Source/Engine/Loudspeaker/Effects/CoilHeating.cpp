@@ -16,20 +16,17 @@ namespace {
 /// steady rise.
 class CoilHeating final : public EffectOf<CoilHeating> {
 public:
-    std::string id() const override { return "coil-heating"; }
-    std::string title() const override { return "Coil heating Re(T)"; }
-    std::string physics() const override { return "The coil turns power into heat, and hot copper resists more."; }
-    std::string symptoms() const override
+    CoilHeating()
+        : EffectOf({.id = "coil-heating",
+                    .title = "Coil heating Re(T)",
+                    .physics = "The coil turns power into heat, and hot copper resists more.",
+                    .symptoms = "residual voltage in step with the current that grows with the level and in the course "
+                                "of the take, without harmonics",
+                    .remedy = "A larger coil, a closer gap, ferrofluid or a vented pole piece carry the heat away.",
+                    .electrical = true,
+                    .linear = false})
     {
-        return "residual voltage in step with the current that grows with the level and in the course of the take, "
-               "without harmonics";
     }
-    std::string remedy() const override
-    {
-        return "A larger coil, a closer gap, ferrofluid or a vented pole piece carry the heat away.";
-    }
-    bool electrical() const override { return true; }
-    bool linear() const override { return false; }
     bool slow() const override { return true; }
     std::string sizedBy() const override { return "Re"; }
 

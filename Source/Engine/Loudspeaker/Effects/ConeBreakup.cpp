@@ -15,24 +15,18 @@ namespace {
 /// over the upper three octaves of the band, so that what is plausible beforehand holds for each.
 class ConeBreakup final : public EffectOf<ConeBreakup> {
 public:
-    std::string id() const override { return "cone-breakup"; }
-    std::string title() const override { return "Cone breakup"; }
-    std::string physics() const override
+    ConeBreakup()
+        : EffectOf({.id = "cone-breakup",
+                    .title = "Cone breakup",
+                    .physics = "Above some frequency the cone bends: parts of it move by themselves and radiate.",
+                    .symptoms = "linear residual pressure in narrow peaks and dips at the top of the band, the same at "
+                                "every level, with no trace of it in the current",
+                    .remedy = "More damping in the cone or its surround, another shape of the cone, or a crossover "
+                              "below the first mode.",
+                    .electrical = false,
+                    .linear = true})
     {
-        return "Above some frequency the cone bends: parts of it move by themselves and radiate.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual pressure in narrow peaks and dips at the top of the band, the same at every level, "
-               "with no trace of it in the current";
-    }
-    std::string remedy() const override
-    {
-        return "More damping in the cone or its surround, another shape of the cone, or a crossover below the first "
-               "mode.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     bool felt() const override { return false; }
     /// The displacement falls with the square of the frequency: where modes are, a laser that tells it sees its noise.
     bool shownBy(Quantity quantity) const override

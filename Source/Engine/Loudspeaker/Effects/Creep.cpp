@@ -22,19 +22,18 @@ namespace {
 /// f_k and K_k depart as far as the data asks (RelaxationSpectrum.h).
 class Creep final : public EffectOf<Creep>, public NetworkParts {
 public:
-    std::string id() const override { return "creep"; }
-    std::string title() const override { return "Suspension creep"; }
-    std::string physics() const override
+    Creep()
+        : EffectOf(
+            {.id = "creep",
+             .title = "Suspension creep",
+             .physics = "The rubber and cloth of the suspension yield slowly: the compliance grows as frequency falls.",
+             .symptoms =
+                 "linear residual force below and around resonance, a stiffness that rises slowly with frequency",
+             .remedy = "A surround and spider of less lossy material creep less.",
+             .electrical = false,
+             .linear = true})
     {
-        return "The rubber and cloth of the suspension yield slowly: the compliance grows as frequency falls.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual force below and around resonance, a stiffness that rises slowly with frequency";
-    }
-    std::string remedy() const override { return "A surround and spider of less lossy material creep less."; }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     bool relaxes() const override { return true; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override

@@ -16,22 +16,18 @@ namespace {
 /// proportion to |v|.
 class DampingVelocity final : public EffectOf<DampingVelocity> {
 public:
-    std::string id() const override { return "damping-velocity"; }
-    std::string title() const override { return "Mechanical resistance Rms(v)"; }
-    std::string physics() const override
+    DampingVelocity()
+        : EffectOf(
+            {.id = "damping-velocity",
+             .title = "Mechanical resistance Rms(v)",
+             .physics =
+                 "Air pumped through narrow vents and the spider resists more than in proportion to the velocity.",
+             .symptoms = "residual force that is a curve of v alone, strongest around resonance, no residual voltage",
+             .remedy = "Larger or rounder vents under the dust cap and spider make Rms(v) constant.",
+             .electrical = false,
+             .linear = false})
     {
-        return "Air pumped through narrow vents and the spider resists more than in proportion to the velocity.";
     }
-    std::string symptoms() const override
-    {
-        return "residual force that is a curve of v alone, strongest around resonance, no residual voltage";
-    }
-    std::string remedy() const override
-    {
-        return "Larger or rounder vents under the dust cap and spider make Rms(v) constant.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {

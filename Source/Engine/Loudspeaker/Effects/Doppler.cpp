@@ -9,26 +9,19 @@ namespace {
 /// is taken for granted; in air it is 2.9 ms/m.
 class Doppler final : public EffectOf<Doppler> {
 public:
-    std::string id() const override { return "doppler"; }
-    std::string title() const override { return "Doppler shift of the sound"; }
-    std::string physics() const override
+    Doppler()
+        : EffectOf({.id = "doppler",
+                    .title = "Doppler shift of the sound",
+                    .physics = "The cone carries the source of its sound to and fro, so high tones are phase-modulated "
+                               "by the excursion of low ones.",
+                    .symptoms = "residual pressure around high tones at distances of low ones, growing with frequency "
+                                "and excursion, with no trace of it in current or displacement",
+                    .remedy = "Less excursion where treble is played: a crossover, or more area. No voltage removes it "
+                              "for every tone at once.",
+                    .electrical = false,
+                    .linear = false})
     {
-        return "The cone carries the source of its sound to and fro, so high tones are phase-modulated by the "
-               "excursion of low ones.";
     }
-    std::string symptoms() const override
-    {
-        return "residual pressure around high tones at distances of low ones, growing with frequency and excursion, "
-               "with no trace of it in "
-               "current or displacement";
-    }
-    std::string remedy() const override
-    {
-        return "Less excursion where treble is played: a crossover, or more area. No voltage removes it for every tone "
-               "at once.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
     bool felt() const override { return false; }
     bool shownBy(Quantity quantity) const override { return quantity == Quantity::pressure; }
 

@@ -24,21 +24,18 @@ namespace {
 /// is the current j_k through its inductor: dj_k/dt = p_k (i - j_k), voltage R_k (i - j_k).
 class EddyCurrents final : public EffectOf<EddyCurrents>, public NetworkParts {
 public:
-    std::string id() const override { return "eddy-currents"; }
-    std::string title() const override { return "Eddy currents (semi-inductance)"; }
-    std::string physics() const override
+    EddyCurrents()
+        : EffectOf({.id = "eddy-currents",
+                    .title = "Eddy currents (semi-inductance)",
+                    .physics = "Currents induced in the iron make the coil's impedance rise about like a fractional "
+                               "power of frequency, K s^a.",
+                    .symptoms = "linear residual voltage well above resonance, with a steady slope of the magnitude "
+                                "and a phase that stays below 90 degrees",
+                    .remedy = "It is no fault; a copper ring lowers it and makes it more linear.",
+                    .electrical = true,
+                    .linear = true})
     {
-        return "Currents induced in the iron make the coil's impedance rise about like a fractional power of "
-               "frequency, K s^a.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual voltage well above resonance, with a steady slope of the magnitude and a phase that "
-               "stays below 90 degrees";
-    }
-    std::string remedy() const override { return "It is no fault; a copper ring lowers it and makes it more linear."; }
-    bool electrical() const override { return true; }
-    bool linear() const override { return true; }
 
     std::vector<Parameter> parameters(const OperatingRange&) const override
     {

@@ -18,26 +18,20 @@ namespace {
 /// where it has two continuous derivatives and vanishes at rest, so that a cone that stands still forgets nothing.
 class Friction final : public EffectOf<Friction> {
 public:
-    std::string id() const override { return "friction"; }
-    std::string title() const override { return "Suspension hysteresis (friction)"; }
-    std::string physics() const override
+    Friction()
+        : EffectOf(
+            {.id = "friction",
+             .title = "Suspension hysteresis (friction)",
+             .physics = "Fibres of the spider and surround rub and slip: after every turn of the cone a force builds "
+                        "up against it and then holds.",
+             .symptoms = "residual force that follows the sign of the velocity, as large at low as at high frequencies "
+                         "and the same at all levels: stiffer and more damped where the cone moves little",
+             .remedy = "Impregnation of the spider, glue joints and lead-out wires rub; a smoother weave or less "
+                       "doping lowers the loss.",
+             .electrical = false,
+             .linear = false})
     {
-        return "Fibres of the spider and surround rub and slip: after every turn of the cone a force builds up against "
-               "it and then holds.";
     }
-    std::string symptoms() const override
-    {
-        return "residual force that follows the sign of the velocity, as large at low as at high frequencies and the "
-               "same at all levels: "
-               "stiffer and more damped where the cone moves little";
-    }
-    std::string remedy() const override
-    {
-        return "Impregnation of the spider, glue joints and lead-out wires rub; a smoother weave or less doping lowers "
-               "the loss.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
     /// To undo what hysteresis holds the voltage would have to hold it in silence, too.
     bool undone() const override { return false; }
     std::string sizedBy() const override { return "K"; }

@@ -15,25 +15,19 @@ namespace {
 /// the flux goes on with the slope that it has at the end.
 class InductanceCurrent final : public CurveLaw<InductanceCurrent> {
 public:
-    std::string id() const override { return "inductance-current"; }
-    std::string title() const override { return "Flux modulation Le(i)"; }
-    std::string physics() const override
+    InductanceCurrent()
+        : CurveLaw({.id = "inductance-current",
+                    .title = "Flux modulation Le(i)",
+                    .physics = "The coil's own field drives the iron in and out of saturation, so the inductance "
+                               "changes with the current.",
+                    .symptoms = "residual voltage that grows with frequency and is scaled by a curve of the current, "
+                                "wherever the cone is; no residual force",
+                    .remedy = "Shorting rings hold the flux still; iron that is saturated by the magnet alone has "
+                              "little left to change.",
+                    .electrical = true,
+                    .linear = false})
     {
-        return "The coil's own field drives the iron in and out of saturation, so the inductance changes with the "
-               "current.";
     }
-    std::string symptoms() const override
-    {
-        return "residual voltage that grows with frequency and is scaled by a curve of the current, wherever the cone "
-               "is; no residual force";
-    }
-    std::string remedy() const override
-    {
-        return "Shorting rings hold the flux still; iron that is saturated by the magnet alone has little left to "
-               "change.";
-    }
-    bool electrical() const override { return true; }
-    bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(i)", "H", "i", "A", "Le"}; }
     double lawAt(const OperatingRange& e, const double* p, double i) const override

@@ -27,20 +27,18 @@ namespace {
 /// A chain of loops that follows K s^0.4 is met to -82 dB of the current with four, to -75 with three.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
-    std::string id() const override { return "inductance-position"; }
-    std::string title() const override { return "Inductance Le(x) with reluctance force"; }
-    std::string physics() const override
+    InductancePosition()
+        : EffectOf({.id = "inductance-position",
+                    .title = "Inductance Le(x) with reluctance force",
+                    .physics = "The coil sees more iron inward than outward, so its inductance falls with x and the "
+                               "iron pulls it in.",
+                    .symptoms = "residual voltage that grows with frequency and is scaled by a curve of x; a small "
+                                "residual force like the current squared",
+                    .remedy = "Shorting rings or a copper cap near the gap flatten Le(x).",
+                    .electrical = true,
+                    .linear = false})
     {
-        return "The coil sees more iron inward than outward, so its inductance falls with x and the iron pulls it in.";
     }
-    std::string symptoms() const override
-    {
-        return "residual voltage that grows with frequency and is scaled by a curve of x; a small residual force like "
-               "the current squared";
-    }
-    std::string remedy() const override { return "Shorting rings or a copper cap near the gap flatten Le(x)."; }
-    bool electrical() const override { return true; }
-    bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
     double lawAt(const OperatingRange& e, const double* p, double x) const override

@@ -19,24 +19,20 @@ namespace {
 /// not is a second loudspeaker's worth of mass, that of a port above all.
 class SideResonance final : public EffectOf<SideResonance>, public NetworkParts {
 public:
-    std::string id() const override { return "side-resonance"; }
-    std::string title() const override { return "Side resonances (surround, dust cap, air behind the cone)"; }
-    std::string physics() const override
+    SideResonance()
+        : EffectOf(
+            {.id = "side-resonance",
+             .title = "Side resonances (surround, dust cap, air behind the cone)",
+             .physics = "A surround, a dust cap or the air behind the cone swings by itself near its own resonance and "
+                        "pulls at the coil.",
+             .symptoms = "linear residual current in a few narrow bands, each a small step or loop of the impedance, "
+                         "the same at every level",
+             .remedy =
+                 "More damping where it swings: another surround or glue, stuffing in the box or behind the dome.",
+             .electrical = false,
+             .linear = true})
     {
-        return "A surround, a dust cap or the air behind the cone swings by itself near its own resonance and pulls at "
-               "the coil.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual current in a few narrow bands, each a small step or loop of the impedance, the same at "
-               "every level";
-    }
-    std::string remedy() const override
-    {
-        return "More damping where it swings: another surround or glue, stuffing in the box or behind the dome.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     std::string sizedBy() const override { return "m"; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override

@@ -19,23 +19,20 @@ namespace {
 /// the visited range.
 class Stiffness final : public EffectOf<Stiffness> {
 public:
-    std::string id() const override { return "stiffness"; }
-    std::string title() const override { return "Stiffness K(x)"; }
-    std::string physics() const override
+    Stiffness()
+        : EffectOf(
+            {.id = "stiffness",
+             .title = "Stiffness K(x)",
+             .physics =
+                 "The suspension hardens, or yields, as it is stretched, and need not do so alike on both sides.",
+             .symptoms =
+                 "residual force that is a curve of x alone, strongest at and below resonance, no residual voltage",
+             .remedy = "A wider surround roll or a softer, symmetric spider straightens K(x); an even part asks for a "
+                       "shifted rest position.",
+             .electrical = false,
+             .linear = false})
     {
-        return "The suspension hardens, or yields, as it is stretched, and need not do so alike on both sides.";
     }
-    std::string symptoms() const override
-    {
-        return "residual force that is a curve of x alone, strongest at and below resonance, no residual voltage";
-    }
-    std::string remedy() const override
-    {
-        return "A wider surround roll or a softer, symmetric spider straightens K(x); an even part asks for a shifted "
-               "rest position.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {

@@ -28,25 +28,21 @@ namespace {
 /// is left below its tuning is the suspension alone.
 class VentedBox final : public EffectOf<VentedBox>, public NetworkParts {
 public:
-    std::string id() const override { return "vented-box"; }
-    std::string title() const override { return "Box with a port, a passive radiator or a leak"; }
-    std::string physics() const override
+    VentedBox()
+        : EffectOf(
+            {.id = "vented-box",
+             .title = "Box with a port, a passive radiator or a leak",
+             .physics =
+                 "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a "
+                 "second resonance. Through a leak a closed box loses its spring at the lowest frequencies.",
+             .symptoms = "two humps in the impedance with a dip between them, where the cone stands nearly still and "
+                         "the port moves; of a leak, motion that grows far below the resonance",
+             .remedy = "It is no fault; box volume and port length set where the dip is, a leak or stuffing lowers the "
+                       "humps. Where the box should be closed, seal it.",
+             .electrical = false,
+             .linear = true})
     {
-        return "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a "
-               "second resonance. Through a leak a closed box loses its spring at the lowest frequencies.";
     }
-    std::string symptoms() const override
-    {
-        return "two humps in the impedance with a dip between them, where the cone stands nearly still and the port "
-               "moves; of a leak, motion that grows far below the resonance";
-    }
-    std::string remedy() const override
-    {
-        return "It is no fault; box volume and port length set where the dip is, a leak or stuffing lowers the humps. "
-               "Where the box should be closed, seal it.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
