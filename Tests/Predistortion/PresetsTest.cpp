@@ -93,7 +93,7 @@ TEST_CASE("Every recipe loads, and is one that can be kept", "[presets]")
     CHECK(recipes.size() >= 3);
     for (const auto& file : recipes) {
         INFO(file.string());
-        const auto recipe = readRecipe(file);
+        const auto recipe = readDocument(file, recipeFromJson);
         std::string reason;
         CHECK(recipe.isValid(&reason));
         CHECK(reason.empty());

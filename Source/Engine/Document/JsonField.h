@@ -53,4 +53,12 @@ private:
 /// Parses a file that must hold one JSON object; throws Error (input).
 nlohmann::json readJson(const std::filesystem::path&);
 
+/// What `from` makes of the document in a file: readDocument(path, pnlssFromJson). Throws Error (input).
+template <class From>
+auto readDocument(const std::filesystem::path& path, From from)
+{
+    const auto document = readJson(path);
+    return from(JsonField(document, "", path.string()));
+}
+
 }  // namespace excursion
