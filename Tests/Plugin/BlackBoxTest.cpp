@@ -6,6 +6,7 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Signal/Fft.h"
+#include "Plugin/Played.h"
 #include "Plugin/Processor.h"
 
 #include <catch2/catch.hpp>
@@ -24,6 +25,7 @@ bool dispatchNextMessageOnSystemQueue(bool returnIfNoPendingMessages);
 }
 
 using namespace excursion;
+using namespace excursion::test;
 using plugin::Processor;
 
 namespace {
@@ -121,13 +123,6 @@ std::string refused(const nlohmann::ordered_json& document)
     return status.words;
 }
 
-juce::MemoryBlock stateOf(Processor& processor)
-{
-    juce::MemoryBlock block;
-    processor.getStateInformation(block);
-    return block;
-}
-
 }  // namespace
 
 TEST_CASE("Every class of models is played by the plugin as its own simulation has it", "[plugin][blackbox]")
@@ -150,8 +145,7 @@ TEST_CASE("Every class of models is played by the plugin as its own simulation h
     }
 }
 
-TEST_CASE("A model without physics is turned around by the plugin, with the gain that was told before",
-          "[plugin][blackbox]")
+TEST_CASE("A model without physics is inverted by the plugin, with the gain that was told before", "[plugin][blackbox]")
 {
     int turned = 0;
     for (const auto& box : boxes()) {
@@ -455,7 +449,7 @@ TEST_CASE("A model without physics is kept in the state, byte for byte, and play
     }
 }
 
-TEST_CASE("A model that cannot be turned around plays, and lets the signal through where it should be linearized",
+TEST_CASE("A model that cannot be inverted plays, and lets the signal through where it should be linearized",
           "[plugin][blackbox]")
 {
     Processor processor;
@@ -465,7 +459,7 @@ TEST_CASE("A model that cannot be turned around plays, and lets the signal throu
     const auto status = processor.rehearsing().status();
     INFO(status.words);
     CHECK_FALSE(status.trouble);
-    CHECK(status.words.find("cannot be turned around") != std::string::npos);
+    CHECK(status.words.find("cannot be inverted") != std::string::npos);
     REQUIRE(processor.box());
     const auto volts = noise(processor.box()->played.box.stimulus, 0.7, rate, 5, 2);
     setMode(processor, Mode::linearize);
