@@ -163,19 +163,17 @@ void run(const AdaptArguments& options, Terminal& terminal)
 
 void addAdapt(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<AdaptArguments>();
-    auto* verb =
-        app.add_subcommand("adapt", "Refit what drifts with temperature and age to a short take")->group(step::use);
+    const auto [verb, o] = addVerb<AdaptArguments>(app, terminal, step::use, "adapt",
+                                                   "Refit what drifts with temperature and age, to a short take", run);
     verb->add_option("MODEL", o->model, "the model of the driver, a .json")->required();
     verb->add_option("TAKE", o->take, "a new take or impedance of the same driver; a short one will do")->required();
-    verb->add_option("--parameters", o->parameters,
-                     "parameters of the base that may have changed, separated by commas; a law goes with its own "
-                     "(default: Re,Rms,K)")
+    verb->add_option(
+            "--parameters", o->parameters,
+            "base parameters that may have changed, separated by commas; each takes its law along (default: Re,Rms,K)")
         ->delimiter(',')
         ->type_name("NAME");
     verb->add_option("--out", o->out, "the model as it is now, a .json")->required()->type_name("FILE");
     verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -119,14 +119,13 @@ void run(const AddArguments& options, Terminal& terminal)
 
 void addAdd(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<AddArguments>();
-    auto* verb = app.add_subcommand("add", "Put an effect into a model and refit everything")->group(step::diagnose);
+    const auto [verb, o] = addVerb<AddArguments>(app, terminal, step::diagnose, "add",
+                                                 "Put an effect into a model and refit everything", run);
     verb->add_option("TAKE", o->take, "the take or impedance that the model was fitted to")->required();
     verb->add_option("EFFECT", o->effect, "the effect, such as stiffness; excursion effects lists them")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->add_option("--out", o->out, "the new model, a .json")->required()->type_name("FILE");
     verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -168,14 +168,12 @@ void run(const CompareArguments& options, Terminal& terminal)
 
 void addCompare(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<CompareArguments>();
-    auto* verb =
-        app.add_subcommand("compare", "Where a model and a take part, by how much, and in which way")->group(step::fit);
+    const auto [verb, o] = addVerb<CompareArguments>(app, terminal, step::fit, "compare",
+                                                     "Where a model and a take differ, by how much, and how", run);
     verb->add_option("TAKE", o->take,
                      "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")
         ->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model without physics turned around.
+// A model without physics inverted.
 #include "Cli/Predistorting.h"
 
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
@@ -9,6 +9,7 @@
 #include "Engine/Signal/Level.h"
 
 #include <limits>
+#include <memory>
 
 namespace excursion::cli {
 
@@ -45,37 +46,31 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
     std::vector<std::vector<std::string>> rows;
     nlohmann::ordered_json channels = nlohmann::ordered_json::array();
     bool limited = false;
-    double loudest = 0.0;
     const BlackBoxControls controls {options.amount,
                                      options.voltageLimit.value_or(std::numeric_limits<double>::infinity())};
-    for (std::size_t c = 0; c < bent.channels.size(); ++c) {
-        BlackBoxPredistorter predistorter(model, rate, controls);
-        const double before = options.fullScale * peakOf(wav.channels[c]),
-                     share = 1.0 / static_cast<double>(bent.channels.size());
-        bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
-        const auto meters = predistorter.collectMeters();
-        const double after = options.fullScale * peakOf(bent.channels[c]);
-        loudest = std::max(loudest, after);
+    const auto make = [&] { return std::make_unique<BlackBoxPredistorter>(model, rate, controls); };
+    const auto told = [&](double before, double after, const BlackBoxPredistorter::Meters& meters) {
         limited = limited || meters.reduction > noticed;
         channels.push_back({{"peakIn", before},
                             {"peakOut", after},
                             {"correction", meters.correction},
                             {"region", meters.region},
                             {"reduction", meters.reduction}});
-        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
-                        significant(meters.correction) + " " + unit, fixed(100.0 * meters.region, 0) + " %",
-                        turnedDown(meters.reduction, true)});
-    }
+        rows.push_back({std::to_string(channels.size()), significant(before) + " " + unit,
+                        significant(after) + " " + unit, significant(meters.correction) + " " + unit,
+                        fixed(100.0 * meters.region, 0) + " %", turnedDown(meters.reduction, true)});
+    };
+    const double loudest = bendAll(bent, options.fullScale, progress, make, told);
     publish(bent, options.out);
-    auto told = documentOf(options, wav);
-    told.update({{"voltageLimit", numberOrNull(controls.inputLimit)},
-                 {"modelRate", box.linear.sampleRate},
-                 {"distortionBeforeDb", gain.beforeDb},
-                 {"distortionAfterDb", gain.afterDb},
-                 {"gainDb", gain.gainDb()},
-                 {"channels", channels},
-                 {"limited", limited}});
-    terminal.document(told);
+    auto report = documentOf(options, wav);
+    report.update({{"voltageLimit", numberOrNull(controls.inputLimit)},
+                   {"modelRate", box.linear.sampleRate},
+                   {"distortionBeforeDb", gain.beforeDb},
+                   {"distortionAfterDb", gain.afterDb},
+                   {"gainDb", gain.gainDb()},
+                   {"channels", channels},
+                   {"limited", limited}});
+    terminal.document(report);
     terminal.table({"channel", "peak in", "out", "the correction", "of the region", "turned down"}, rows);
     if (limited)
         terminal.say("The signal goes beyond where the model was fitted (" + significant(box.stimulus.peak, 3) + " "

@@ -42,10 +42,10 @@ nlohmann::ordered_json documentOf(const Resonance& one, const TargetForecast::Pe
 void addTargetOptions(CLI::App& verb, TargetArguments& target)
 {
     verb.add_option("--target-f0", target.frequency,
-                    "Hz: the linearized loudspeaker is to resonate there (default: where the driver does)");
-    verb.add_option("--target-q", target.quality, "and with this total Q (default: the driver's own)");
+                    "resonance of the linearized loudspeaker, Hz (default: the driver's own)");
+    verb.add_option("--target-q", target.quality, "its total Q (default: the driver's own)");
     verb.add_option("--target-box", target.litres,
-                    "litres: it is to move as the driver would in a closed box of that volume");
+                    "make it move like the driver in a closed box of this volume, litres");
 }
 
 Target targetFrom(const TargetArguments& asked, const Model& model)

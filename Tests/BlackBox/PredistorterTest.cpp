@@ -289,7 +289,7 @@ TEST_CASE("The speaker plays as the model is simulated, and never runs away", "[
         < -150.0);
 }
 
-TEST_CASE("A model that cannot be turned around is refused in a sentence", "[predistorter]")
+TEST_CASE("A model that cannot be inverted is refused in a sentence", "[predistorter]")
 {
     const auto stimulus = pinkStimulus(2.0);
     CHECK_THROWS_AS(RehearsedBox(boxOf(oneWay(modelRate, stimulus), stimulus)), Error);

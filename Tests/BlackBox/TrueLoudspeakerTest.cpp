@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole way on the virtual bench: a PNLSS model of a noisy take, turned around, and the loudspeaker itself driven
+// The whole way on the virtual bench: a PNLSS model of a noisy take, inverted, and the loudspeaker itself driven
 // with what comes out. The bench shares no line with the models.
 #include "BlackBox/RandomModels.h"
 

@@ -13,7 +13,7 @@
 
 namespace excursion {
 
-/// A model without physics in a chain: BlackBoxPredistorter, where the model can be turned around, and behind it the
+/// A model without physics in a chain: BlackBoxPredistorter, where the model can be inverted, and behind it the
 /// BlackBoxSpeaker. The model's output is heard at the level that the signal has under the stimulus of the fit (see
 /// PlayedBox::perOutput). Of the controls it knows amount and limit of the voltage; in place of an excursion it keeps
 /// to the region of the fit, which the meters tell as what the motion was turned down by.

@@ -14,7 +14,7 @@
 
 namespace excursion {
 
-/// A black box that is ready to be turned around: where it has been, where it rests, and what that is worth. Made once,
+/// A black box that is ready to be inverted: where it has been, where it rests, and what that is worth. Made once,
 /// for any number of channels. Throws Error, see visitedBy(), restOf() and rehearse().
 struct RehearsedBox {
     explicit RehearsedBox(const BlackBox&);
