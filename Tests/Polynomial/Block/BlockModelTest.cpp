@@ -304,7 +304,7 @@ TEST_CASE("A block model is kept and read again, bit for bit, and what does not 
     CHECK(named.model.wiener == model.wiener);
     CHECK(named.model.feedback == model.feedback);
     CHECK(named.model.offset == 0.5);
-    refuses("wiener[1]", [](auto& d) { d["wiener"][1] = "x"; });
+    file.refuses("wiener[1]", [](auto& d) { d["wiener"][1] = "x"; });
     file.refuses("feedback", [](auto& d) { d.erase("feedback"); });
     file.refuses("linear", [](auto& d) { d["linear"]["sampleRate"] = 0; });
     file.refuses("offset", [](auto& d) { d["offset"] = nullptr; });

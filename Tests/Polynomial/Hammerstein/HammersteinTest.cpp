@@ -347,7 +347,7 @@ TEST_CASE("A parallel Hammerstein model is kept and read again, bit for bit, and
     CHECK(read.model.sampleRate == 48000.0);
     CHECK(read.model.offset == 0.1);
     CHECK((read.model.filters.array() == model.filters.array()).all());
-    refuses("branches[1]", [](auto& d) { d["branches"][1].erase(0); });
+    file.refuses("branches[1]", [](auto& d) { d["branches"][1].erase(0); });
     file.refuses("branches", [](auto& d) { d["branches"] = nlohmann::json::array(); });
     file.refuses("sampleRate", [](auto& d) { d["sampleRate"] = 0; });
     file.refuses("offset", [](auto& d) { d["offset"] = "none"; });

@@ -214,7 +214,7 @@ TEST_CASE("A NARX model is kept and read again, bit for bit, and what does not f
     CHECK((read.coefficients.array() == model.coefficients.array()).all());
     CHECK(read.outputLags == 2);
     CHECK(read.inputLags == 1);
-    refuses("terms[1].exponents", [](auto& d) { d["terms"][1]["exponents"].erase(0); });
+    file.refuses("terms[1].exponents", [](auto& d) { d["terms"][1]["exponents"].erase(0); });
     file.refuses("terms[2].exponents[0]", [](auto& d) { d["terms"][2]["exponents"][0] = -1; });
     file.refuses("terms[0].coefficient", [](auto& d) { d["terms"][0]["coefficient"] = nullptr; });
     file.refuses("outputLags", [](auto& d) { d["outputLags"] = 2.5; });

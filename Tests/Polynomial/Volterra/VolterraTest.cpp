@@ -269,7 +269,7 @@ TEST_CASE("A Volterra series is kept and read again, bit for bit, and what does 
     REQUIRE(read.third.size() == 4);
     CHECK(read.third[3] == series.third[3]);
     CHECK(read.offset == series.offset);
-    refuses("first[2]", [](auto& d) { d["first"][2] = "x"; });
+    file.refuses("first[2]", [](auto& d) { d["first"][2] = "x"; });
     file.refuses("second[1]", [](auto& d) { d["second"][1].erase(0); });
     file.refuses("third[0]", [](auto& d) { d["third"].erase(0); });
     file.refuses("symmetric", [](auto& d) { d["second"][0][1] = 17.0; });
