@@ -47,10 +47,13 @@ int main()
         for (const auto& slope : slopes)
             voltError = std::max(voltError, std::abs(R * i + K * slope[static_cast<std::size_t>(n)] - 1.0));
     }
+    // The response to an impulse is the slope of that to a step.
+    const double slope = 0.5 * sampleRate * (current[101] - current[99]);
+    const double impulseError = std::abs(impulseResponse(coil, {times[100]})[0](0, 0) / slope - 1.0);
     std::cout << "after 10 ms " << 1e3 * current[100] << " mA, after 200 ms " << 1e3 * current.back() << " mA of "
               << 1e3 / R << "\n"
               << "largest errors: ladder " << ladderError << ", difference " << differenceError << ", volt "
-              << voltError << "\n";
-    const bool right = ladderError < 1e-7 && differenceError < 2e-3 && voltError < 5e-3;
+              << voltError << ", impulse " << impulseError << "\n";
+    const bool right = ladderError < 1e-7 && differenceError < 2e-3 && voltError < 5e-3 && impulseError < 1e-4;
     return right ? 0 : 1;
 }

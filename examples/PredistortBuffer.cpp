@@ -50,7 +50,7 @@ int main(int argc, char** argv)
             predistorter.process(&bent[n], &bent[n], std::min<std::size_t>(256, bent.size() - n));
 
         const double before = distortionDb(model, plain), after = distortionDb(model, bent);
-        const auto meters = predistorter.take();
+        const auto meters = predistorter.collectMeters();
         std::cout << model.name << ": distortion " << before << " dB, linearized " << after << " dB, "
                   << predistorter.latency() << " samples later; the cone moves " << 1e3 * meters.displacement
                   << " mm, at " << meters.voltage << " V\n";

@@ -40,11 +40,11 @@ int main()
 
     // K(x) = K + c1 [T1(x/X) - T1(0)] + c2 [T2(x/X) - T2(0)] with Chebyshev polynomials T and X = 6 mm. T2(s) - T2(0) =
     // 2 s^2, so c2 = K/2 doubles the stiffness at the ends.
-    Extent extent;
-    extent.displacement = 6e-3;
-    extent.degree = 2;
-    extent.relaxed = false;  // no creep beside it
-    Model hardening = withEffect(linear, effectNamed("stiffness"), extent);
+    OperatingRange operatingRange;
+    operatingRange.displacement = 6e-3;
+    operatingRange.degree = 2;
+    operatingRange.relaxed = false;  // no creep beside it
+    Model hardening = withEffect(linear, effectNamed("stiffness"), operatingRange);
     hardening.components.back().parameters[1].value = 900.0;
 
     const auto without = harmonics(linear), with = harmonics(hardening);

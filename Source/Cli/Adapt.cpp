@@ -71,10 +71,12 @@ void print(const Adaptation& adapted, Terminal& terminal)
     for (std::size_t k = 0; k < adapted.after.channels.size(); ++k) {
         const auto &before = adapted.before.channels[k].total, &after = adapted.after.channels[k].total;
         rows.push_back({titleOf(adapted.after.channels[k]), fixed(before.db, 1), fixed(after.db, 1),
-                        decibelText(after.noiseFloorDb), misfitText(before.chi, adapted.before.noiseKnown),
-                        misfitText(after.chi, adapted.after.noiseKnown)});
+                        decibelText(after.noiseFloorDb),
+                        chiSquaredText(before.chiSquaredPerValue, adapted.before.noiseKnown),
+                        chiSquaredText(after.chiSquaredPerValue, adapted.after.noiseKnown)});
     }
-    terminal.table({"channel", "error dB before", "after", "noise dB", "misfit before", "after"}, rows);
+    terminal.table(
+        {"channel", "error dB before", "after", "noise dB", std::string(chiSquaredTitle) + " before", "after"}, rows);
     if (const auto sentence = sentenceOn(adapted); !sentence.empty())
         terminal.say(wrapped(sentence));
 }
@@ -112,19 +114,17 @@ void run(const AdaptArguments& options, Terminal& terminal)
 
 void addAdapt(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<AdaptArguments>();
-    auto* verb =
-        app.add_subcommand("adapt", "Refit what drifts with temperature and age to a short take")->group(step::use);
+    const auto [verb, o] = addVerb<AdaptArguments>(app, terminal, step::use, "adapt",
+                                                   "Refit what drifts with temperature and age, to a short take", run);
     verb->add_option("MODEL", o->model, "the model of the driver, a .json")->required();
     verb->add_option("TAKE", o->take, "a new take or impedance of the same driver; a short one will do")->required();
-    verb->add_option("--parameters", o->parameters,
-                     "parameters of the base that may have changed, separated by commas; a law goes with its own "
-                     "(default: Re,Rms,K)")
+    verb->add_option(
+            "--parameters", o->parameters,
+            "base parameters that may have changed, separated by commas; each takes its law along (default: Re,Rms,K)")
         ->delimiter(',')
         ->type_name("NAME");
     verb->add_option("--out", o->out, "the model as it is now, a .json")->required()->type_name("FILE");
     verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

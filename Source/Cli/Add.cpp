@@ -54,11 +54,11 @@ Added addTo(const Model& model, const Effect& effect, const Record& record, cons
     return result;
 }
 
-/// By the misfit; where the take does not tell its noise by the errors themselves.
+/// By chi squared; where the take does not tell its noise, by the errors themselves.
 bool fell(const Added& added)
 {
     if (added.before.noiseKnown && added.after.noiseKnown)
-        return added.after.chi < added.before.chi;
+        return added.after.chiSquaredPerValue < added.before.chiSquaredPerValue;
     for (std::size_t k = 0; k < added.after.channels.size(); ++k)
         if (added.after.channels[k].total.db < added.before.channels[k].total.db - 0.05)
             return true;
@@ -73,10 +73,12 @@ void print(const Added& added, const Effect& effect, Terminal& terminal)
     for (std::size_t k = 0; k < added.after.channels.size(); ++k) {
         const auto &before = added.before.channels[k].total, &after = added.after.channels[k].total;
         rows.push_back({titleOf(added.after.channels[k]), fixed(before.db, 1), fixed(after.db, 1),
-                        decibelText(after.noiseFloorDb), misfitText(before.chi, added.before.noiseKnown),
-                        misfitText(after.chi, added.after.noiseKnown)});
+                        decibelText(after.noiseFloorDb),
+                        chiSquaredText(before.chiSquaredPerValue, added.before.noiseKnown),
+                        chiSquaredText(after.chiSquaredPerValue, added.after.noiseKnown)});
     }
-    terminal.table({"channel", "error dB before", "after", "noise dB", "misfit before", "after"}, rows);
+    terminal.table(
+        {"channel", "error dB before", "after", "noise dB", std::string(chiSquaredTitle) + " before", "after"}, rows);
     terminal.say("");
     printParameters(added.model, terminal);
     if (!fell(added)) {
@@ -117,14 +119,13 @@ void run(const AddArguments& options, Terminal& terminal)
 
 void addAdd(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<AddArguments>();
-    auto* verb = app.add_subcommand("add", "Put an effect into a model and refit everything")->group(step::diagnose);
+    const auto [verb, o] = addVerb<AddArguments>(app, terminal, step::diagnose, "add",
+                                                 "Put an effect into a model and refit everything", run);
     verb->add_option("TAKE", o->take, "the take or impedance that the model was fitted to")->required();
     verb->add_option("EFFECT", o->effect, "the effect, such as stiffness; excursion effects lists them")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->add_option("--out", o->out, "the new model, a .json")->required()->type_name("FILE");
     verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -323,21 +323,18 @@ void run(const BlaArguments& options, Terminal& terminal)
 
 void addBla(CLI::App& app, Terminal& terminal)
 {
-    auto* verb = app.add_subcommand("bla", "Frequency response, with its noise and its odd and even distortion")
-                     ->group(step::look);
-    auto options = std::make_shared<BlaArguments>();
+    const auto [verb, options] = addVerb<BlaArguments>(
+        app, terminal, step::look, "bla", "Frequency response, with its noise and its odd and even distortion", run);
     verb->add_option("TAKE", options->take,
                      "the take: a folder, a .csv of time signals, or a file that is a response already")
         ->required();
     verb->add_option("--level", options->level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
     verb->add_option("--output", options->output, "the channel to explain; by default the first beside the input");
-    verb->add_option(
-        "--segment", options->segment,
-        "samples of a segment, for a take without periods; by default 8192, less where the record is short");
+    verb->add_option("--segment", options->segment,
+                     "samples of a segment, for a take without periods; by default 8192, fewer for a short record");
     verb->add_option("--out", options->out, "also write a .csv, .frd, .zma (of --output current) or .json")
         ->type_name("FILE");
-    verb->callback([options, &terminal] { run(*options, terminal); });
 }
 
 }  // namespace excursion::cli

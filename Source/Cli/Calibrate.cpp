@@ -132,17 +132,17 @@ void addCalibrate(CLI::App& app, Terminal& terminal)
     auto* verb = app.add_subcommand("calibrate", "Learn the full scale of an input from a recorded tone, for import")
                      ->group(step::measure);
     verb->add_option("FILE", o->file, "a recording of a steady tone (.wav, .aif, .caf, .flac)")->required();
-    verb->add_option("--out", o->out, "the calibration; what it knows of other channels is kept")
+    verb->add_option("--out", o->out, "the calibration; entries for other channels are kept")
         ->required()
         ->type_name("FILE.json");
     verb->add_option("--channel", o->channel, "the input, counted from 1")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     verb->add_option("--voltage", o->voltage,
-                     "V rms of the tone at the converter's input, behind divider, sensor and preamplifier")
+                     "V rms of the tone at the converter's input, after divider, sensor and preamplifier")
         ->check(CLI::PositiveNumber);
     auto* spl = verb->add_option("--spl", o->spl,
-                                 "dB (20 uPa) of a calibrator's tone at the microphone: calibrates all of the way")
+                                 "dB (20 uPa) of a calibrator's tone at the microphone: calibrates the whole path")
                     ->check(CLI::Range(40.0, 160.0));
     verb->add_option("--quantity", o->quantity, "what is connected to it")->check(CLI::IsMember(quantityNames()));
     verb->add_option("--divider", o->divider, "voltage at the loudspeaker over that at the input")
@@ -155,8 +155,8 @@ void addCalibrate(CLI::App& app, Terminal& terminal)
                        ->check(CLI::Range(-120.0, 120.0));
     verb->add_flag("--invert", o->inverted, "the channel is upside down");
     verb->add_option("--curve", o->curve,
-                     "a microphone's response: frequency in Hz, dB[, phase in degrees]; without phases the minimum "
-                     "phase is taken")
+                     "a microphone's response: frequency in Hz, dB[, phase in degrees]; without phases it is taken as "
+                     "minimum phase")
         ->type_name("FILE");
     verb->callback([o, spl, preamp, &terminal] {
         o->hasSpl = spl->count() > 0;

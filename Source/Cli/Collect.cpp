@@ -117,12 +117,9 @@ void run(const CollectArguments& options, Terminal& terminal)
 
 void addCollect(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<CollectArguments>();
-    auto* verb =
-        app.add_subcommand(
-               "collect",
-               "The ladders of a batch in one table and on one page: yield, Cpk, drift, outliers, the golden unit")
-            ->group(step::batch);
+    const auto [verb, o] = addVerb<CollectArguments>(
+        app, terminal, step::batch, "collect",
+        "The ladders of a batch in one table and on one page: yield, Cpk, drift, outliers, the golden unit", run);
     verb->add_option("DIR", o->places, "folders that improve --out has written, or folders of such folders")
         ->required();
     verb->add_option("--out", o->out,
@@ -137,17 +134,16 @@ void addCollect(CLI::App& app, Terminal& terminal)
         ->check(CLI::IsMember({"name", "given"}))
         ->capture_default_str();
     verb->add_option("--at", o->at,
-                     "m to either side at which laws over x are told, separated by commas; by default half and all of "
-                     "what every unit visited")
+                     "displacements in m, to either side, at which the table has the laws over x, separated by commas; "
+                     "by default half and all of what every unit visited")
         ->delimiter(',');
     verb->add_option("--outlier", o->threshold,
-                     "distance from the median, in spreads, from which a unit of a large batch stands out")
+                     "distance from the median, in spreads, from which on a unit of a large batch is an outlier")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_flag("--skip-unreadable", o->goOn,
-                   "tell ladders that cannot be read beside the table instead of refusing");
-    verb->footer("Exit code 1: a unit is beyond the limits or not measured.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
+                   "list ladders that cannot be read beside the table, instead of stopping");
+    verb->footer("Exit code 1: a unit is outside the limits or was not measured.");
 }
 
 }  // namespace excursion::cli

@@ -54,13 +54,13 @@ void printLevels(const Comparison& comparison, const std::string& unit, Terminal
             const auto kinds = k < channel.kindsByLevel.size() ? channel.kindsByLevel[k] : ErrorKinds {};
             rows.push_back({k == 0 ? std::string(name(channel.quantity)) : std::string(),
                             comparison.levels[k] > 0.0 ? significant(comparison.levels[k], 3) : "-", fixed(level.db, 1),
-                            decibelText(level.noiseFloorDb), misfitText(level.chi, comparison.noiseKnown),
-                            decibelText(kinds.linear), decibelText(kinds.odd), decibelText(kinds.even),
-                            kindOf(level, kinds)});
+                            decibelText(level.noiseFloorDb),
+                            chiSquaredText(level.chiSquaredPerValue, comparison.noiseKnown), decibelText(kinds.linear),
+                            decibelText(kinds.odd), decibelText(kinds.even), kindOf(level, kinds)});
         }
-    terminal.table(
-        {"channel", unit + " rms", "error dB", "noise dB", "misfit", "excited dB", "odd dB", "even dB", "mostly"},
-        rows);
+    terminal.table({"channel", unit + " rms", "error dB", "noise dB", chiSquaredTitle, "excited dB", "odd dB",
+                    "even dB", "mostly"},
+                   rows);
     terminal.say(
         "Excited, odd, even: the error on the lines that were played, and on the odd and even lines between them.");
 }
@@ -168,14 +168,12 @@ void run(const CompareArguments& options, Terminal& terminal)
 
 void addCompare(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<CompareArguments>();
-    auto* verb =
-        app.add_subcommand("compare", "Where a model and a take part, by how much, and in which way")->group(step::fit);
+    const auto [verb, o] = addVerb<CompareArguments>(app, terminal, step::fit, "compare",
+                                                     "Where a model and a take differ, by how much, and how", run);
     verb->add_option("TAKE", o->take,
                      "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")
         ->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -98,15 +98,13 @@ void run(const DiagnoseArguments& options, Terminal& terminal)
 
 void addDiagnose(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<DiagnoseArguments>();
-    auto* verb =
-        app.add_subcommand("diagnose", "Name the physical effect that a model is missing")->group(step::diagnose);
+    const auto [verb, o] = addVerb<DiagnoseArguments>(app, terminal, step::diagnose, "diagnose",
+                                                      "Name the physical effect that a model is missing", run);
     verb->add_option("TAKE", o->take, "the take or impedance that the model was fitted to")->required();
     verb->add_option("--model", o->model, "the model, a .json")->required()->type_name("FILE");
     verb->footer(
         "Verdicts: missing-effect, complete, unknown-effect (something is left that no effect of the catalogue\n"
         "explains), bad-measurement. Exit code 1: bad-measurement.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

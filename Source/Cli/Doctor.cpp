@@ -203,9 +203,10 @@ void run(Terminal& terminal)
 void addDoctor(CLI::App& app, Terminal& terminal)
 {
     auto* verb = app.add_subcommand(
-                        "doctor", "What of Excursion and of what it can use is there, and what to install for the rest")
+                        "doctor",
+                        "Which parts of Excursion and of its optional tools are installed, and how to install the rest")
                      ->group(step::around);
-    verb->footer("What is missing is no failure: the exit code is 0.");
+    verb->footer("Something missing is not a failure: the exit code is 0.");
     verb->callback([&terminal] { run(terminal); });
 }
 

@@ -127,9 +127,9 @@ void run(ExciteArguments options, Terminal& terminal)
 
 void addExcite(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<ExciteArguments>();
-    auto* verb =
-        app.add_subcommand("excite", "Write the multisine, or the sweeps, to play, and the plan")->group(step::measure);
+    const auto [verb, o] = addVerb<ExciteArguments>(app, terminal, step::measure, "excite",
+                                                    "Write the multisine, or the sweeps, to play, and the plan",
+                                                    [](const ExciteArguments& a, Terminal& t) { run(a, t); });
     verb->add_option("--out", o->out, "folder for excitation.wav and plan.json")->required()->type_name("DIR");
     auto& m = o->plan.multisine;
     verb->add_option("--levels", o->plan.levels, "V rms, quiet to loud")->delimiter(',')->capture_default_str();
@@ -145,7 +145,7 @@ void addExcite(CLI::App& app, Terminal& terminal)
         ->delimiter(',')
         ->capture_default_str();
     verb->add_option("--grid", o->grid,
-                     "which lines are excited; odd-random shows even and odd distortion between them")
+                     "which frequencies are excited; odd-random shows even and odd distortion between them")
         ->check(CLI::IsMember({"full", "odd", "odd-odd", "odd-random", "R10", "R20", "R40", "R80"}))
         ->capture_default_str();
     verb->add_option("--shape", o->shape, "amplitude over frequency")
@@ -164,7 +164,7 @@ void addExcite(CLI::App& app, Terminal& terminal)
         ->capture_default_str()
         ->needs(sweep)
         ->group(group);
-    verb->add_option("--silence", o->sweep.silence, "s behind each sweep, which tell the noise")
+    verb->add_option("--silence", o->sweep.silence, "s of silence after each sweep, which shows the noise")
         ->capture_default_str()
         ->needs(sweep)
         ->group(group);
@@ -181,7 +181,6 @@ void addExcite(CLI::App& app, Terminal& terminal)
     for (const char* multisine :
          {"--realizations", "--periods", "--settle", "--period", "--grid", "--shape", "--group", "--seed"})
         sweep->excludes(verb->get_option(multisine));
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -67,18 +67,16 @@ void run(const FitArguments& options, Terminal& terminal)
 
 void addFit(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<FitArguments>();
-    auto* verb = app.add_subcommand("fit", "Fit a model to a take: the linear base, and the effects that you name")
-                     ->group(step::fit);
+    const auto [verb, o] = addVerb<FitArguments>(
+        app, terminal, step::fit, "fit", "Fit a model to a take: the linear base and the effects you name", run);
     verb->add_option("TAKE", o->take,
                      "the take: a folder, a .csv, or an impedance or other response (.zma, .frd, .txt)")
         ->required();
-    verb->add_option("--effects", o->effects, "effects to put in, separated by commas; excursion effects lists them")
+    verb->add_option("--effects", o->effects, "effects to include, separated by commas; excursion effects lists them")
         ->delimiter(',')
         ->type_name("EFFECT");
     verb->add_option("--out", o->out, "the model, a .json")->required()->type_name("FILE");
     verb->footer("Exit code 1: the take is not fit for use, and no model was written.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

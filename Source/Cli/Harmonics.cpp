@@ -83,7 +83,8 @@ nlohmann::ordered_json keepModel(const HarmonicsArguments& arguments, const Swee
     const auto output = wantedOutput(arguments, take.take).value_or(heardBest(take.take));
     const auto found = sweepModel(take, output, arguments.options);
     const auto input = std::string(name(take.take.input().quantity));
-    writeParallelHammerstein({take.take.driver.name, input, std::string(name(output)), found.model}, arguments.model);
+    writeJson(toJson(Named<ParallelHammerstein> {take.take.driver.name, input, std::string(name(output)), found.model}),
+              arguments.model);
     std::vector<std::vector<std::string>> rows;
     const auto& levels = take.sweep->levels;
     for (std::size_t k = 0; k < levels.size(); ++k)
@@ -139,27 +140,23 @@ void run(const HarmonicsArguments& arguments, Terminal& terminal)
 
 void addHarmonics(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<HarmonicsArguments>();
-    auto* verb =
-        app.add_subcommand(
-               "harmonics",
-               "Harmonic distortion over frequency, H2, H3, ... and THD, of a take that was played with sweeps")
-            ->group(step::look);
+    const auto [verb, o] = addVerb<HarmonicsArguments>(
+        app, terminal, step::look, "harmonics",
+        "Harmonic distortion over frequency (H2, H3, ... and THD) of a take of sweeps", run);
     verb->add_option("TAKE", o->take, "the take: a recording of a plan of excite --sweep, imported")->required();
     verb->add_option("--highest", o->options.highest, "the highest harmonic")
         ->capture_default_str()
         ->check(CLI::Range(2, 20));
-    verb->add_option("--points", o->options.pointsPerOctave, "of a curve, an octave")
+    verb->add_option("--points", o->options.pointsPerOctave, "points of a curve per octave")
         ->capture_default_str()
         ->check(CLI::Range(1.0, 96.0));
-    verb->add_option("--output", o->output, "one channel; by default all are told, and --model is of what is heard");
+    verb->add_option("--output", o->output, "one channel; by default all, and --model uses the sound");
     verb->add_option("--level", o->level, "number of the level, 0 the quietest; by default all")
         ->check(CLI::NonNegativeNumber);
     verb->add_option("--out", o->out, "the curves as a table")->type_name("FILE.csv");
     verb->add_option("--model", o->model, "keep a parallel Hammerstein model of the loudest level")
         ->type_name("FILE.json");
-    verb->footer("What --json FILE writes, excursion report FILE draws. What --model keeps, excursion simulate plays.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
+    verb->footer("excursion report draws what --json FILE writes; excursion simulate plays what --model keeps.");
 }
 
 }  // namespace excursion::cli

@@ -97,7 +97,7 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     const NamedFractionalStateSpace named {
         std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, found.model};
     if (!options.out.empty())
-        writeFractionalStateSpace(named, options.out);
+        writeJson(toJson(named), options.out);
 
     terminal.say(open.output + " / " + open.input + ", " + std::to_string(data.lines()) + " lines, in s^alpha");
     std::vector<std::vector<std::string>> rows;
@@ -247,7 +247,7 @@ void run(const IdentifyArguments& options, Terminal& terminal)
     NamedStateSpace named {
         std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, chosen.found.model};
     if (!options.out.empty())
-        writeStateSpace(named, options.out);
+        writeJson(toJson(named), options.out);
 
     terminal.say(open.output + " / " + open.input + ", " + std::to_string(data.lines()) + " lines, "
                  + (options.discrete ? "discrete time at " + significant(open.sampleRate, 6) + " Hz"
@@ -279,11 +279,9 @@ void run(const IdentifyArguments& options, Terminal& terminal)
 
 void addIdentify(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<IdentifyArguments>();
-    auto* verb = app.add_subcommand(
-                        "identify",
-                        "Identify a linear state-space model of a frequency response, of a given or of the best order")
-                     ->group(step::fit);
+    const auto [verb, o] = addVerb<IdentifyArguments>(
+        app, terminal, step::fit, "identify",
+        "Identify a linear state-space model from a frequency response, of a given order or the best one", run);
     verb->add_option("TAKE", o->response.path,
                      "a take, an impedance or another response (.zma, .frd, .csv, .txt), or the .json of excursion bla")
         ->required();
@@ -292,19 +290,19 @@ void addIdentify(CLI::App& app, Terminal& terminal)
         ->delimiter(',')
         ->check(CLI::Range(0, 400));
     verb->add_option("--alpha", o->alpha,
-                     "a model of fractional order, in s^alpha: alpha, or free to find it with its standard error");
+                     "a model of fractional order, in s^alpha: give alpha, or free to find it and its standard error");
     verb->add_flag("--mixed", o->mixed,
                    "with --alpha: an impedance R + L s^alpha with one resonance, in place of a state-space model");
     verb->add_option(
             "--cone", o->cone,
-            "tell motor and cone apart, by displacement and pressure: the cone's order; --order is the motor's")
+            "separate motor and cone, using displacement and pressure: the cone's order; --order is the motor's")
         ->check(CLI::Range(0, 400));
     verb->add_option("--delay", o->delay,
-                     "with --cone: how long the sound is on its way, s; by default that of the microphone's distance")
+                     "with --cone: time of flight of the sound, s; by default from the microphone's distance")
         ->check(CLI::Range(0.0, 1.0));
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
     verb->add_option("--input", o->response.input,
-                     "the channel it is explained by; by default the voltage or force, of an impedance the current");
+                     "the channel that explains it; by default the voltage or force, for an impedance the current");
     verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
     verb->add_option("--band", o->band, "lowest and highest frequency to use, Hz")->delimiter(',')->expected(2);
@@ -317,7 +315,6 @@ void addIdentify(CLI::App& app, Terminal& terminal)
     verb->add_flag("--allow-unstable", o->unstable, "do not keep the poles stable");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->footer("Exit code 1: the model is not stable, or the search of --mixed did not converge.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

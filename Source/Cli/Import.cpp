@@ -165,39 +165,37 @@ void run(ImportArguments options, Terminal& terminal)
 
 void addImport(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<ImportArguments>();
-    auto* verb = app.add_subcommand("import", "Turn recordings or a file of another program (CSV, text, MAT, ZMA, FRD) "
-                                              "into a take, or a take into a CSV")
-                     ->group(step::measure);
+    const auto [verb, o] = addVerb<ImportArguments>(
+        app, terminal, step::measure, "import",
+        "Turn recordings or a file of another program (CSV, text, MAT, ZMA, FRD) into a take, or a take into a CSV",
+        [](const ImportArguments& a, Terminal& t) { run(a, t); });
     verb->add_option("FILE", o->files,
-                     "recordings of one --plan (.wav, .aif, .caf, .flac), or text (.csv, .txt, .zma, .frd, ...), .mat, "
-                     "or a take")
+                     "recordings of one --plan (.wav, .aif, .caf, .flac), a text file (.csv, .txt, .zma, .frd, ...), a "
+                     ".mat, or a take")
         ->required();
-    verb->add_option("--out", o->out, "folder of the new take, or a .csv; of an impedance a .zma, too")
+    verb->add_option("--out", o->out, "folder of the new take, or a .csv; for an impedance also a .zma")
         ->required()
         ->type_name("PLACE");
     addRecordingOptions(*verb, o->recording);
     verb->add_option("--map", o->map,
-                     "of a recording CHANNEL=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example "
+                     "for a recording CHANNEL=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example "
                      "1=voltage:16, 2=current:-500mA (negative: "
                      "inverted), 3=loopback (the interface's output, straight into its input); channels are counted "
                      "from 1 through all files, or FILE:CHANNEL. "
-                     "Of other files what a column is, told by its title or its number from 1: V1=force:V, "
+                     "For other files: what a column is, by its title or its number from 1: V1=force:V, "
                      "2=current:mA, 1=time:ms, 1=frequency, "
                      "G_re=impedance.re, 3=displacement/voltage.magnitude:mm/V, 4=impedance.phase:rad. May be repeated")
         ->expected(1)
         ->take_all();
-    verb->add_option(
-            "--as", o->as,
-            "what the response is where the file does not say it: impedance, response, displacement/voltage, ...")
+    verb->add_option("--as", o->as,
+                     "what the response is, if the file does not say: impedance, response, displacement/voltage, ...")
         ->type_name("RESPONSE");
-    verb->add_flag("--minimum-phase", o->minimumPhase, "compute the phase of a magnitude that has none");
+    verb->add_flag("--minimum-phase", o->minimumPhase, "give a magnitude without phase its minimum phase");
     verb->add_option("--rate", o->rate, "sample rate in Hz, when the file has none")->check(CLI::PositiveNumber);
     verb->add_option("--from", o->from, "first sample to take, counted from 0");
-    verb->add_option("--to", o->to, "one beyond the last sample to take")->check(CLI::PositiveNumber);
+    verb->add_option("--to", o->to, "one past the last sample to take")->check(CLI::PositiveNumber);
     verb->add_flag("--remove-mean", o->removeMean, "subtract the mean of each channel");
     verb->add_option("--name", o->name, "name of the loudspeaker");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -153,17 +153,16 @@ bool isRecording(const std::string& file)
 void addRecordingOptions(CLI::App& verb, RecordingArguments& arguments)
 {
     verb.add_option("--plan", arguments.plan,
-                    "of recordings: the folder that 'excursion excite' wrote and whose excitation.wav was played; each "
-                    "recording is laid beside it, its start, clock and rate are found")
+                    "for recordings: the folder that 'excursion excite' wrote and whose excitation.wav was played; "
+                    "start, clock and rate of each recording are found from it")
         ->type_name("DIR");
     verb.add_option("--gain", arguments.gain,
-                    "of recordings without a voltage: V at the loudspeaker for a played sample of 1.0; the voltage is "
+                    "for recordings without a voltage: V at the loudspeaker for a played sample of 1.0; the voltage is "
                     "then assumed")
         ->check(CLI::PositiveNumber);
-    verb.add_option(
-            "--calibration", arguments.calibration,
-            "of recordings: what 'excursion calibrate' wrote, for channels that --map gives no full scale, or for all "
-            "where there is no --map")
+    verb.add_option("--calibration", arguments.calibration,
+                    "for recordings: what 'excursion calibrate' wrote, for channels without a full scale in --map, or "
+                    "for all channels without --map")
         ->type_name("FILE.json");
 }
 

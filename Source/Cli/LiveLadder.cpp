@@ -30,10 +30,10 @@ void LiveLadder::begin(const Comparison& comparison)
         titles_.push_back(titleOf(channel) + " dB");
         floor.push_back(decibelText(channel.total.noiseFloorDb));
     }
-    titles_.emplace_back("misfit");
+    titles_.emplace_back(chiSquaredTitle);
     floor.push_back(comparison.noiseKnown ? "1" : "-");
     for (const auto& title : titles_)
-        rule.emplace_back(std::max<std::size_t>(title.size(), 8), '-');
+        rule.emplace_back(std::max<std::size_t>(columnsOf(title), 8), '-');
     row("error of the model", titles_);
     row(std::string(labelWidth(), '-'), rule);
     if (comparison.noiseKnown)
@@ -44,8 +44,8 @@ void LiveLadder::row(const std::string& label, const std::vector<std::string>& c
 {
     std::string text = "  " + label + std::string(labelWidth() - std::min(labelWidth(), label.size()), ' ');
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        const auto width = std::max<std::size_t>(titles_[c].size(), 8);
-        text += "  " + std::string(width - std::min(width, cells[c].size()), ' ') + cells[c];
+        const auto width = std::max<std::size_t>(columnsOf(titles_[c]), 8);
+        text += "  " + std::string(width - std::min(width, columnsOf(cells[c])), ' ') + cells[c];
     }
     terminal_.say(text);
 }
@@ -58,7 +58,7 @@ void LiveLadder::show(const Rung& rung)
     std::vector<std::string> cells;
     for (const auto& channel : comparison.channels)
         cells.push_back(fixed(channel.total.db, 1));
-    cells.push_back(misfitText(comparison.chi, comparison.noiseKnown));
+    cells.push_back(chiSquaredText(comparison.chiSquaredPerValue, comparison.noiseKnown));
     const auto first = rung.model.effectIds().empty() ? "linear model" : "first model";
     row(std::to_string(rungs_) + "  " + (rung.added.empty() ? first : "+ " + rung.added), cells);
     ++rungs_;

@@ -270,11 +270,11 @@ void run(const MeasureArguments& a, Terminal& terminal)
 
 void addMeasure(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<MeasureArguments>();
-    auto* verb = app.add_subcommand("measure", "Play a plan through an audio device, record, and make a take of it")
-                     ->group(step::measure);
+    const auto [verb, o] = addVerb<MeasureArguments>(
+        app, terminal, step::measure, "measure", "Play a plan through an audio device, record, and make a take of it",
+        run);
     verb->add_flag("--list", o->list, "show the audio devices, their channels and rates, and do nothing else");
-    verb->add_option("--device", o->device, "its number or name in --list, or a part of the name that no other has");
+    verb->add_option("--device", o->device, "its number or name in --list, or a part of the name that is unique");
     verb->add_option("--plan", o->recording.plan, "the folder that 'excursion excite' wrote")->type_name("DIR");
     verb->add_option("--out", o->recording.out, "folder of the new take, with its check in check.json")
         ->type_name("DIR");
@@ -286,35 +286,33 @@ void addMeasure(CLI::App& app, Terminal& terminal)
         ->expected(1)
         ->take_all();
     verb->add_option("--calibration", o->recording.calibration,
-                     "what 'excursion calibrate' wrote, for inputs that --map gives no full scale, or for all where "
-                     "there is no --map")
+                     "what 'excursion calibrate' wrote, for inputs without a full scale in --map, or for all inputs "
+                     "without --map")
         ->type_name("FILE.json");
     verb->add_option("--gain", o->recording.gain,
-                     "where the voltage is not recorded: V at the loudspeaker for a played sample of 1.0; the voltage "
-                     "is then assumed")
+                     "if the voltage is not recorded: V at the loudspeaker for a played sample of 1.0; the voltage is "
+                     "then assumed")
         ->check(CLI::PositiveNumber);
     verb->add_option("--output", o->outputs, "outputs that play, counted from 1")
         ->delimiter(',')
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     verb->add_option("--limit", o->limits,
-                     "end the measurement, by a fade, where a recorded quantity reaches this, for example voltage=20, "
-                     "current=2A, displacement=3mm (from where it rests). May be repeated")
+                     "fade out and end the measurement when a recorded quantity reaches this, for example voltage=20, "
+                     "current=2A, displacement=3mm (from its rest position). May be repeated")
         ->expected(1)
         ->take_all();
     verb->add_option("--rise", o->rise, "s from quiet to full level, before the plan is played")
         ->check(CLI::Range(1.0, 60.0))
         ->capture_default_str();
     verb->add_option("--latency", o->latency,
-                     "s of sound in the buffers; more where the computer does not keep up, less for a quicker stop")
+                     "s of sound in the buffers; more if the computer does not keep up, less for a quicker stop")
         ->check(CLI::Range(0.001, 2.0))
         ->capture_default_str();
-    verb->add_option("--recording", o->keep, "keep what the inputs gave, for 'excursion import'")
-        ->type_name("FILE.wav");
+    verb->add_option("--recording", o->keep, "keep the raw recording, for 'excursion import'")->type_name("FILE.wav");
     verb->add_option("--name", o->recording.name, "name of the loudspeaker");
     verb->footer("Exit code 0: measured and fit for use; 1: measured, but the check found a fault; 4: ended by a limit "
-                 "or a clipping input;\n6: ended by Ctrl-C, after a fade. Unless it is 0 or 1 no take was written.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
+                 "or a clipping input;\n6: ended by Ctrl-C, after a fade. A take is written only with 0 or 1.");
 }
 
 }  // namespace excursion::cli

@@ -106,12 +106,12 @@ void printErrors(const Comparison& comparison, Terminal& terminal)
     Rows rows;
     for (const auto& channel : comparison.channels)
         rows.push_back({titleOf(channel), fixed(channel.total.db, 1), decibelText(channel.total.noiseFloorDb),
-                        misfitText(channel.total.chi, comparison.noiseKnown)});
-    terminal.table({"channel", "error dB", "noise dB", "misfit"}, rows);
+                        chiSquaredText(channel.total.chiSquaredPerValue, comparison.noiseKnown)});
+    terminal.table({"channel", "error dB", "noise dB", chiSquaredTitle}, rows);
     terminal.say(wrapped(
         std::string("Error and noise are rms relative to the channel, on ")
         + (comparison.validated ? "data that no fit saw" : "the data that was fitted, as nothing could be held out")
-        + (comparison.noiseKnown ? ". Misfit: squared error over squared noise, 1 at best."
+        + (comparison.noiseKnown ? ". \u03c7\u00b2/value: mean of squared error over squared noise, 1 at best."
                                  : ". The take does not tell its noise.")));
 }
 
@@ -120,12 +120,12 @@ std::string decibelText(const std::optional<double>& db)
     return db && std::isfinite(*db) ? fixed(*db, 1) : std::string("-");
 }
 
-std::string misfitText(double chi, bool noiseKnown)
+std::string chiSquaredText(double chiSquaredPerValue, bool noiseKnown)
 {
-    return !noiseKnown  ? std::string("-")
-           : chi < 9.95 ? fixed(chi, 1)
-           : chi < 1e6  ? fixed(chi, 0)
-                        : significant(chi, 2);
+    return !noiseKnown                 ? std::string("-")
+           : chiSquaredPerValue < 9.95 ? fixed(chiSquaredPerValue, 1)
+           : chiSquaredPerValue < 1e6  ? fixed(chiSquaredPerValue, 0)
+                                       : significant(chiSquaredPerValue, 2);
 }
 
 std::string confidenceText(double confidence) { return fixed(std::min(99.0, 100.0 * confidence), 0) + " %"; }

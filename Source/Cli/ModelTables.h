@@ -25,14 +25,17 @@ void printLaws(const std::vector<LawTable>&, Terminal&);
 /// How far the coil may go either way.
 void printLimits(const StrokeLimits&, Terminal&);
 
-/// Error, noise floor and misfit of each channel, and what they mean.
+/// Error, noise floor and chi squared of each channel, and what they mean.
 void printErrors(const Comparison&, Terminal&);
 
 /// "-28.1", or "-" when it is not known.
 std::string decibelText(const std::optional<double>&);
 
+/// Title of what chiSquaredText() writes.
+constexpr auto chiSquaredTitle = "\u03c7\u00b2/value";
+
 /// How many times the noise the error is, squared: "1.2", "350", "1.4e+05"; "-" when the noise is not known.
-std::string misfitText(double chi, bool noiseKnown);
+std::string chiSquaredText(double chiSquaredPerValue, bool noiseKnown);
 
 /// "98 %", never 100: nobody is that sure.
 std::string confidenceText(double confidence);

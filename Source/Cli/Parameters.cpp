@@ -214,11 +214,9 @@ void run(const ParametersArguments& options, Terminal& terminal)
 
 void addParameters(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<ParametersArguments>();
-    auto* verb = app.add_subcommand(
-                        "parameters",
-                        "Thiele/Small parameters, lossy inductance, laws, SPICE, ZMA and FRD, for other programs")
-                     ->group(step::use);
+    const auto [verb, o] = addVerb<ParametersArguments>(
+        app, terminal, step::use, "parameters",
+        "Thiele/Small parameters, lossy inductance, laws, SPICE, ZMA and FRD, for other programs", run);
     verb->add_option("MODEL", o->from, "the model, a .json; a ladder or its folder; or a take, for --zma and --frd")
         ->required();
     verb->add_option("--out", o->out, "the parameters, a .csv or .json")->type_name("FILE");
@@ -230,25 +228,23 @@ void addParameters(CLI::App& app, Terminal& terminal)
     verb->add_option("--mass", o->mass, "moving mass in kg, where voltage and current alone do not show it");
     verb->add_option("--bl", o->forceFactor, "force factor in N/A, in place of the mass");
     verb->add_option("--cone-area", o->coneArea, "area of the cone in m^2");
-    verb->add_option(
-            "--inductance-band", o->inductanceBand,
-            "Hz, over which the lossy inductance is fitted; by default from 3 fs to where the model was measured")
+    verb->add_option("--inductance-band", o->inductanceBand,
+                     "Hz, band in which the lossy inductance is fitted; by default from 3 fs to the highest frequency "
+                     "that was measured")
         ->expected(2)
         ->delimiter(',')
         ->type_name("HZ");
     verb->add_option("--spice", o->spice, "the linear model as a SPICE subcircuit")->type_name("FILE");
     verb->add_option("--zma", o->zma, "the impedance")->type_name("FILE");
     verb->add_option("--frd", o->frd, "the sound pressure level at 1 m for 2.83 V")->type_name("FILE");
-    verb->add_option("--band", o->band, "Hz, of --zma and --frd; by default where the model was measured")
+    verb->add_option("--band", o->band, "Hz, for --zma and --frd; by default where the model was measured")
         ->expected(2)
         ->delimiter(',')
         ->type_name("HZ");
-    verb->add_option(
-            "--level", o->level,
-            "V rms of --zma and --frd: a model is played a multisine, of a take it is one of its levels; by default "
-            "small signals, or the loudest of a take")
+    verb->add_option("--level", o->level,
+                     "V rms for --zma and --frd: a multisine of that level for a model, one of its levels for a take; "
+                     "by default small signals, or the loudest level of a take")
         ->check(CLI::PositiveNumber);
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -55,9 +55,10 @@ void writeKernels(const PnlssArguments& options, const PnlssTake& data, const Pn
     if (document.value("format", "") != "excursion-pnlss")
         throw Error(Error::Kind::usage, "--volterra is for models of whole order.");
     const auto named = pnlssFromJson(JsonField(document, "", "the model"));
-    writeVolterraSeries({named.name, std::string(name(data.input->quantity)), std::string(name(data.output->quantity)),
-                         volterraSeries(named.model, options.memory[0], options.memory[1], options.memory[2])},
-                        options.volterra);
+    const Named<VolterraSeries> series {
+        named.name, std::string(name(data.input->quantity)), std::string(name(data.output->quantity)),
+        volterraSeries(named.model, options.memory[0], options.memory[1], options.memory[2])};
+    writeJson(toJson(series), options.volterra);
 }
 
 bool isFractional(const PnlssArguments& options, const nlohmann::json& kept)
@@ -209,7 +210,8 @@ Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const Pn
         return told;
     }
     if (!told.noiseDb) {
-        told.sentence = "Whether the error is at the noise cannot be told: neither periods nor the residual tell it.";
+        told.sentence =
+            "It is not known whether the error is at the noise: neither periods nor the residual show the noise.";
         return told;
     }
     const double above = outcome.estimationDb - *told.noiseDb;
@@ -217,7 +219,7 @@ Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const Pn
     const auto fewer = std::string("a longer take that goes everywhere early on, or fewer coefficients: --mask, "
                                    "--terms, a lower --order or --degree.");
     if (!told.arrived) {
-        told.sentence = "Whether the error is at the noise cannot be told: what is left is as slow as the motion, and "
+        told.sentence = "It is not known whether the error is at the noise: what is left is as slow as the motion, and "
                         "may be noise or something that the model lacks.";
         told.advice = "Try " + fewer;
         return told;
@@ -233,7 +235,7 @@ Arrival arrivalOf(const PnlssArguments& options, const PnlssTake& data, const Pn
         told.arrived.reset();
         told.sentence = noise + ", on the records of the estimation. On those held out "
                         + (std::isfinite(over) ? "it is " + errorText(over) + " dB larger" : "the model runs away")
-                        + ", so whether this is the system cannot be told.";
+                        + ", so it is not known whether this is the system.";
         told.advice = "Try " + fewer;
         return told;
     }
@@ -269,7 +271,7 @@ PnlssOutcome integerPnlss(const PnlssArguments& options, const PnlssTake& data, 
     PnlssOutcome outcome;
     NamedPnlss named;
     if (!options.model.empty()) {
-        named = readPnlss(options.model);
+        named = readDocument(options.model, pnlssFromJson);
         if (named.model.linear.sampleRate != data.take.sampleRate)
             throw Error(Error::Kind::data, "The model is one at " + significant(named.model.linear.sampleRate, 8)
                                                + " Hz, the take at " + significant(data.take.sampleRate, 8) + " Hz.");
@@ -321,13 +323,11 @@ void addPnlss(CLI::App& app, Terminal& terminal)
         masks.emplace_back(name(mask));
     verb->add_option("TAKE", o->response.path, "the take: a folder, or a .csv of time signals")->required();
     verb->add_option("--order", o->order, "number of states")->check(CLI::Range(1, 100));
-    verb->add_option(
-            "--start", o->start,
-            "begin the fit at this model: a linear one of identify, one that pnlss kept, a block model of rank, or a "
-            "driver")
+    verb->add_option("--start", o->start,
+                     "start the fit from this model: a linear one from identify, one that pnlss kept, a block model "
+                     "from rank, or a driver")
         ->type_name("MODEL");
-    verb->add_option("--alpha", o->alpha,
-                     "states of fractional order alpha, a number below 1, or free: one that starts there and moves");
+    verb->add_option("--alpha", o->alpha, "states of fractional order alpha, a number below 1, or free to fit it, too");
     verb->add_flag("--mixed", o->mixed,
                    "with --alpha, for a current under a voltage: only the coil's state is of fractional order");
     verb->add_option("--degree", o->degree, "highest degree of the monomials")
@@ -343,11 +343,10 @@ void addPnlss(CLI::App& app, Terminal& terminal)
     verb->add_option("--output", o->response.output, "the channel to explain; by default the first beside the input");
     verb->add_option("--level", o->response.level, "number of the level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
-    verb->add_option("--iterations", o->iterations, "at most, of each of the ways that are tried")
+    verb->add_option("--iterations", o->iterations, "largest number of iterations for each start that is tried")
         ->capture_default_str()
         ->check(CLI::Range(1, 10000));
-    verb->add_option("--model", o->model, "judge this model, which was kept, instead of fitting one")
-        ->type_name("FILE");
+    verb->add_option("--model", o->model, "judge this kept model instead of fitting one")->type_name("FILE");
     verb->add_option("--out", o->out, "the model, a .json")->type_name("FILE");
     verb->add_option("--played", o->played, "also write the take as the model plays it")->type_name("DIR");
     verb->add_option("--volterra", o->volterra, "also write the model's Volterra kernels to order 3, a .json")
@@ -356,8 +355,9 @@ void addPnlss(CLI::App& app, Terminal& terminal)
         ->capture_default_str()
         ->expected(3)
         ->delimiter(',');
-    verb->add_flag("--laws", o->laws,
-                   "also tell which physical laws the model agrees with: what it plays is diagnosed as a loudspeaker");
+    verb->add_flag(
+        "--laws", o->laws,
+        "also tell which physical laws the model agrees with, by diagnosing what it plays as if it were a loudspeaker");
     verb->footer("Exit code 1: the linear part of the model is not stable.");
     verb->callback([o, &terminal, verb] {
         for (const auto* option : {"--degree", "--mask", "--terms", "--offset"})

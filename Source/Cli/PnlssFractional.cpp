@@ -49,7 +49,7 @@ PnlssOutcome fractionalPnlss(const PnlssArguments& options, const PnlssTake& dat
     PnlssOutcome outcome;
     NamedFractionalPnlss named;
     if (!options.model.empty()) {
-        named = readFractionalPnlss(options.model);
+        named = readDocument(options.model, fractionalPnlssFromJson);
         if (named.grid.sampleRate != data.take.sampleRate)
             throw Error(Error::Kind::data, "The model was made for " + significant(named.grid.sampleRate, 8)
                                                + " Hz, the take is at " + significant(data.take.sampleRate, 8)

@@ -51,7 +51,7 @@ Pnlss keptStart(const PnlssArguments& options, const PnlssTake& data)
         if (options.chosenTerms)
             throw Error(Error::Kind::usage,
                         what + " has its monomials: leave --degree, --mask, --terms and --offset out.");
-        const auto named = readPnlss(options.start);
+        const auto named = readDocument(options.start, pnlssFromJson);
         requirePorts(named.inputs, named.outputs, data, what);
         requireRate(named.model.linear.sampleRate, data, what);
         return named.model;
@@ -60,7 +60,7 @@ Pnlss keptStart(const PnlssArguments& options, const PnlssTake& data)
         if (options.chosenTerms)
             throw Error(Error::Kind::usage,
                         what + " has its monomials: leave --degree, --mask, --terms and --offset out.");
-        const auto named = readBlockModel(options.start);
+        const auto named = readDocument(options.start, blockModelFromJson);
         requirePorts({named.input}, {named.output}, data, what);
         requireRate(named.model.linear.sampleRate, data, what);
         return closedLoop(named.model);

@@ -119,16 +119,9 @@ void run(const PredistortArguments& options, Terminal& terminal)
     nlohmann::ordered_json channels = nlohmann::ordered_json::array();
     std::vector<std::vector<std::string>> rows;
     bool limited = false;
-    double loudest = 0.0;
     int faults = 0;
-    for (std::size_t c = 0; c < bent.channels.size(); ++c) {
-        Predistorter predistorter(model, realTime, controls);
-        const double before = options.fullScale * peakOf(wav.channels[c]),
-                     share = 1.0 / static_cast<double>(bent.channels.size());
-        bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
-        const auto meters = predistorter.take();
-        const double after = options.fullScale * peakOf(bent.channels[c]);
-        loudest = std::max(loudest, after);
+    const auto make = [&] { return std::make_unique<Predistorter>(model, realTime, controls); };
+    const auto told = [&](double before, double after, const Predistorter::Meters& meters) {
         faults += meters.faults;
         limited = limited || meters.displacementReduction > noticed || meters.voltageReduction > noticed
                   || meters.powerReduction > noticed;
@@ -140,8 +133,8 @@ void run(const PredistortArguments& options, Terminal& terminal)
                             {"voltageReduction", meters.voltageReduction},
                             {"powerReduction", meters.powerReduction},
                             {"faults", meters.faults}});
-        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
-                        significant(1e3 * meters.displacement) + " mm",
+        rows.push_back({std::to_string(channels.size()), significant(before) + " " + unit,
+                        significant(after) + " " + unit, significant(1e3 * meters.displacement) + " mm",
                         turnedDown(meters.displacementReduction,
                                    options.displacementLimit || std::isfinite(controls.displacementLimit)),
                         turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
@@ -149,18 +142,19 @@ void run(const PredistortArguments& options, Terminal& terminal)
             rows.back().push_back(significant(meters.power) + " W");
             rows.back().push_back(turnedDown(meters.powerReduction, true));
         }
-    }
+    };
+    const double loudest = bendAll(bent, options.fullScale, progress, make, told);
     publish(bent, options.out);
-    auto told = documentOf(options, wav);
-    told.update({{"oversampling", options.oversampling},
-                 {"displacementLimit", numberOrNull(controls.displacementLimit)},
-                 {"voltageLimit", numberOrNull(controls.voltageLimit)},
-                 {"powerLimit", numberOrNull(controls.powerLimit)},
-                 {"margin", controls.margin},
-                 {"target", target},
-                 {"channels", channels},
-                 {"limited", limited}});
-    terminal.document(told);
+    auto report = documentOf(options, wav);
+    report.update({{"oversampling", options.oversampling},
+                   {"displacementLimit", numberOrNull(controls.displacementLimit)},
+                   {"voltageLimit", numberOrNull(controls.voltageLimit)},
+                   {"powerLimit", numberOrNull(controls.powerLimit)},
+                   {"margin", controls.margin},
+                   {"target", target},
+                   {"channels", channels},
+                   {"limited", limited}});
+    terminal.document(report);
     std::vector<std::string> heads {
         "channel", "peak in", "out", "the cone moves", "motion turned down", "voltage turned down"};
     if (options.powerLimit)
@@ -189,29 +183,27 @@ void run(const PredistortArguments& options, Terminal& terminal)
 
 void addPredistort(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<PredistortArguments>();
-    auto* verb = app.add_subcommand("predistort", "Bends a WAV so that the loudspeaker plays it as if it were linear")
-                     ->group(step::use);
+    const auto [verb, o] = addVerb<PredistortArguments>(
+        app, terminal, step::use, "predistort", "Bend a WAV so that the loudspeaker plays it as if it were linear",
+        run);
     verb->add_option("MODEL", o->model,
-                     "the model of a driver, or one without physics that pnlss or rank --keep "
-                     "has written, a .json")
+                     "the model of a driver, or one without physics from pnlss or rank --keep, a .json")
         ->required();
-    verb->add_option("IN.wav", o->input, "what is to be played; each of its channels is predistorted by itself")
-        ->required();
-    verb->add_option("OUT.wav", o->out, "the predistorted signal, as long and as loud")->required();
+    verb->add_option("IN.wav", o->input, "the signal to play; each channel is predistorted by itself")->required();
+    verb->add_option("OUT.wav", o->out, "the predistorted signal, of the same length and level")->required();
     verb->add_option("--full-scale", o->fullScale,
                      "V at the loudspeaker for a WAV sample of 1.0 (N for a model without a coil)")
         ->required();
     verb->add_option("--limit-x", o->displacementLimit,
-                     "m that the cone may move at most (default: as far as the model was measured)");
-    verb->add_option("--limit-u", o->voltageLimit, "V that may come out at most (default: no limit)");
+                     "limit of the cone's motion, m (default: as far as the model was measured)");
+    verb->add_option("--limit-u", o->voltageLimit, "limit of the output voltage, V (default: no limit)");
     verb->add_option("--limit-p", o->powerLimit,
-                     "W of heat in the voice coil, Re i^2 averaged over 1 s (default: no limit)");
+                     "limit of the heat in the voice coil, W: Re i^2 averaged over 1 s (default: no limit)");
     verb->add_option("--coil-resistance", o->coilResistance,
-                     "ohm: with it --limit-p is kept with a model without physics, too");
+                     "resistance of the coil, ohm: --limit-p needs it for a model without physics");
     verb->add_option("--margin", o->margin,
-                     "the limits hold for every loudspeaker whose parameters differ by at most this share from the "
-                     "model's, 0 to 0.3")
+                     "keep the limits for every loudspeaker whose parameters differ from the model's by at most this "
+                     "share, 0 to 0.3")
         ->check(CLI::Range(0.0, 0.3))
         ->capture_default_str();
     addTargetOptions(*verb, o->target);
@@ -221,8 +213,7 @@ void addPredistort(CLI::App& app, Terminal& terminal)
     verb->add_option("--oversampling", o->oversampling, "1, 2 or 4")
         ->check(CLI::IsMember({1, 2, 4}))
         ->capture_default_str();
-    verb->footer("Exit code 1: the WAV was written, but a limit was reached or the predistorter had to start anew.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
+    verb->footer("Exit code 1: the WAV was written, but a limit was reached or the predistorter had to restart.");
 }
 
 }  // namespace excursion::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model without physics turned around.
+// A model without physics inverted.
 #include "Cli/Predistorting.h"
 
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
@@ -10,6 +10,7 @@
 #include "Engine/Signal/Level.h"
 
 #include <limits>
+#include <memory>
 
 namespace excursion::cli {
 
@@ -72,7 +73,6 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
     std::vector<std::vector<std::string>> rows;
     nlohmann::ordered_json channels = nlohmann::ordered_json::array();
     bool limited = false, beyond = false;
-    double loudest = 0.0;
     const auto controls = controlsFrom(options, model);
     const bool moves = tellsExcursion(box);
     nlohmann::ordered_json target;
@@ -80,14 +80,8 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
         target = tellTarget(
             forecastTarget(model.box, model.region, model.rest, model.rehearsal, controls, options.fullScale),
             controls.target.kind, options.fullScale, unit, terminal);
-    for (std::size_t c = 0; c < bent.channels.size(); ++c) {
-        BlackBoxPredistorter predistorter(model, rate, controls);
-        const double before = options.fullScale * peakOf(wav.channels[c]),
-                     share = 1.0 / static_cast<double>(bent.channels.size());
-        bend(bent.channels[c], predistorter, options.fullScale, progress, share * static_cast<double>(c), share);
-        const auto meters = predistorter.take();
-        const double after = options.fullScale * peakOf(bent.channels[c]);
-        loudest = std::max(loudest, after);
+    const auto make = [&] { return std::make_unique<BlackBoxPredistorter>(model, rate, controls); };
+    const auto told = [&](double before, double after, const BlackBoxPredistorter::Meters& meters) {
         beyond = beyond || meters.regionReduction > noticed;
         limited = limited || beyond || meters.displacementReduction > noticed || meters.voltageReduction > noticed
                   || meters.powerReduction > noticed;
@@ -101,31 +95,32 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
                             {"displacementReduction", meters.displacementReduction},
                             {"voltageReduction", meters.voltageReduction},
                             {"powerReduction", meters.powerReduction}});
-        rows.push_back({std::to_string(c + 1), significant(before) + " " + unit, significant(after) + " " + unit,
-                        significant(meters.correction) + " " + unit, fixed(100.0 * meters.region, 0) + " %",
-                        turnedDown(meters.regionReduction, true),
-                        moves ? significant(1e3 * meters.displacement) + " mm" : "not told",
+        rows.push_back({std::to_string(channels.size()), significant(before) + " " + unit,
+                        significant(after) + " " + unit, significant(meters.correction) + " " + unit,
+                        fixed(100.0 * meters.region, 0) + " %", turnedDown(meters.regionReduction, true),
+                        moves ? significant(1e3 * meters.displacement) + " mm" : "unknown",
                         turnedDown(meters.displacementReduction, moves),
                         turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
         if (options.powerLimit) {
             rows.back().push_back(significant(meters.power) + " W");
             rows.back().push_back(turnedDown(meters.powerReduction, true));
         }
-    }
+    };
+    const double loudest = bendAll(bent, options.fullScale, progress, make, told);
     publish(bent, options.out);
-    auto told = documentOf(options, wav);
-    told.update({{"voltageLimit", numberOrNull(controls.voltageLimit)},
-                 {"displacementLimit", numberOrNull(controls.displacementLimit)},
-                 {"powerLimit", numberOrNull(controls.powerLimit)},
-                 {"margin", controls.margin},
-                 {"target", target},
-                 {"modelRate", box.linear.sampleRate},
-                 {"distortionBeforeDb", gain.beforeDb},
-                 {"distortionAfterDb", gain.afterDb},
-                 {"gainDb", gain.gainDb()},
-                 {"channels", channels},
-                 {"limited", limited}});
-    terminal.document(told);
+    auto report = documentOf(options, wav);
+    report.update({{"voltageLimit", numberOrNull(controls.voltageLimit)},
+                   {"displacementLimit", numberOrNull(controls.displacementLimit)},
+                   {"powerLimit", numberOrNull(controls.powerLimit)},
+                   {"margin", controls.margin},
+                   {"target", target},
+                   {"modelRate", box.linear.sampleRate},
+                   {"distortionBeforeDb", gain.beforeDb},
+                   {"distortionAfterDb", gain.afterDb},
+                   {"gainDb", gain.gainDb()},
+                   {"channels", channels},
+                   {"limited", limited}});
+    terminal.document(report);
     std::vector<std::string> heads {"channel",
                                     "peak in",
                                     "out",

@@ -5,6 +5,7 @@
 #include "Cli/Terminal.h"
 
 #include "Engine/BlackBox/BlackBox.h"
+#include "Engine/Signal/Level.h"
 #include "Engine/Take/WavFile.h"
 
 #include <nlohmann/json.hpp>
@@ -66,6 +67,27 @@ void bend(std::vector<double>& samples, AnyPredistorter& predistorter, double fu
     samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(latency));
     for (auto& sample : samples)
         sample /= fullScale;
+}
+
+/// Each channel through a predistorter of its own.
+/// @param make   a predistorter
+/// @param told   of each channel: its peaks before and after in the input's unit, and the predistorter's meters
+/// @returns the loudest peak that came out
+template <class Make, class Told>
+double bendAll(Wav& wav, double fullScale, const Progress& progress, Make make, Told told)
+{
+    double loudest = 0.0;
+    const double share = 1.0 / static_cast<double>(wav.channels.size());
+    for (std::size_t c = 0; c < wav.channels.size(); ++c) {
+        auto& samples = wav.channels[c];
+        auto predistorter = make();
+        const double before = fullScale * peakOf(samples);
+        bend(samples, *predistorter, fullScale, progress, share * static_cast<double>(c), share);
+        const double after = fullScale * peakOf(samples);
+        loudest = std::max(loudest, after);
+        told(before, after, predistorter->collectMeters());
+    }
+    return loudest;
 }
 
 }  // namespace excursion::cli

@@ -73,7 +73,7 @@ void keep(const Ranking& ranking, const std::string& folder, Json& document, Ter
     terminal.say("Kept in " + folder + ": " + (kept.empty() ? "nothing" : joined(kept)) + ".");
 }
 
-/// What it is worth to turn each class around, least distortion left first, and why the others are not.
+/// What it is worth to invert each class, least distortion left first, and why the others are not.
 void sayLinearizations(const Ranking& ranking, Terminal& terminal)
 {
     std::vector<const RankedModel*> worthIt;
@@ -89,11 +89,10 @@ void sayLinearizations(const Ranking& ranking, Terminal& terminal)
                         fixed(100.0 * told.load, 2) + " %", fixed(1e3 * told.latency, 1) + " ms"});
     }
     if (!rows.empty())
-        terminal.table({"turned around", "distortion dB", "left on the model", "left on the take", "load", "latency"},
-                       rows);
+        terminal.table({"inverted", "distortion dB", "left on the model", "left on the take", "load", "latency"}, rows);
     for (const auto& m : ranking.models)
         if (m.trouble.empty() && !m.linearization.trouble.empty())
-            terminal.say(m.name + " is not turned around. " + m.linearization.trouble);
+            terminal.say(m.name + " is not inverted. " + m.linearization.trouble);
     terminal.say(ranking.straightSentence);
 }
 
@@ -145,10 +144,10 @@ void run(const RankArguments& arguments, Terminal& terminal)
 
 void addRank(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<RankArguments>();
-    auto* verb = app.add_subcommand("rank", "Fit all classes of models to one take, and show them side by side: error, "
-                                            "parameters, load, stability, and what it is worth to turn them around")
-                     ->group(step::fit);
+    const auto [verb, o] = addVerb<RankArguments>(app, terminal, step::fit, "rank",
+                                                  "Fit all classes of models to one take and compare them: error, "
+                                                  "parameters, load, stability, and what their inverses are worth",
+                                                  run);
     std::vector<std::string> names;
     std::string told = "Classes:\n";
     for (const auto& known : modelClasses()) {
@@ -166,16 +165,15 @@ void addRank(CLI::App& app, Terminal& terminal)
     verb->add_option("--degree", o->options.degree, "highest degree of their monomials")
         ->capture_default_str()
         ->check(CLI::Range(2, 7));
-    verb->add_option("--iterations", o->options.iterations, "of each search, at most")
+    verb->add_option("--iterations", o->options.iterations, "largest number of iterations of each search")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
-    verb->add_option("--classes", o->options.classes, "these alone, separated by commas")
+    verb->add_option("--classes", o->options.classes, "only these, separated by commas")
         ->delimiter(',')
         ->check(CLI::IsMember(names))
         ->type_name("CLASS");
     verb->add_option("--keep", o->keep, "keep the model of each class as its document, CLASS.json")->type_name("DIR");
     verb->footer(told);
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

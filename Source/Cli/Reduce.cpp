@@ -158,35 +158,32 @@ void run(const ReduceArguments& options, Terminal& terminal)
 
 void addReduce(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<ReduceArguments>();
-    auto* verb = app.add_subcommand(
-                        "reduce",
-                        "A smaller linear model in place of a large one, with a bound or with the error that it has")
-                     ->group(step::fit);
+    const auto [verb, o] = addVerb<ReduceArguments>(
+        app, terminal, step::fit, "reduce",
+        "Replace a large linear model by a smaller one, with a bound on the error or the error itself", run);
     verb->add_option("MODEL", o->model, "the model, as identify wrote it")->required();
     verb->add_option("--order", o->order, "the order to reduce it to")->check(CLI::Range(0, 400));
-    verb->add_option(
-            "--response", o->response.path,
-            "prune by this take or response, refitting after every step; else the model is balanced and truncated")
+    verb->add_option("--response", o->response.path,
+                     "prune against this take or response, refitting after every step; without it the model is "
+                     "balanced and truncated")
         ->type_name("TAKE");
     verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
-    verb->add_option("--error", o->errorDb, "stop pruning before the weighted error would pass this, dB")
+    verb->add_option("--error", o->errorDb, "stop pruning before the weighted error exceeds this, dB")
         ->check(CLI::Range(-400.0, 0.0));
-    verb->add_option("--ripple", o->rippleDb,
-                     "take out remote poles and zeros, and pairs that cancel, as long as all of it ripples by no more "
-                     "than this, dB")
+    verb->add_option(
+            "--ripple", o->rippleDb,
+            "remove remote poles and zeros, and pairs that cancel, as long as the total ripple stays below this, dB")
         ->check(CLI::Range(0.0, 60.0))
         ->excludes("--response");
     verb->add_option(
             "--band", o->band,
-            "lowest and highest frequency that the ripple counts at, Hz; a model of continuous time needs them")
+            "lowest and highest frequency at which the ripple counts, Hz; a model of continuous time needs them")
         ->delimiter(',')
         ->expected(2)
         ->needs("--ripple");
     verb->add_flag("--settled", o->settled, "truncated states are taken as settled: exact at frequency 0");
     verb->add_option("--out", o->out, "the smaller model, a .json")->required()->type_name("FILE");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

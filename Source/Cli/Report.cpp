@@ -59,14 +59,15 @@ void run(const std::string& place, Terminal& terminal)
 void addReport(CLI::App& app, Terminal& terminal)
 {
     auto place = std::make_shared<std::string>();
-    auto* verb = app.add_subcommand("report", "Draw a ladder again, or a document of identify, pnlss, rank or "
-                                              "harmonics, as one page that needs nothing "
-                                              "else")
-                     ->group(step::diagnose);
+    auto* verb =
+        app.add_subcommand(
+               "report",
+               "Draw a ladder again, or a document of identify, pnlss, rank or harmonics, as one self-contained page")
+            ->group(step::diagnose);
     verb->add_option("PLACE", *place,
-                     "folder of an earlier improve: ladder.json is read, report.html written; or a .json: a model of "
-                     "identify (--cone too), reduce or stabilize, or what --json "
-                     "FILE of identify, pnlss, rank or harmonics wrote, beside which the page is put")
+                     "folder of an earlier improve: ladder.json is read, report.html written; or a .json: a model from "
+                     "identify (also --cone), reduce or stabilize, or what --json FILE of identify, pnlss, rank or "
+                     "harmonics wrote; the page is put beside it")
         ->required();
     verb->callback([place, &terminal] { run(*place, terminal); });
 }

@@ -150,7 +150,7 @@ std::string beyond(const Model& model, const Measurement& take)
     double range = 0.0;
     for (const auto& component : model.components)
         if (const auto law = component.effect->law(); law && law->argument == "x")
-            range = std::max(range, component.extent.displacement);
+            range = std::max(range, component.operatingRange.displacement);
     const auto* x = take.find(Quantity::displacement);
     const double peak = x ? peakOf(x->samples) : 0.0;
     if (range == 0.0 || peak <= 1.05 * range)
@@ -208,16 +208,13 @@ void run(const SimulateArguments& options, Terminal& terminal)
 
 void addSimulate(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<SimulateArguments>();
-    auto* verb = app.add_subcommand("simulate", "What the loudspeaker will do: every channel of the model, as a take")
-                     ->group(step::use);
+    const auto [verb, o] = addVerb<SimulateArguments>(app, terminal, step::use, "simulate",
+                                                      "Play a signal to a model: every channel of it, as a take", run);
     verb->add_option("MODEL", o->model,
-                     "the model, a .json: of a driver, or one that rank --keep, harmonics --model, "
-                     "pnlss or identify kept and that plays one channel at its own rate")
+                     "the model, a .json: of a driver, or one from rank --keep, harmonics --model, pnlss or identify, "
+                     "which plays one channel at its own rate")
         ->required();
-    verb->add_option("IN", o->input,
-                     "what is played: a .wav of one channel, or a take or plan, whose voltage is played")
-        ->required();
+    verb->add_option("IN", o->input, "the signal: a .wav of one channel, or the voltage of a take or plan")->required();
     verb->add_option("--full-scale", o->fullScale,
                      "V at the loudspeaker for a WAV sample of 1.0 (N for a model without a coil)")
         ->check(CLI::PositiveNumber);
@@ -226,7 +223,6 @@ void addSimulate(CLI::App& app, Terminal& terminal)
         ->capture_default_str();
     verb->add_option("--out", o->out, "folder of the take")->required()->type_name("DIR");
     verb->footer("Exit code 1: the take was written, but the tolerance was not reached.");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

@@ -138,28 +138,25 @@ void run(const StabilizeArguments& options, Terminal& terminal)
 
 void addStabilize(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<StabilizeArguments>();
-    auto* verb = app.add_subcommand("stabilize",
-                                    "A stable linear model in place of an unstable one, and what each step costs")
-                     ->group(step::fit);
+    const auto [verb, o] = addVerb<StabilizeArguments>(
+        app, terminal, step::fit, "stabilize",
+        "Replace an unstable linear model by a stable one, and show what each step costs", run);
     verb->add_option("MODEL", o->model, "the model, as identify --allow-unstable wrote it")->required();
     verb->add_option("--method", o->method,
-                     "mirror unstable poles, project on the stable part, add a delay and fit again, or decompose into "
-                     "a stable and an unstable model")
+                     "mirror unstable poles, project on the stable part, add a delay and refit, or decompose into a "
+                     "stable and an unstable model")
         ->check(CLI::IsMember({"mirror", "project", "delay", "decompose"}))
         ->capture_default_str();
-    verb->add_option(
-            "--frf", o->response.path,
-            "the take or response that the model is of, to fit it to again; by default the model's own response")
+    verb->add_option("--frf", o->response.path,
+                     "the take or response to refit the model to; by default the model's own response")
         ->type_name("TAKE");
     verb->add_option("--level", o->response.level, "number of the take's level, 0 the quietest; by default the loudest")
         ->check(CLI::NonNegativeNumber);
-    verb->add_option("--seconds", o->seconds, "the delay to add; by default the one that fits best is looked for");
+    verb->add_option("--seconds", o->seconds, "the delay to add; by default the one that fits best");
     verb->add_flag("--no-refit", o->unfitted, "leave out the constrained fit at the end");
     verb->add_option("--unstable", o->unstable, "write the unstable part of --method decompose, a .json")
         ->type_name("FILE");
     verb->add_option("--out", o->out, "the stable model, a .json")->required()->type_name("FILE");
-    verb->callback([o, &terminal] { run(*o, terminal); });
 }
 
 }  // namespace excursion::cli

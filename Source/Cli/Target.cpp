@@ -43,17 +43,18 @@ nlohmann::ordered_json documentOf(const Resonance& one, const TargetForecast::Pe
 void addTargetOptions(CLI::App& verb, TargetArguments& target)
 {
     verb.add_option("--target-f0", target.frequency,
-                    "Hz: the linearized loudspeaker is to resonate there (default: where the driver does)");
-    verb.add_option("--target-q", target.quality, "and with this total Q (default: the driver's own)");
+                    "resonance of the linearized loudspeaker, Hz (default: the driver's own)");
+    verb.add_option("--target-q", target.quality, "its total Q (default: the driver's own)");
     verb.add_option("--target-box", target.litres,
-                    "litres: it is to move as the driver would in a closed box of that volume");
-    verb.add_option("--target-flat", target.flat, "Hz: its sound is to be flat from LOW to HIGH")
+                    "make it move like the driver in a closed box of this volume, litres");
+    verb.add_option("--target-flat", target.flat, "make its sound flat from LOW to HIGH, Hz")
         ->expected(2)
         ->delimiter(',');
     verb.add_option("--target-gains", target.gains,
-                    "a file of lines of Hz and dB: these gains in thirds of an octave, on its own sound");
+                    "add these gains to its own sound, in thirds of an octave: a file with lines of Hz and dB");
     verb.add_option("--target-response", target.response,
-                    "a file of lines of Hz and dB, as .frd: its sound is to follow that, as loud as on average there");
+                    "make its sound follow this curve, as loud as on average there: a file with lines of Hz and dB, "
+                    "such as .frd");
 }
 
 Target targetFrom(const TargetArguments& asked, const OwnLinearPart& own)

@@ -50,13 +50,6 @@ std::size_t terminalColumns()
     return 80;
 }
 
-/// Columns that UTF-8 text takes, one a code point.
-std::size_t width(std::string_view text)
-{
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 bool startsAsNumber(std::string_view text)
 {
     if (!text.empty() && (text.front() == '-' || text.front() == '+'))
@@ -66,7 +59,7 @@ bool startsAsNumber(std::string_view text)
 
 std::string padded(const std::string& text, std::size_t to, bool right)
 {
-    const std::string blanks(to - std::min(to, width(text)), ' ');
+    const std::string blanks(to - std::min(to, columnsOf(text)), ' ');
     return right ? blanks + text : text + blanks;
 }
 
@@ -80,6 +73,12 @@ std::string formatted(double value, std::chars_format format, int precision)
 }
 
 }  // namespace
+
+std::size_t columnsOf(std::string_view text)
+{
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
 
 Terminal::Terminal() : stderrIsTerminal_(isStderrATerminal())
 {
@@ -117,10 +116,10 @@ void Terminal::table(const std::vector<std::string>& header, const std::vector<s
     std::vector<std::size_t> widths;
     std::vector<bool> numeric(header.size(), true);
     for (const auto& title : header)
-        widths.push_back(width(title));
+        widths.push_back(columnsOf(title));
     for (const auto& row : rows)
         for (std::size_t c = 0; c < std::min(row.size(), header.size()); ++c) {
-            widths[c] = std::max(widths[c], width(row[c]));
+            widths[c] = std::max(widths[c], columnsOf(row[c]));
             numeric[c] = numeric[c] && (row[c].empty() || row[c] == "-" || startsAsNumber(row[c]));
         }
     const auto line = [&](const std::vector<std::string>& cells) {
@@ -230,7 +229,7 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t colum
     for (bool first = true; !text.empty(); first = false) {
         const auto word = text.substr(0, text.find(' '));
         text.remove_prefix(std::min(text.size(), word.size() + 1));
-        if (used > indent && used + 1 + width(word) > columns) {
+        if (used > indent && used + 1 + columnsOf(word) > columns) {
             result += '\n' + std::string(indent, ' ');
             used = indent;
         } else if (!first) {
@@ -238,7 +237,7 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t colum
             ++used;
         }
         result += word;
-        used += width(word);
+        used += columnsOf(word);
     }
     return result;
 }

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstddef>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -76,6 +77,9 @@ std::string errorText(double db);
 /// "1.43e-05", "22000" or "3.3": a number with that many significant digits (whole parts in full),
 /// without zeros at its end; for tables. Locale-free.
 std::string significant(double value, int digits = 4);
+
+/// Columns that UTF-8 text takes, one a code point.
+std::size_t columnsOf(std::string_view text);
 
 /// The text in lines of at most `columns`, broken at blanks; all but the first begin with `indent` blanks.
 std::string wrapped(std::string_view text, std::size_t indent = 0, std::size_t columns = 110);

@@ -3,14 +3,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include <memory>
+#include <utility>
+
 namespace excursion::cli {
 
 class Terminal;
 
-/// The steps of the method; `excursion --help` groups the verbs by them. A verb is one file: it adds
-/// its subcommand with `app.add_subcommand(...)->group(step::...)`, keeps its options in a
-/// std::shared_ptr that its callback captures, and throws Error. Give paths as std::string: CLI11
-/// would split a std::filesystem::path at its blanks.
+/// The steps of the method; `excursion --help` groups the verbs by them.
 namespace step {
 inline constexpr auto measure = "1. Measure the loudspeaker";
 inline constexpr auto look = "2. See whether the take is fit for use, and what is in it";
@@ -20,6 +20,25 @@ inline constexpr auto use = "5. Use the model";
 inline constexpr auto batch = "6. Many loudspeakers";
 inline constexpr auto around = "Around it";
 }  // namespace step
+
+/// A verb and where its options go.
+template <class Arguments>
+struct Verb {
+    CLI::App* app;
+    std::shared_ptr<Arguments> arguments;
+};
+
+/// Adds a verb that runs `run` once its options are parsed; it throws Error. A verb is one file. Give paths as
+/// std::string: CLI11 would split a std::filesystem::path at its blanks.
+template <class Arguments>
+Verb<Arguments> addVerb(CLI::App& app, Terminal& terminal, const char* group, const char* name, const char* help,
+                        void (*run)(const Arguments&, Terminal&))
+{
+    auto arguments = std::make_shared<Arguments>();
+    auto* verb = app.add_subcommand(name, help)->group(group);
+    verb->callback([arguments, run, &terminal] { run(*arguments, terminal); });
+    return {verb, std::move(arguments)};
+}
 
 // Declared here in the order of the method, called in the same order by main.
 void addExcite(CLI::App&, Terminal&);

@@ -160,25 +160,25 @@ void run(const VirtualArguments& options, Terminal& terminal)
 void addVirtual(CLI::App& app, Terminal& terminal)
 {
     auto options = std::make_shared<VirtualArguments>();
-    auto* verb = app.add_subcommand("virtual", "A take of a virtual loudspeaker with something hidden in it")
+    auto* verb = app.add_subcommand("virtual", "Measure a virtual loudspeaker that has something hidden in it")
                      ->group(step::measure);
-    verb->add_option("--seed", options->seed, "what is drawn, noise included")->required();
+    verb->add_option("--seed", options->seed, "seed of all that is drawn, noise included")->required();
     auto* hidden = verb->add_option("--hidden", options->hidden,
-                                    "effects to hide, each with an optional strength (stiffness:0.3), or none; "
-                                    "without this option one is drawn and not told")
+                                    "effects to hide, each with an optional strength (stiffness:0.3), or none; by "
+                                    "default one is drawn and not revealed")
                        ->delimiter(',');
     verb->add_option("--driver", options->driver, "micro, midrange, midbass, woofer, subwoofer or seed");
     auto* noise = verb->add_option("--noise", options->noise, "sensor noise in dB against the loudest level")
                       ->check(CLI::Range(-200.0, 0.0));
     auto* plan = verb->add_option("--plan", options->plan,
-                                  "what is played, in its own volts, in place of multisines that suit the loudspeaker: "
-                                  "a folder of excursion excite")
+                                  "the plan to play, at its own voltages, in place of multisines that suit the "
+                                  "loudspeaker: a folder from excursion excite")
                      ->type_name("DIR");
     verb->add_option("--rate", options->rate, "sample rate in Hz")->excludes(plan);
     verb->add_option("--seconds", options->seconds, "length of the take, about")
         ->check(CLI::Range(1.0, 120.0))
         ->excludes(plan);
-    verb->add_option("--channels", options->channels, "what is recorded, beside voltage")->delimiter(',');
+    verb->add_option("--channels", options->channels, "what is recorded besides the voltage")->delimiter(',');
     verb->add_option("--out", options->out, "folder of the take")->required()->type_name("DIR");
     verb->add_option("--truth", options->truth, "JSON file that tells what was hidden")->type_name("FILE");
     verb->callback([options, hidden, noise, &terminal] {

@@ -80,13 +80,11 @@ void run(const WhatIfArguments& options, Terminal& terminal)
 
 void addWhatIf(CLI::App& app, Terminal& terminal)
 {
-    auto o = std::make_shared<WhatIfArguments>();
-    auto* verb = app.add_subcommand("whatif",
-                                    "Which effect makes which distortion, how far the coil may go, and what to change")
-                     ->group(step::use);
+    const auto [verb, o] = addVerb<WhatIfArguments>(
+        app, terminal, step::use, "whatif",
+        "Which effect makes which distortion, how far the coil may go, and what to change", run);
     verb->add_option("MODEL", o->model, "the model, a .json")->required();
-    verb->add_option("TAKE", o->take, "what is played: the loudest of a take")->required();
-    verb->callback([o, &terminal] { run(*o, terminal); });
+    verb->add_option("TAKE", o->take, "the loudest part of this take is played")->required();
 }
 
 }  // namespace excursion::cli

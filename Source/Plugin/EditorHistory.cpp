@@ -122,7 +122,7 @@ void Editor::useBox(const nlohmann::ordered_json& document, const juce::String& 
 {
     replaced_ = owner_.anyModel();
     owner_.rehearsing().load(document, from.toStdString());
-    tell("Rehearsing what it is worth to turn the model of " + from + " around.", false);
+    tell("Rehearsing what it is worth to invert the model of " + from + ".", false);
 }
 
 /// What came of a model without physics that was loaded.

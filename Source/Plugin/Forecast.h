@@ -32,7 +32,7 @@ public:
     }
 
     /// The answer, once.
-    std::optional<Answer> take()
+    std::optional<Answer> collect()
     {
         const std::lock_guard lock(mutex_);
         return std::exchange(answer_, std::nullopt);

@@ -214,7 +214,7 @@ void LinearizePage::showForecast()
 {
     const auto recipe = processor_.parameters().recipe();
     if (box_) {
-        forecast_.take();  // of a driver before
+        forecast_.collect();  // of a driver before
         return;
     }
     if (targetPictured())
@@ -230,7 +230,7 @@ void LinearizePage::showForecast()
             }
         });
     }
-    const auto answer = forecast_.take().value_or(std::nullopt);
+    const auto answer = forecast_.collect().value_or(std::nullopt);
     if (!answer)
         return;
     showDistortion(answer->frequency, answer->before, answer->after, "Predicted distortion at 0 dBFS");
@@ -268,7 +268,7 @@ void LinearizePage::follow()
 
 void LinearizePage::showMeters()
 {
-    const auto meters = processor_.take();
+    const auto meters = processor_.collectMeters();
     const double range = box_ ? measuredDisplacement(box_->played) : measuredDisplacement(processor_.model()),
                  reach = std::isfinite(range) ? meters.displacement / range : 0.0;
     const auto limits = processor_.parameters().controls(range).linearization;

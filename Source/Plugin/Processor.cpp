@@ -280,7 +280,7 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
                 samples[n + k] = static_cast<Sample>(block_[k]);
         }
         if (auto* chain = channel != nullptr ? channel->current() : nullptr) {
-            const auto meters = chain->take();
+            const auto meters = chain->collectMeters();
             region_.raise(meters.region);
             displacement_.raise(std::max(meters.predistorter.displacement, meters.speaker.displacement));
             voltage_.raise(meters.predistorter.voltage);
@@ -296,10 +296,16 @@ void Processor::play(juce::AudioBuffer<Sample>& buffer, bool bypassed)
         buffer.clear(c, 0, buffer.getNumSamples());
 }
 
-Processor::Meters Processor::take()
+Processor::Meters Processor::collectMeters()
 {
-    return {displacement_.take(),     voltage_.take(),        power_.take(),  displacementReduction_.take(),
-            voltageReduction_.take(), powerReduction_.take(), region_.take(), faults_.load(std::memory_order_relaxed)};
+    return {displacement_.readAndReset(),
+            voltage_.readAndReset(),
+            power_.readAndReset(),
+            displacementReduction_.readAndReset(),
+            voltageReduction_.readAndReset(),
+            powerReduction_.readAndReset(),
+            region_.readAndReset(),
+            faults_.load(std::memory_order_relaxed)};
 }
 
 void Processor::getStateInformation(juce::MemoryBlock& block)

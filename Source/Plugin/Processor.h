@@ -65,7 +65,7 @@ public:
         double region = 0.0;  ///< of a model without physics: 1 is as far out as its fit has been
         int faults = 0;       ///< of the chains that play now
     };
-    Meters take();
+    Meters collectMeters();
 
     void prepareToPlay(double sampleRate, int longestBlock) override;
     void releaseResources() override {}

@@ -182,7 +182,7 @@ void TargetPanel::tick()
     if (!pictured())
         return;
     ask();
-    if (const auto answer = forecast_.take())
+    if (const auto answer = forecast_.collect())
         show(*answer);
 }
 

@@ -14,7 +14,7 @@
 namespace excursion {
 namespace {
 
-/// What it is worth to turn the classes around; nothing where the document does not say.
+/// What it is worth to invert the classes; nothing where the document does not say.
 void addLinearizations(Page& page, const JsonField& document)
 {
     if (!document.has("linearizationSentence"))

@@ -24,7 +24,7 @@ void addRungs(Page& page, const LadderFile& file)
         header.push_back(capitalized(name(channel.quantity)));
         header.emplace_back("predicted");
     }
-    header.emplace_back("Misfit \u03c7\u00b2");
+    header.emplace_back("\u03c7\u00b2 per value");
     std::vector<std::vector<Page::Cell>> rows;
     for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
         const auto& rung = ladder.rungs[k];
@@ -37,7 +37,8 @@ void addRungs(Page& page, const LadderFile& file)
             row.push_back(Page::figure(
                 rung.added.empty() || guess == rung.predictedErrorDb.end() ? "\u2013" : decibels(guess->second)));
         }
-        row.push_back(Page::figure(rung.comparison.noiseKnown ? engineering(rung.comparison.chi, "1", 3) : "\u2013"));
+        row.push_back(Page::figure(rung.comparison.noiseKnown ? engineering(rung.comparison.chiSquaredPerValue, "1", 3)
+                                                              : "\u2013"));
         rows.push_back(std::move(row));
     }
     std::vector<Page::Cell> floors {"noise floor"};
@@ -51,7 +52,7 @@ void addRungs(Page& page, const LadderFile& file)
     page.note(std::string("Errors are relative rms over all levels, on ")
               + (ladder.rungs.back().comparison.validated ? "data that no fit saw. "
                                                           : "the data that was fitted, as nothing could be held out. ")
-              + "A misfit of 1 means that nothing but noise is left.");
+              + "A \u03c7\u00b2 per value of 1 means that nothing but noise is left.");
     for (const auto& id : ladder.withdrawn)
         page.paragraph("Tried and withdrawn: " + effectTitle(id) + "; what it left was as large as what it explained.");
     std::vector<Plot> plots;

@@ -22,13 +22,13 @@ inline Model midbassOf(double K, double m = 1.0, double Bl = 1.0,
     model.baseParameter("Bl").value = 5.0 * Bl;
     model.path.parameters[0].value = 0.0132;
     for (const auto& id : effects) {
-        const Extent extent {.displacement = 3.03e-3,
-                             .velocity = 0.5,
-                             .current = 2.0,
-                             .lowFrequency = 20.0,
-                             .highFrequency = 5000.0,
-                             .degree = 2};
-        model = withEffect(std::move(model), effectNamed(id), extent);
+        const OperatingRange operatingRange {.displacement = 3.03e-3,
+                                             .velocity = 0.5,
+                                             .current = 2.0,
+                                             .lowFrequency = 20.0,
+                                             .highFrequency = 5000.0,
+                                             .degree = 2};
+        model = withEffect(std::move(model), effectNamed(id), operatingRange);
         model.components.back().parameters[1].value = id == "stiffness" ? 300.0 * K : -0.3;
     }
     const auto theta = parameterVector(model);
@@ -53,12 +53,12 @@ inline Unit unitOf(const std::string& name, Model model, Verdict verdict = Verdi
     rung.model = std::move(model);
     rung.comparison.levels = {1.0};
     rung.comparison.noiseKnown = true;
-    rung.comparison.chi = 1.1;
+    rung.comparison.chiSquaredPerValue = 1.1;
     ChannelComparison channel;
     channel.quantity = Quantity::current;
     channel.total.db = error;
     channel.total.noiseFloorDb = error - 0.5;
-    channel.total.chi = 1.1;
+    channel.total.chiSquaredPerValue = 1.1;
     rung.comparison.channels.push_back(channel);
     rung.diagnosis.verdict = verdict;
     ladder.rungs.push_back(std::move(rung));

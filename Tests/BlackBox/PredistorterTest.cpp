@@ -64,7 +64,8 @@ TEST_CASE("The distortion of random PNLSS models goes down as the rehearsal says
         const double before = distortionDb(simulate(model, vectorOf(u)).col(0), straight, 16384),
                      after = distortionDb(simulate(model, vectorOf(bent)).col(0), straight, 16384);
         INFO("seed " << seed << ": " << before << " to " << after << " dB; rehearsed " << box.rehearsal.beforeDb
-                     << " to " << box.rehearsal.afterDb << ", turned down by " << predistorter.take().regionReduction);
+                     << " to " << box.rehearsal.afterDb << ", turned down by "
+                     << predistorter.collectMeters().regionReduction);
         CHECK(box.rehearsal.gainDb() > 25.0);
         REQUIRE(box.rehearsal.frequency.size() > 15);
         REQUIRE(box.rehearsal.before.size() == box.rehearsal.frequency.size());
@@ -225,7 +226,7 @@ TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[pred
     // Silence, before the fade begins at 7500, but for what the slow poles of the mean leave: -58 dB of the fit's
     // level.
     CHECK(std::abs(bent[7400]) < 2e-3 * stimulus.rms);
-    CHECK(predistorter.take().faults == 3);
+    CHECK(predistorter.collectMeters().faults == 3);
     double left = 0.0;
     for (std::size_t k = 40000; k < bent.size(); ++k)
         left = std::max(left, std::abs(bent[k] - right[k]));
@@ -240,12 +241,12 @@ TEST_CASE("What is no number, and what no fit has seen, stays in bounds", "[pred
                   * (k < 48000 ? std::sin(2.0 * std::numbers::pi * 25.0 * static_cast<double>(k) / modelRate)
                                : normal(random));
     predistorter.reset();
-    predistorter.take();
+    predistorter.collectMeters();
     for (const double sample : through(predistorter, loud)) {
         REQUIRE(std::isfinite(sample));
         REQUIRE(std::abs(sample) <= bound);
     }
-    const auto meters = predistorter.take();
+    const auto meters = predistorter.collectMeters();
     CHECK(meters.regionReduction > 20.0);
     CHECK(meters.region < 2.0);
 }
@@ -288,7 +289,7 @@ TEST_CASE("The speaker plays as the model is simulated, and never runs away", "[
         < -150.0);
 }
 
-TEST_CASE("A model that cannot be turned around is refused in a sentence", "[predistorter]")
+TEST_CASE("A model that cannot be inverted is refused in a sentence", "[predistorter]")
 {
     const auto stimulus = pinkStimulus(2.0);
     CHECK_THROWS_AS(RehearsedBox(boxOf(oneWay(modelRate, stimulus), stimulus)), Error);

@@ -77,7 +77,7 @@ TEST_CASE("Whatever is played, a black box goes no farther than its limit", "[pr
         std::vector<double> out(programme.samples.size());
         predistorter.process(programme.samples.data(), out.data(), out.size());
         const double reached = moved(one.model, out).cwiseAbs().maxCoeff() / limit;
-        const auto meters = predistorter.take();
+        const auto meters = predistorter.collectMeters();
         INFO("run " << run << ": " << programme.name << " at " << level / one.box.box.stimulus.peak
                     << " of the peak, limit " << limit / one.box.region.farthest << " of the region, amount "
                     << controls.amount << ", " << controls.voltageLimit << " V: reached " << reached << ", told "
@@ -106,7 +106,7 @@ TEST_CASE("The heat of a coil that is counted to take all of a black box's volta
         BlackBoxPredistorter unknown(one.box, protectedRate, controls);
         std::vector<double> out(programme.samples.size());
         unknown.process(programme.samples.data(), out.data(), out.size());
-        CHECK(unknown.take().powerReduction == 0.0);
+        CHECK(unknown.collectMeters().powerReduction == 0.0);
         const double before = heatOf(out, protectedRate, ohms);
         controls.coilResistance = ohms;
         BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
@@ -116,7 +116,7 @@ TEST_CASE("The heat of a coil that is counted to take all of a black box's volta
                     << " W, with it " << heat << " W");
         CHECK(heat < 1.01 * controls.powerLimit);
         CHECK(heat > 0.3 * std::min(before, controls.powerLimit));
-        CHECK(std::abs(predistorter.take().power - heat) < 0.05 * controls.powerLimit);
+        CHECK(std::abs(predistorter.collectMeters().power - heat) < 0.05 * controls.powerLimit);
     }
 }
 
@@ -186,7 +186,7 @@ TEST_CASE("A model of no excursion keeps voltage and region, and says nothing of
     predistorter.process(u.data(), out.data(), out.size());
     CHECK(peakOf(out) <= controls.voltageLimit);
     CHECK(peakOf(out) > 0.5 * controls.voltageLimit);
-    const auto meters = predistorter.take();
+    const auto meters = predistorter.collectMeters();
     CHECK(meters.displacement == 0.0);
     CHECK(meters.displacementReduction == 0.0);
     CHECK(meters.voltageReduction > 1.0);

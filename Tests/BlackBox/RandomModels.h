@@ -76,7 +76,7 @@ inline Pnlss randomPnlss(std::uint64_t seed, double sampleRate, const Stimulus& 
     return model;
 }
 
-/// One that cannot be turned around: what is odd in the output alone and delayed cannot be made undone where the linear
+/// One that cannot be inverted: what is odd in the output alone and delayed cannot be made undone where the linear
 /// part is silent, and this one passes nothing but a resonance far below the distortion.
 inline Pnlss oneWay(double sampleRate, const Stimulus& stimulus)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole way on the virtual bench: a PNLSS model of a noisy take, turned around, and the loudspeaker itself driven
+// The whole way on the virtual bench: a PNLSS model of a noisy take, inverted, and the loudspeaker itself driven
 // with what comes out. The bench shares no line with the models.
 #include "BlackBox/RandomModels.h"
 #include "Predistortion/Programme.h"
@@ -96,7 +96,7 @@ TEST_CASE("A loudspeaker of the bench is linearized by a PNLSS model of its take
         const auto told = box.rehearsal;
         WARN("seed " << seed << ": model " << fit.validationDb << " dB, told " << told.beforeDb << " to "
                      << told.afterDb << " dB; the loudspeaker " << was << " to " << is << " dB, turned down by "
-                     << predistorter.take().regionReduction << " dB");
+                     << predistorter.collectMeters().regionReduction << " dB");
         CHECK(was - is > 25.0);
 
         // Far too loud, with a limit that a model of this error can promise: the loudspeaker itself keeps it.
@@ -110,7 +110,7 @@ TEST_CASE("A loudspeaker of the bench is linearized by a PNLSS model of its take
         const auto moved = bench::play(drawn.speaker, loud, take.sampleRate, {Quantity::displacement});
         const double reached = peakOf(moved.find(Quantity::displacement)->samples) / controls.displacementLimit;
         WARN("too loud: the loudspeaker goes to " << reached << " of its limit, told "
-                                                  << careful.take().displacement / controls.displacementLimit);
+                                                  << careful.collectMeters().displacement / controls.displacementLimit);
         CHECK(reached < 1.0);
         CHECK(reached > 0.7);
         CHECK(peakOf(loud) <= controls.voltageLimit);

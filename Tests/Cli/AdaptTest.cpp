@@ -55,7 +55,8 @@ TEST_CASE("adapt finds what has drifted, tells it, and leaves the rest", "[cli][
             CHECK(was == is);
     }
     const auto said = runProgram(scratch.folder(), {"adapt", old, chain.take(), "--out", out});
-    for (const auto* text : {"parameter", "was", "std error", "K warmer than it was", "f0", "misfit before", "Wrote "})
+    for (const auto* text :
+         {"parameter", "was", "std error", "K warmer than it was", "f0", "\u03c7\u00b2/value before", "Wrote "})
         CHECK_THAT(said.out, Catch::Contains(text));
     const auto one = runProgram(scratch.folder(),
                                 {"adapt", old, chain.take(), "--parameters", "K", "--out", out, "--json"});

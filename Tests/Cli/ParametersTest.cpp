@@ -20,7 +20,7 @@ Json parameter(const std::string& name, const std::string& unit, double value, b
 Json effect(const std::string& id, const std::vector<std::tuple<std::string, std::string, double>>& numbers)
 {
     Json result {{"id", id},
-                 {"extent",
+                 {"operatingRange",
                   {{"displacement", 3e-3},
                    {"velocity", 1.0},
                    {"current", 3.0},

@@ -36,7 +36,7 @@ std::string bentModel(const Scratch& scratch)
             parameter("m", "kg", 0.01435), parameter("Rms", "N s/m", 0.786), parameter("K", "N/m", 1852.0)}}}},
         {"effects",
          {{{"id", "stiffness"},
-           {"extent",
+           {"operatingRange",
             {{"displacement", 4e-3},
              {"velocity", 2.0},
              {"current", 10.0},

@@ -18,9 +18,9 @@ Model inIron(double K, double a, double Le = 1e-9)
 {
     auto model = makeModel("electrodynamic");
     model.baseParameter("Le").value = Le;
-    const Extent extent {
+    const OperatingRange operatingRange {
         .displacement = 2e-3, .velocity = 0.5, .current = 2.0, .lowFrequency = 20.0, .highFrequency = 10000.0};
-    model = withEffect(std::move(model), effectNamed("eddy-currents"), extent);
+    model = withEffect(std::move(model), effectNamed("eddy-currents"), operatingRange);
     model.components.back().parameters[0].value = K;
     model.components.back().parameters[1].value = a;
     return model;

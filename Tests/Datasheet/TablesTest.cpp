@@ -22,12 +22,12 @@ Model bent()
     model.path.parameters[0].value = 0.0133;
     for (const auto* id : {"stiffness", "force-factor", "inductance-current"}) {
         model = withEffect(std::move(model), effectNamed(id),
-                           Extent {.displacement = 3e-3,
-                                   .velocity = 0.5,
-                                   .current = 2.0,
-                                   .lowFrequency = 20.0,
-                                   .highFrequency = 5000.0,
-                                   .degree = 2});
+                           OperatingRange {.displacement = 3e-3,
+                                           .velocity = 0.5,
+                                           .current = 2.0,
+                                           .lowFrequency = 20.0,
+                                           .highFrequency = 5000.0,
+                                           .degree = 2});
         auto& p = model.components.back().parameters;
         p[1].value = std::string(id) == "stiffness" ? 400.0 : std::string(id) == "force-factor" ? -0.5 : -2e-5;
     }

@@ -33,13 +33,13 @@ Model midbass(double Le = 3e-4)
 
 Model withNumbers(Model model, const std::string& effect, const std::vector<double>& numbers)
 {
-    const Extent extent {.displacement = 2e-3,
-                         .velocity = 0.5,
-                         .current = 2.0,
-                         .lowFrequency = 15.0,
-                         .highFrequency = 5000.0,
-                         .degree = 2};
-    model = withEffect(std::move(model), effectNamed(effect), extent);
+    const OperatingRange operatingRange {.displacement = 2e-3,
+                                         .velocity = 0.5,
+                                         .current = 2.0,
+                                         .lowFrequency = 15.0,
+                                         .highFrequency = 5000.0,
+                                         .degree = 2};
+    model = withEffect(std::move(model), effectNamed(effect), operatingRange);
     for (std::size_t k = 0; k < numbers.size(); ++k)
         model.components.back().parameters[k].value = numbers[k];
     return model;

@@ -23,11 +23,11 @@ constexpr double range = 2e-3;
 /// A cone on a spring K + c1 (x/X) + 2 c2 (x/X)^2, driven by a force.
 Model spring(double c1, double c2)
 {
-    Extent extent;
-    extent.displacement = range;
-    extent.degree = 2;
-    extent.lowFrequency = 10.0;
-    auto model = withEffect(makeModel("mechanical"), effectNamed("stiffness"), extent);
+    OperatingRange operatingRange;
+    operatingRange.displacement = range;
+    operatingRange.degree = 2;
+    operatingRange.lowFrequency = 10.0;
+    auto model = withEffect(makeModel("mechanical"), effectNamed("stiffness"), operatingRange);
     model.baseParameter("m").value = 0.01;
     model.baseParameter("Rms").value = 1.0;
     model.baseParameter("K").value = 1000.0;

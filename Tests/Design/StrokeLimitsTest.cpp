@@ -19,12 +19,12 @@ namespace {
 
 constexpr double visitedPeak = 4e-3;
 
-Extent visited(int degree)
+OperatingRange visited(int degree)
 {
-    Extent extent;
-    extent.displacement = visitedPeak;
-    extent.degree = degree;
-    return extent;
+    OperatingRange operatingRange;
+    operatingRange.displacement = visitedPeak;
+    operatingRange.degree = degree;
+    return operatingRange;
 }
 
 /// A law b + c1 (x/X) + 2 c2 (x/X)^2 put into a driver.

@@ -62,10 +62,32 @@ TEST_CASE("A diagnosis has the fields that scripts read", "[files]")
     CHECK(jsonText(toJson(diagnosisFromJson({plain, "", "d.json"}))) == jsonText(document));
 }
 
+TEST_CASE("A ladder of the version before, whose fields had other names, is read", "[files]")
+{
+    const auto text = jsonText(toJson(test::syntheticLadder()));
+    auto before = text;
+    const auto replace = [&before](const std::string& name, const std::string& by) {
+        std::size_t count = 0;
+        for (auto at = before.find(name); at != std::string::npos; at = before.find(name, at + by.size()), ++count)
+            before.replace(at, name.size(), by);
+        CHECK(count > 0);
+    };
+    replace("\"predictedChiSquaredPerValue\"", "\"predictedChi\"");
+    replace("\"confirmedChiSquaredPerValue\"", "\"confirmedChi\"");
+    replace("\"operatingRange\"", "\"extent\"");
+    // of a fit, which has the member behind its substeps, and of an error
+    for (auto at = before.find("\"substeps\""); at != std::string::npos; at = before.find("\"substeps\"", at + 1)) {
+        const std::string name = "\"chiSquaredPerValue\"";
+        before.replace(before.find(name, at), name.size(), "\"costPerResidual\"");
+    }
+    replace("\"chiSquaredPerValue\"", "\"chi\"");
+    CHECK(jsonText(toJson(ladderFromJson(nlohmann::json::parse(before), "before.json"))) == text);
+}
+
 TEST_CASE("Numbers that are not finite are written as null", "[files]")
 {
     Comparison comparison;
-    comparison.chi = std::numeric_limits<double>::quiet_NaN();
+    comparison.chiSquaredPerValue = std::numeric_limits<double>::quiet_NaN();
     comparison.levels = {std::numeric_limits<double>::infinity()};
     ChannelComparison channel;
     channel.total.db = -std::numeric_limits<double>::infinity();

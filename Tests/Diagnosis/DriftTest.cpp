@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What has drifted of a driver of the bench since its model was fitted, found in a short take.
+#include "BenchModel.h"
 #include "SeedDriver.h"
 
 #include "Bench/Bench.h"
@@ -132,7 +133,7 @@ TEST_CASE("Where nothing has drifted nothing moves, and what does not drift is n
     const auto record = recordOf(shortTake(speaker), before);
     const auto wrong = followDrift(before, record, driftingParameters(before)),
                right = followDrift(before, record, {"Bl"});
-    CHECK(compare(wrong.model, record).chi > 20.0 * compare(right.model, record).chi);
+    CHECK(compare(wrong.model, record).chiSquaredPerValue > 20.0 * compare(right.model, record).chiSquaredPerValue);
     CHECK(right.model.baseParameter("Bl").value == Approx(speaker.Bl).epsilon(3e-3));
     CHECK_FALSE(right.warmer);
 }
@@ -140,14 +141,7 @@ TEST_CASE("Where nothing has drifted nothing moves, and what does not drift is n
 TEST_CASE("An impedance tells a drift as well", "[drift]")
 {
     bench::Loudspeaker speaker;
-    auto model = makeModel("electrodynamic");
-    for (const auto& [name, value] : {std::pair {"Re", speaker.Re},
-                                      {"Le", speaker.Le},
-                                      {"Bl", speaker.Bl},
-                                      {"m", speaker.m},
-                                      {"Rms", speaker.Rms},
-                                      {"K", speaker.K}})
-        model.baseParameter(name).value = value;
+    auto model = test::baseOf(speaker);
     speaker.Re *= 1.05;
     speaker.K *= 1.3;
     ResponseTarget impedance;

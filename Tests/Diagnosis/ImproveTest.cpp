@@ -31,7 +31,7 @@ void requireAtTheNoise(const Comparison& comparison)
     for (const auto& channel : comparison.channels) {
         INFO(name(channel.quantity));
         REQUIRE(channel.total.noiseFloorDb);
-        CHECK(channel.total.chi < 2.0);
+        CHECK(channel.total.chiSquaredPerValue < 2.0);
     }
 }
 
@@ -60,7 +60,7 @@ TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is ca
     CHECK(work.ladder().rungs.empty());
     work.begin();
     REQUIRE(work.ladder().rungs.size() == 1);
-    const double chi = work.ladder().rungs[0].comparison.chi;
+    const double before = work.ladder().rungs[0].comparison.chiSquaredPerValue;
     std::stop_source stop;
     Progress progress;
     progress.stop = stop.get_token();
@@ -88,7 +88,7 @@ TEST_CASE("A ladder grows by hand, is cut back, and is as it was when work is ca
     work.undo();
     REQUIRE(work.ladder().rungs.size() == 1);
     CHECK(work.ladder().verdict == Verdict::missingEffect);
-    CHECK(work.ladder().rungs[0].comparison.chi == chi);
+    CHECK(work.ladder().rungs[0].comparison.chiSquaredPerValue == before);
 }
 
 TEST_CASE("Effects that are added in another order end in models that agree within their errors", "[improve][slow]")
@@ -103,7 +103,8 @@ TEST_CASE("Effects that are added in another order end in models that agree with
     };
     const auto one = climbed({"stiffness", "force-factor"}), other = climbed({"force-factor", "stiffness"});
     CHECK(one.verdict == other.verdict);
-    CHECK(one.rungs.back().comparison.chi == Approx(other.rungs.back().comparison.chi).margin(0.06));
+    CHECK(one.rungs.back().comparison.chiSquaredPerValue
+          == Approx(other.rungs.back().comparison.chiSquaredPerValue).margin(0.06));
     for (const auto& p : one.model().base().parameters) {
         const double q = other.model().baseParameter(p.name).value;
         INFO(p.name << ": " << p.value << " and " << q << " +- " << p.standardError);
@@ -139,7 +140,8 @@ TEST_CASE("One hidden effect is named, added, and the error falls to the noise",
     CHECK(first.ranking.front().effect == id);
     CHECK(first.ranking.front().confidence > 0.5);
     CHECK_FALSE(first.ranking.front().reason.empty());
-    CHECK(ladder.rungs.front().comparison.chi > 10.0 * ladder.rungs.back().comparison.chi);
+    CHECK(ladder.rungs.front().comparison.chiSquaredPerValue
+          > 10.0 * ladder.rungs.back().comparison.chiSquaredPerValue);
     requireAtTheNoise(ladder.rungs.back().comparison);
 }
 
@@ -166,7 +168,8 @@ TEST_CASE("Random chains of cells are explained at the noise in nineteen of twen
         const auto ladder = improve(bench::measure(drawn.speaker, drawn.setup));
         alone += added(ladder) == std::vector {id};
         const auto& channels = ladder.rungs.back().comparison.channels;
-        atNoise += std::all_of(channels.begin(), channels.end(), [](const auto& c) { return c.total.chi < 2.0; });
+        atNoise += std::all_of(channels.begin(), channels.end(),
+                               [](const auto& c) { return c.total.chiSquaredPerValue < 2.0; });
     }
     WARN(id << ": alone " << alone << ", within 3 dB of the noise " << atNoise << " of " << takes);
     CHECK(alone >= 19);
@@ -219,7 +222,7 @@ TEST_CASE("A suspension that is bent and creeps is both, in series", "[improve][
     // Laws that only add up leave 15 dB more of it.
     const auto ladder = improve(seedTake({{"stiffness", 0.3}, {"creep", 0.2}}));
     CHECK(added(ladder) == std::vector<std::string> {"stiffness", "creep"});
-    CHECK(ladder.rungs.back().comparison.chi < 6.0);
+    CHECK(ladder.rungs.back().comparison.chiSquaredPerValue < 6.0);
 }
 
 TEST_CASE("What is known is named beside what is not", "[improve][slow]")

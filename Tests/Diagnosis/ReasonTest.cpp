@@ -22,13 +22,13 @@ const Effect& effectOf(std::string_view id)
 /// The base with a K(x) that is `low` and `high` times K at the ends.
 Model withStiffness(double low, double high)
 {
-    Extent extent;
-    extent.displacement = 4e-3;
-    extent.degree = 2;
-    auto model = withEffect(makeModel(electrodynamicBase().id()), effectOf("stiffness"), extent);
+    OperatingRange operatingRange;
+    operatingRange.displacement = 4e-3;
+    operatingRange.degree = 2;
+    auto model = withEffect(makeModel(electrodynamicBase().id()), effectOf("stiffness"), operatingRange);
     const double rest = model.baseParameter("K").value;
     auto& parameters = model.components.back().parameters;
-    // a parabola through the three: the first is of x/extent, the second of its square
+    // a parabola through the three: the first is of x over the range, the second of its square
     REQUIRE(parameters.size() >= 2);
     for (auto& one : parameters)
         one.value = 0.0;

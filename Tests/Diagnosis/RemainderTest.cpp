@@ -40,7 +40,7 @@ Comparison oneChannel()
     Comparison comparison;
     comparison.levels = {1.0, 4.0};
     comparison.noiseKnown = true;
-    comparison.chi = 100.0;
+    comparison.chiSquaredPerValue = 100.0;
     comparison.channels = {channel};
     return comparison;
 }

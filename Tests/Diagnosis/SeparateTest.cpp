@@ -30,12 +30,12 @@ Model seedModel(double mass = 1.0, double motor = 1.0)
 /// A suspension that hardens by a tenth.
 Model hardening(double motor = 1.0)
 {
-    Extent extent;
-    extent.displacement = 4e-3;
-    extent.velocity = 1.2;
-    extent.current = 6.0;
-    auto model = withEffect(seedModel(1.0, motor), effectNamed("stiffness"), extent);
-    model.components.back().parameters[1].value = 0.1 * model.components.back().extent.scale;
+    OperatingRange operatingRange;
+    operatingRange.displacement = 4e-3;
+    operatingRange.velocity = 1.2;
+    operatingRange.current = 6.0;
+    auto model = withEffect(seedModel(1.0, motor), effectNamed("stiffness"), operatingRange);
+    model.components.back().parameters[1].value = 0.1 * model.components.back().operatingRange.scale;
     return model;
 }
 

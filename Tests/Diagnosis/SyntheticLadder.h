@@ -16,11 +16,11 @@ inline Model syntheticModel(std::size_t effects)
 {
     auto model = makeModel(electrodynamicBase().id());
     model.name = "synthetic";
-    Extent extent;
-    extent.displacement = 6e-3;
-    extent.degree = 4;
+    OperatingRange operatingRange;
+    operatingRange.displacement = 6e-3;
+    operatingRange.degree = 4;
     for (std::size_t k = 0; k < effects; ++k)
-        model = withEffect(model, *catalogue()[k], extent);
+        model = withEffect(model, *catalogue()[k], operatingRange);
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         auto& component = model.components[k];
         const auto law = component.effect->law();
@@ -49,7 +49,7 @@ inline Comparison syntheticComparison(std::size_t rung)
     Comparison c;
     c.levels = {0.44, 1.7, 4.4};
     c.noiseKnown = c.validated = true;
-    c.chi = std::pow(10.0, 3.0 - static_cast<double>(rung));
+    c.chiSquaredPerValue = std::pow(10.0, 3.0 - static_cast<double>(rung));
     const struct {
         Quantity quantity;
         double size;
@@ -78,7 +78,7 @@ inline Comparison syntheticComparison(std::size_t rung)
             ErrorLevel e;
             e.db = 20.0 * std::log10(std::hypot(relative, noise));
             e.noiseFloorDb = 20.0 * std::log10(noise);
-            e.chi = relative * relative / (noise * noise) + 1.0;
+            e.chiSquaredPerValue = relative * relative / (noise * noise) + 1.0;
             channel.byLevel.push_back(e);
             channel.kindsByLevel.push_back({e.db - 4.0, e.db - 3.0, e.db - 9.0, e.noiseFloorDb});
             channel.spectrumByLevel.push_back(std::move(s));

@@ -5,6 +5,7 @@
 #include "Engine/Fractional/TimeResponse.h"
 #include "Engine/Linear/LinearHold.h"
 #include "Engine/Linear/Simulation.h"
+#include "DocumentFile.h"
 #include "Linear/Problem.h"
 
 #include <Eigen/Eigenvalues>
@@ -175,7 +176,7 @@ TEST_CASE("The expanded model has the response of the fractional one, for any in
         CHECK(std::abs(found - truth) < 2e-6 * std::abs(truth));
         // To rounding it is the model at the ladder's lambda.
         Eigen::MatrixXcd exact = -model.form.A.cast<Complex>();
-        exact.diagonal().array() += 1.0 / ladderFor(0.5, {1.0, 1e5, 4.0}).integral(s);
+        exact.diagonal().array() += s / ladderFor(0.5, {1.0, 1e5, 4.0}).power(s);
         const Complex there = (model.form.C.cast<Complex>() * exact.lu().solve(model.form.B.cast<Complex>()))(0, 0);
         CHECK(std::abs(found - there) < 1e-10 * std::abs(there));
     }
@@ -254,28 +255,18 @@ TEST_CASE("Matignon's sector agrees with the matrices of the seed's theorems 3 a
 
 TEST_CASE("A fractional model comes back from its document")
 {
-    const Scratch scratch;
     const NamedFractionalStateSpace named {"loudspeaker", {"voltage"}, {"current"}, loudspeaker()};
-    writeFractionalStateSpace(named, scratch / "model.json");
-    const auto read = readFractionalStateSpace(scratch / "model.json");
+    const DocumentFile file(toJson(named), fractionalStateSpaceFromJson);
+    const auto read = file.read();
     CHECK(read.name == named.name);
     CHECK(read.inputs == named.inputs);
     CHECK(read.outputs == named.outputs);
     CHECK(read.model.alpha == 0.5);
     CHECK(read.model.form.A == named.model.form.A);
     CHECK(read.model.form.D == named.model.form.D);
-    auto document = toJson(named);
-    const auto reading = [&document] {
-        const nlohmann::json plain = document;
-        fractionalStateSpaceFromJson(JsonField(plain, "", "file"));
-    };
-    document["alpha"] = 2.0;
-    refused(Error::Kind::input, "'alpha' is 2.0, expected a number between 0 and 2", reading);
-    document["alpha"] = 0.5;
-    document["form"]["sampleRate"] = 48000.0;
-    refused(Error::Kind::input, "sampleRate", reading);
-    document.erase("form");
-    refused(Error::Kind::input, "form", reading);
+    file.refuses("'alpha' is 2.0, expected a number between 0 and 2", [](auto& d) { d["alpha"] = 2.0; });
+    file.refuses("sampleRate", [](auto& d) { d["form"]["sampleRate"] = 48000.0; });
+    file.refuses("form", [](auto& d) { d.erase("form"); });
 }
 
 TEST_CASE("Fractional models refuse what they cannot do")

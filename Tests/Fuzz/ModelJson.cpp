@@ -31,7 +31,7 @@ std::vector<std::string> fuzz::seeds()
  {"name": "m", "value": 0.011, "unit": "kg", "standardError": 1e-5, "free": true},
  {"name": "Rms", "value": 1.87, "unit": "N s/m", "standardError": 0.003, "free": true},
  {"name": "K", "value": 1415.0, "unit": "N/m", "standardError": 1.9, "free": true}]},)";
-    return {base + R"("effects": [{"id": "stiffness", "extent": {"displacement": 0.0024,
+    return {base + R"("effects": [{"id": "stiffness", "operatingRange": {"displacement": 0.0024,
  "velocity": 0.77, "current": 1.8, "lowFrequency": 14.6, "highFrequency": 3665.0, "degree": 2, "scale": 1402.5},
  "parameters": [
  {"name": "c1", "value": -20.1, "unit": "N/m", "standardError": 1.3, "free": true},

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace excursion::test {
 namespace {
@@ -146,6 +147,32 @@ Recorded record(const Played& played, const Recorder& recorder)
         recorded.channels.push_back(std::move(x));
     }
     return recorded;
+}
+
+Recorder recorder(std::vector<std::size_t> signals)
+{
+    Recorder r;
+    r.signals = std::move(signals);
+    static constexpr double scales[] {16.0, 4.0, 0.008, 8.0};
+    for (const auto s : r.signals)
+        r.fullScale.push_back(scales[s]);
+    return r;
+}
+
+void RecorderClock::set(Recorder& r) const
+{
+    r.sampleRate = rate;
+    r.ppm = ppm;
+    r.lead = lead;
+    r.bits = bits;
+}
+
+double clockError(const Alignment& alignment, const Recorded& truth, const Measurement& take)
+{
+    const auto error = [&](double n) {
+        return std::abs(alignment.clock.at(n) - truth.start - n * truth.step) / truth.step;
+    };
+    return std::max(error(0.0), error(static_cast<double>(take.length())));
 }
 
 }  // namespace excursion::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Import/AlignRecording.h"
 #include "Engine/Take/Measurement.h"
 
 #include <cstdint>
@@ -47,6 +48,16 @@ struct Recorder {
     int drop = 0;                      ///< samples lost there
 };
 
+/// One that records these of voltage, current, displacement and pressure, at 16 V, 4 A, 8 mm and 8 Pa full scale.
+Recorder recorder(std::vector<std::size_t> signals);
+
+/// What its clock and its converter may be like.
+struct RecorderClock {
+    double rate, ppm, lead;
+    int bits;
+    void set(Recorder&) const;
+};
+
 struct Recorded {
     double sampleRate = 0.0;
     std::vector<std::vector<double>> channels;  ///< -1 .. 1
@@ -57,5 +68,8 @@ struct Recorded {
 /// 64 samples on the twofold upsampled record (by zeros in its spectrum) under a Kaiser window: errors below -130 dB of
 /// full scale. Then gain, noise, rounding and clipping.
 Recorded record(const Played&, const Recorder&);
+
+/// The largest error of the clock that was found, in samples of the plan.
+double clockError(const Alignment&, const Recorded& truth, const Measurement& take);
 
 }  // namespace excursion::test

@@ -29,16 +29,6 @@ std::filesystem::path save(const Scratch& scratch, const std::string& name, cons
     return scratch / name;
 }
 
-Recorder recorder(std::vector<std::size_t> signals)
-{
-    Recorder r;
-    r.signals = std::move(signals);
-    static constexpr double scales[] {16.0, 4.0, 0.008, 8.0};
-    for (const auto s : r.signals)
-        r.fullScale.push_back(scales[s]);
-    return r;
-}
-
 RecordingOptions optionsFor(const Played& played, std::vector<std::filesystem::path> files,
                             const std::vector<std::string>& map)
 {
@@ -48,15 +38,6 @@ RecordingOptions optionsFor(const Played& played, std::vector<std::filesystem::p
     for (const auto& mapping : map)
         options.map.push_back(parseChannelMapping(mapping));
     return options;
-}
-
-/// The largest error of the clock that was found, in samples of the plan.
-double clockError(const Alignment& alignment, const Recorded& truth, const Measurement& take)
-{
-    const auto error = [&](double n) {
-        return std::abs(alignment.clock.at(n) - truth.start - n * truth.step) / truth.step;
-    };
-    return std::max(error(0.0), error(static_cast<double>(take.length())));
 }
 
 struct Likeness {
@@ -90,16 +71,9 @@ TEST_CASE("A recording with offset, drift, another rate and 16 bits becomes the 
     const auto& played = smallPlay();
     const Scratch scratch;
     auto r = recorder({0, 1, 2});
-    struct Case {
-        double rate, ppm, lead;
-        int bits;
-    };
-    for (const auto& c : {Case {48000, 0, 0.5, 24}, Case {48000, 173.2, 3.21234, 24}, Case {44100, -200, 1.00317, 16},
-                          Case {96000, 61, 0.7, 24}}) {
-        r.sampleRate = c.rate;
-        r.ppm = c.ppm;
-        r.lead = c.lead;
-        r.bits = c.bits;
+    for (const auto& c : {RecorderClock {48000, 0, 0.5, 24}, RecorderClock {48000, 173.2, 3.21234, 24},
+                          RecorderClock {44100, -200, 1.00317, 16}, RecorderClock {96000, 61, 0.7, 24}}) {
+        c.set(r);
         const auto recorded = record(played, r);
         const auto file = save(scratch, "rec.wav", recorded);
         const auto imported = importRecording(

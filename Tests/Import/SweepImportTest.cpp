@@ -41,16 +41,6 @@ const PlayedSweeps& twoLevels()
     return played;
 }
 
-Recorder sweepRecorder(std::vector<std::size_t> signals)
-{
-    Recorder r;
-    r.signals = std::move(signals);
-    static constexpr double scales[] {16.0, 4.0, 0.008, 8.0};
-    for (const auto s : r.signals)
-        r.fullScale.push_back(scales[s]);
-    return r;
-}
-
 ImportedRecording imported(const PlayedSweeps& of, const Recorded& recorded, const std::vector<std::string>& map,
                            double gain = 0.0, const SweepExcitation* plan = nullptr)
 {
@@ -70,34 +60,20 @@ ImportedRecording imported(const PlayedSweeps& of, const Recorded& recorded, con
     return importRecording(options);
 }
 
-double startError(const ImportedRecording& found, const Recorded& truth)
-{
-    const auto& clock = found.files[0].alignment.clock;
-    const auto error = [&](double n) { return std::abs(clock.at(n) - truth.start - n * truth.step) / truth.step; };
-    return std::max(error(0.0), error(static_cast<double>(found.take.length())));
-}
-
 }  // namespace
 
 TEST_CASE("A recording of sweeps is laid beside them to a small part of a sample, clocks and rates taken out",
           "[import][slow]")
 {
     const auto& of = twoLevels();
-    auto r = sweepRecorder({0, 1, 2});
-    struct Case {
-        double rate, ppm, lead;
-        int bits;
-    };
-    for (const auto& c : {Case {48000, 0, 0.5, 24}, Case {48000, 173.2, 2.21234, 24}, Case {44100, -250, 1.00317, 16},
-                          Case {96000, 61, 0.7, 24}}) {
-        r.sampleRate = c.rate;
-        r.ppm = c.ppm;
-        r.lead = c.lead;
-        r.bits = c.bits;
+    auto r = recorder({0, 1, 2});
+    for (const auto& c : {RecorderClock {48000, 0, 0.5, 24}, RecorderClock {48000, 173.2, 2.21234, 24},
+                          RecorderClock {44100, -250, 1.00317, 16}, RecorderClock {96000, 61, 0.7, 24}}) {
+        c.set(r);
         const auto recorded = record(of.played, r);
         const auto found = imported(of, recorded, {"1=voltage:16", "2=current:4", "3=displacement:8mm"});
         INFO("rate " << c.rate << " ppm " << c.ppm);
-        CHECK(startError(found, recorded) < 0.01);
+        CHECK(clockError(found.files[0].alignment, recorded, found.take) < 0.01);
         CHECK(found.files[0].alignment.driftPpm == Approx(c.ppm).margin(0.3));
         CHECK(found.files[0].alignment.synchronous == (c.ppm == 0));
         CHECK(found.remarks.empty());
@@ -120,25 +96,25 @@ TEST_CASE("A recording of sweeps is laid beside them to a small part of a sample
 TEST_CASE("Sweeps are found in what a loudspeaker makes of them, too", "[import][slow]")
 {
     const auto& of = twoLevels();
-    auto r = sweepRecorder({1, 3});
+    auto r = recorder({1, 3});
     r.ppm = 80.0;
     const auto recorded = record(of.played, r);
     const auto found = imported(of, recorded, {"1=current:4", "2=pressure:8"}, of.played.plan.input().fullScale);
     CHECK(found.files[0].alignment.driftPpm == Approx(80.0).margin(3.0));
-    CHECK(startError(found, recorded) < 2.0);  // a coil and a cone lie between
+    CHECK(clockError(found.files[0].alignment, recorded, found.take) < 2.0);  // a coil and a cone lie between
     CHECK(found.take.find(Quantity::voltage)->assumed);
 }
 
 TEST_CASE("One sweep does not tell a drift, and that is said", "[import]")
 {
     const auto of = playedSweeps(shortSweeps({1.5}));
-    auto r = sweepRecorder({0, 1});
+    auto r = recorder({0, 1});
     r.lead = 0.73211;
     const auto recorded = record(of.played, r);
     const auto found = imported(of, recorded, {"1=voltage:16", "2=current:4"});
     CHECK(found.files[0].alignment.driftUnknown);
     CHECK(found.files[0].alignment.synchronous);
-    CHECK(startError(found, recorded) < 0.01);
+    CHECK(clockError(found.files[0].alignment, recorded, found.take) < 0.01);
     REQUIRE(found.remarks.size() == 1);
     CHECK(found.remarks[0].find("nominal rate") != std::string::npos);
 }
@@ -146,7 +122,7 @@ TEST_CASE("One sweep does not tell a drift, and that is said", "[import]")
 TEST_CASE("A recording that ends early keeps the sweeps that it has whole", "[import]")
 {
     const auto& of = twoLevels();
-    auto r = sweepRecorder({0, 1});
+    auto r = recorder({0, 1});
     r.tail = -0.9;
     const auto found = imported(of, record(of.played, r), {"1=voltage:16", "2=current:4"});
     REQUIRE(found.sweep.has_value());
@@ -157,7 +133,7 @@ TEST_CASE("A recording that ends early keeps the sweeps that it has whole", "[im
 TEST_CASE("What is not the answer to a plan's sweeps is refused", "[import][slow]")
 {
     const auto of = playedSweeps(shortSweeps({1.5}));
-    auto r = sweepRecorder({0, 1});
+    auto r = recorder({0, 1});
     r.tail = 1.0;
     const auto recorded = record(of.played, r);
     const std::vector<std::string> map {"1=voltage:16", "2=current:4"};

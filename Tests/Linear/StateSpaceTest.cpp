@@ -4,6 +4,7 @@
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Simulation.h"
 #include "Engine/Linear/StateSpaceFile.h"
+#include "DocumentFile.h"
 #include "Linear/Problem.h"
 
 #include <Eigen/LU>
@@ -132,26 +133,18 @@ TEST_CASE("A simulation is the sum of powers")
 
 TEST_CASE("A linear model is kept and read again, bit for bit, and what does not fit is refused")
 {
-    const Scratch scratch;
     const auto model = twoOutputs();
-    writeStateSpace({"box", {"voltage"}, {"current", "pressure"}, model}, scratch / "model.json");
-    const auto read = readStateSpace(scratch / "model.json");
+    const DocumentFile file(toJson(NamedStateSpace {"box", {"voltage"}, {"current", "pressure"}, model}),
+                            stateSpaceFromJson);
+    const auto read = file.read();
     CHECK(read.outputs == std::vector<std::string> {"current", "pressure"});
     CHECK((read.model.A.array() == model.A.array()).all());
     CHECK((read.model.B.array() == model.B.array()).all());
     CHECK((read.model.C.array() == model.C.array()).all());
     CHECK(read.model.sampleRate == 0.0);
-
-    auto document = nlohmann::json::parse(bytesOf(scratch / "model.json"));
-    const auto refuses = [&](const char* named, auto edit) {
-        auto broken = document;
-        edit(broken);
-        const auto file = scratch.file("broken.json", broken.dump());
-        refused(Error::Kind::input, named, [&] { readStateSpace(file); });
-    };
-    refuses("version", [](auto& d) { d["version"] = 2; });
-    refuses("A[1]", [](auto& d) { d["A"][1].erase(0); });
-    refuses("C", [](auto& d) { d["C"].erase(1); });
-    refuses("B[0]", [](auto& d) { d["B"][0][0] = nullptr; });
-    refuses("inputs", [](auto& d) { d["inputs"] = nlohmann::json::array(); });
+    file.refuses("version", [](auto& d) { d["version"] = 2; });
+    file.refuses("A[1]", [](auto& d) { d["A"][1].erase(0); });
+    file.refuses("C", [](auto& d) { d["C"].erase(1); });
+    file.refuses("B[0]", [](auto& d) { d["B"][0][0] = nullptr; });
+    file.refuses("inputs", [](auto& d) { d["inputs"] = nlohmann::json::array(); });
 }

@@ -57,7 +57,7 @@ TEST_CASE("No effect allocates when it is asked", "[effects]")
 {
     auto model = makeModel("electrodynamic");
     for (const auto* effect : catalogue())
-        model = withEffect(model, *effect, someExtent(1.0));
+        model = withEffect(model, *effect, someOperatingRange(1.0));
     const auto theta = parameterVector(model);
     const Dynamics<double> dynamics(model, {theta.begin(), theta.end()});
     const std::vector<double> state(static_cast<std::size_t>(dynamics.order()), 1e-3);

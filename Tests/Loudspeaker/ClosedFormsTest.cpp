@@ -13,9 +13,9 @@ using namespace excursion;
 namespace {
 
 /// A component of the effect with these values of its parameters.
-Component component(const char* id, const Extent& extent, const std::vector<double>& values)
+Component component(const char* id, const OperatingRange& operatingRange, const std::vector<double>& values)
 {
-    Component result {&effectNamed(id), extent, effectNamed(id).parameters(extent)};
+    Component result {&effectNamed(id), operatingRange, effectNamed(id).parameters(operatingRange)};
     for (std::size_t k = 0; k < values.size(); ++k)
         result.parameters[k].value = values[k];
     return result;
@@ -25,7 +25,7 @@ Component component(const char* id, const Extent& extent, const std::vector<doub
 double lossOfFriction(double frequency, double X, double limit, double reach)
 {
     Alone alone(effectNamed("friction"));
-    alone.extent.velocity = 2.0 * std::numbers::pi * frequency * X;
+    alone.operatingRange.velocity = 2.0 * std::numbers::pi * frequency * X;
     alone.parameters = {limit, reach, 0.0};
     alone.prepare();
     constexpr int steps = 8000, cycles = 16;
@@ -103,8 +103,8 @@ TEST_CASE("A steady current heats the coil by its thermal resistance times its p
     Alone alone(effectNamed("coil-heating"));
     alone.parameters = {rise, -1.0, share, 0.5};
     alone.prepare();
-    const double total = rise * (1.0 + share), R = total * alone.extent.scale * i * i / (1.0 - total * i * i);
-    const double power = (alone.extent.scale + R) * i * i;
+    const double total = rise * (1.0 + share), R = total * alone.operatingRange.scale * i * i / (1.0 - total * i * i);
+    const double power = (alone.operatingRange.scale + R) * i * i;
     std::vector<double> rate(2);
     const auto sum = alone.at(i, 0.0, 0.0, {power, power}, &rate);
     CHECK(sum.drop / i == Approx(R).epsilon(1e-12));
@@ -116,8 +116,10 @@ TEST_CASE("The voltage sees the slope of the flux: at a bias d(Le(i) i)/di, whic
           "[effects]")
 {
     const Alone alone(effectNamed("inductance-current"));
-    const double I = alone.extent.current, d = 1e-5 * I;
-    const auto flux = [&](double i) { return i * alone.effect.lawAt(alone.extent, alone.parameters.data(), i); };
+    const double I = alone.operatingRange.current, d = 1e-5 * I;
+    const auto flux = [&](double i) {
+        return i * alone.effect.lawAt(alone.operatingRange, alone.parameters.data(), i);
+    };
     for (const double bias : {-1.7, -0.6, 0.2, 0.95, 1.4})
         CHECK(alone.at(bias * I, 0.0, 0.0).inductance
               == Approx((flux(bias * I + d) - flux(bias * I - d)) / (2.0 * d)).epsilon(1e-6));
@@ -127,7 +129,7 @@ TEST_CASE("The voltage sees the slope of the flux: at a bias d(Le(i) i)/di, whic
 TEST_CASE("A turned element of friction springs back along a line, a knee holds until it lets go", "[effects]")
 {
     Alone alone(effectNamed("friction"));
-    const double reach = 0.1 * alone.extent.displacement, v = alone.extent.velocity;
+    const double reach = 0.1 * alone.operatingRange.displacement, v = alone.operatingRange.velocity;
     const auto slope = [&](double knee, double turn, double direction, double g) {  // r dg/dx
         alone.parameters = {0.5, reach, 0.0, knee, turn};
         alone.prepare();
@@ -152,10 +154,10 @@ TEST_CASE("Friction and heat move the model as they move the virtual bench's lou
     constexpr double rate = 48000.0;
     const auto u = tones(rate, 1.0);
     bench::Loudspeaker speaker;
-    Extent extent;
-    extent.displacement = speaker.xmax;
-    extent.velocity = 1.0;
-    extent.current = 3.0;
+    OperatingRange operatingRange;
+    operatingRange.displacement = speaker.xmax;
+    operatingRange.velocity = 1.0;
+    operatingRange.current = 3.0;
     auto model = modelOf(speaker);
     SECTION("friction")
     {
@@ -163,7 +165,7 @@ TEST_CASE("Friction and heat move the model as they move the virtual bench's lou
         for (int n = 0; n < 4; ++n)
             friction.elements.push_back({0.2 / (4e-4 * std::exp2(n - 1.5)), 0.2});
         speaker.friction = friction;
-        model = withEffect(model, effectNamed("friction"), extent);
+        model = withEffect(model, effectNamed("friction"), operatingRange);
         const double values[] {0.8, 4e-4, 3.0};
         for (std::size_t k = 0; k < 3; ++k)
             model.components.back().parameters[k].value = values[k];
@@ -186,8 +188,8 @@ TEST_CASE("Friction and heat move the model as they move the virtual bench's lou
         // K/W of the pole
         const auto weight = [&](double p, double q) { return (b + c - p) / (q - p) / heat.coilCapacity / p; };
         const double perKelvin = heat.alpha * speaker.Re, rise = perKelvin * weight(fast, slow);
-        extent.duration = 1.0;
-        model = withEffect(model, effectNamed("coil-heating"), extent);
+        operatingRange.duration = 1.0;
+        model = withEffect(model, effectNamed("coil-heating"), operatingRange);
         const double values[] {rise, -std::log10(fast), weight(slow, fast) / weight(fast, slow), -std::log10(slow)};
         for (std::size_t k = 0; k < 4; ++k)
             model.components.back().parameters[k].value = values[k];
@@ -220,10 +222,10 @@ TEST_CASE("A slow memory starts each section where the sections before have left
         section.middle = n + 0.75;
         record.sections.push_back(section);
     }
-    auto extent = someExtent(Re);
-    extent.duration = 3.0;
+    auto operatingRange = someOperatingRange(Re);
+    operatingRange.duration = 3.0;
     const double P = Re * i * i;
-    auto heat = component("coil-heating", extent, {0.0, std::log10(0.8), 0.3, std::log10(5.0)});
+    auto heat = component("coil-heating", operatingRange, {0.0, std::log10(0.8), 0.3, std::log10(5.0)});
     const std::vector<PeriodicMotion> motions(
         3, {std::vector<double>(100, i), std::vector<double>(100, 0.0), std::vector<double>(100, 0.0)});
     const auto starts = historyOf(heat, record, motions, {0.75, 0.75, 0.25}, false);
@@ -259,10 +261,10 @@ TEST_CASE("Hysteresis starts where a motion that has always gone on has brought 
         motion.x.push_back(X * std::cos(w * n / sampleRate));
         motion.v.push_back(-w * X * std::sin(w * n / sampleRate));
     }
-    auto extent = someExtent(1800.0);
-    extent.velocity = w * X;
+    auto operatingRange = someOperatingRange(1800.0);
+    operatingRange.velocity = w * X;
     for (const double size : {1.0, 4.0}) {  // also where one period forgets little
-        const auto start = settledMemory(component("friction", extent, {1.0, reach * size, 0.0}), motion, 0,
+        const auto start = settledMemory(component("friction", operatingRange, {1.0, reach * size, 0.0}), motion, 0,
                                          sampleRate);
         for (Eigen::Index k = 0; k < start.value.size(); ++k)
             CHECK(start.value[k] == Approx(std::tanh(X / (reach * size))).epsilon(2e-3));

@@ -81,11 +81,11 @@ TEST_CASE("The band of a law is that of all its coefficients, also where it is n
     for (const auto* effect : catalogue()) {
         if (!effect->law())
             continue;
-        auto model = withEffect(makeModel("electrodynamic"), *effect, someExtent(1.0));
+        auto model = withEffect(makeModel("electrodynamic"), *effect, someOperatingRange(1.0));
         auto& component = model.components.back();
         double share = 0.1;
         for (auto& p : component.parameters)
-            p.value = (share *= -0.9) * (p.strength ? component.extent.scale : 1.0);
+            p.value = (share *= -0.9) * (p.strength ? component.operatingRange.scale : 1.0);
         const auto first = static_cast<Eigen::Index>(model.base().parameters.size());
         const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
         const auto at = [&](std::size_t moved, double by, double q) {
@@ -93,12 +93,13 @@ TEST_CASE("The band of a law is that of all its coefficients, also where it is n
             for (const auto& p : component.parameters)
                 values.push_back(p.value);
             values[moved] += by;
-            return effect->lawAt(component.extent, values.data(), q);
+            return effect->lawAt(component.operatingRange, values.data(), q);
         };
         for (std::size_t k = 0; k < component.parameters.size(); ++k) {
             INFO(effect->id() << ", " << component.parameters[k].name);
             const double deviation = 1e-3
-                                     * std::max(std::abs(component.parameters[k].value), 1e-2 * component.extent.scale);
+                                     * std::max(std::abs(component.parameters[k].value),
+                                                1e-2 * component.operatingRange.scale);
             model.covariance = Eigen::MatrixXd::Zero(count, count);
             model.covariance(first + static_cast<Eigen::Index>(k), first + static_cast<Eigen::Index>(k)) = deviation
                                                                                                            * deviation;

@@ -12,17 +12,17 @@
 namespace excursion {
 
 /// What a midbass visits, for an effect whose law bends a parameter of the size `scale`.
-inline Extent someExtent(double scale)
+inline OperatingRange someOperatingRange(double scale)
 {
-    Extent extent;
-    extent.displacement = 4e-3;
-    extent.velocity = 1.2;
-    extent.current = 6.0;
-    extent.lowFrequency = 15.0;
-    extent.highFrequency = 8000.0;
-    extent.scale = scale;
-    extent.duration = 0.1;  // slow memories have settled within a second
-    return extent;
+    OperatingRange operatingRange;
+    operatingRange.displacement = 4e-3;
+    operatingRange.velocity = 1.2;
+    operatingRange.current = 6.0;
+    operatingRange.lowFrequency = 15.0;
+    operatingRange.highFrequency = 8000.0;
+    operatingRange.scale = scale;
+    operatingRange.duration = 0.1;  // slow memories have settled within a second
+    return operatingRange;
 }
 
 /// The size of the parameter that the effect bends or stands beside: that of a midbass.
@@ -40,32 +40,32 @@ inline double someScale(const Effect& effect)
 }
 
 /// What makes a strength strong: a share of what is plausible, where the effect says what that is, else of its scale.
-inline double strengthOf(const Effect& effect, const Parameter& p, const Extent& extent, double share)
+inline double strengthOf(const Effect& effect, const Parameter& p, const OperatingRange& operatingRange, double share)
 {
-    return share * std::min(effect.law() || !std::isfinite(p.prior) ? extent.scale : p.prior, p.upper);
+    return share * std::min(effect.law() || !std::isfinite(p.prior) ? operatingRange.scale : p.prior, p.upper);
 }
 
 /// One effect on its own, with parameters that make it strong, asked at any state.
 struct Alone {
-    explicit Alone(const Effect& which) : effect(which), extent(someExtent(someScale(which)))
+    explicit Alone(const Effect& which) : effect(which), operatingRange(someOperatingRange(someScale(which)))
     {
         double sign = 1.0;
-        for (const auto& p : effect.parameters(extent)) {
+        for (const auto& p : effect.parameters(operatingRange)) {
             const double strength = p.lower == 0.0 ? 0.3 : 0.1 * (sign *= -1.0);
-            parameters.push_back(p.strength ? strengthOf(effect, p, extent, strength) : p.value);
+            parameters.push_back(p.strength ? strengthOf(effect, p, operatingRange, strength) : p.value);
         }
         prepare();
     }
 
     void prepare()
     {
-        coefficients.assign(static_cast<std::size_t>(effect.coefficientCount(extent)), 0.0);
-        effect.prepare(extent, parameters.data(), coefficients.data());
+        coefficients.assign(static_cast<std::size_t>(effect.coefficientCount(operatingRange)), 0.0);
+        effect.prepare(operatingRange, parameters.data(), coefficients.data());
     }
 
     std::vector<double> rest() const
     {
-        return std::vector<double>(static_cast<std::size_t>(effect.memorySize(extent)), 0.0);
+        return std::vector<double>(static_cast<std::size_t>(effect.memorySize(operatingRange)), 0.0);
     }
 
     /// @param rate  the memory's rates; may be null
@@ -75,19 +75,19 @@ struct Alone {
         thread_local std::vector<double> unused;
         unused.resize(memory.size());
         Balance<double> sum;
-        effect.contribute(extent, coefficients.data(), {i, x, v}, memory.data(), rate ? rate->data() : unused.data(),
-                          sum);
+        effect.contribute(operatingRange, coefficients.data(), {i, x, v}, memory.data(),
+                          rate ? rate->data() : unused.data(), sum);
         return sum;
     }
     Balance<double> at(double i, double x, double v) const { return at(i, x, v, rest()); }
 
     const Effect& effect;
-    Extent extent;
+    OperatingRange operatingRange;
     std::vector<double> parameters, coefficients;
 };
 
 /// Points all over what is visited: current, displacement, velocity.
-inline std::vector<std::array<double, 3>> somePoints(const Extent& e)
+inline std::vector<std::array<double, 3>> somePoints(const OperatingRange& e)
 {
     std::vector<std::array<double, 3>> points;
     for (const double x : {-0.83, -0.31, 0.12, 0.77})

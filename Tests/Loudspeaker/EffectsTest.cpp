@@ -19,10 +19,10 @@ TEST_CASE("Every effect has words, a name of its own and starts of zero strength
         CHECK(&effectNamed(effect->id()) == effect);
         for (const auto& words : {effect->title(), effect->physics(), effect->symptoms(), effect->remedy()})
             CHECK(!words.empty());
-        const Extent extent;
-        const auto parameters = effect->parameters(extent);
+        const OperatingRange operatingRange;
+        const auto parameters = effect->parameters(operatingRange);
         CHECK(std::any_of(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.strength; }));
-        for (const auto& start : effect->starts(extent)) {
+        for (const auto& start : effect->starts(operatingRange)) {
             REQUIRE(start.size() == parameters.size());
             for (std::size_t k = 0; k < start.size(); ++k) {
                 CHECK(start[k] >= parameters[k].lower);
@@ -38,10 +38,10 @@ TEST_CASE("Parts of an effect share no parameter and start at zero strength", "[
 {
     for (const auto* effect : catalogue()) {
         INFO(effect->id());
-        const Extent extent;
-        const auto parameters = effect->parameters(extent);
+        const OperatingRange operatingRange;
+        const auto parameters = effect->parameters(operatingRange);
         std::size_t next = 0;
-        for (const auto& part : effect->parts(extent)) {
+        for (const auto& part : effect->parts(operatingRange)) {
             CHECK(effect->linear());
             CHECK(part.first >= next);
             next = part.first + part.count;
@@ -62,10 +62,10 @@ TEST_CASE("An effect of zero strength adds nothing", "[effects]")
         INFO(effect->id());
         Alone alone(*effect);
         std::vector<double> memory(alone.rest().size(), 0.37);
-        for (const auto& start : effect->starts(alone.extent)) {
+        for (const auto& start : effect->starts(alone.operatingRange)) {
             alone.parameters = start;
             alone.prepare();
-            for (const auto& [i, x, v] : somePoints(alone.extent)) {
+            for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {
                 const auto sum = alone.at(i, x, v, memory);
                 for (const double part : {sum.inductance, sum.fluxSlope, sum.drop, sum.force, sum.mass})
                     CHECK(part == 0.0);
@@ -79,8 +79,8 @@ TEST_CASE("The coil's flux is a potential: d(inductance)/dx is d(fluxSlope)/di",
     for (const auto* effect : catalogue()) {
         INFO(effect->id());
         const Alone alone(*effect);
-        const double dx = 1e-4 * alone.extent.displacement, di = 1e-4 * alone.extent.current;
-        for (const auto& [i, x, v] : somePoints(alone.extent)) {
+        const double dx = 1e-4 * alone.operatingRange.displacement, di = 1e-4 * alone.operatingRange.current;
+        for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {
             const double byPosition = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance)
                                       / (2.0 * dx);
             const double byCurrent = (alone.at(i + di, x, v).fluxSlope - alone.at(i - di, x, v).fluxSlope) / (2.0 * di);
@@ -96,8 +96,8 @@ TEST_CASE("The force of the current is the motion voltage's twin plus the slope 
     for (const auto* effect : catalogue()) {
         INFO(effect->id());
         const Alone alone(*effect);
-        for (const auto& [i, x, v] : somePoints(alone.extent)) {
-            const double dv = 1e-3 * alone.extent.velocity;
+        for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {
+            const double dv = 1e-3 * alone.operatingRange.velocity;
             const double motionVoltage = (alone.at(i, x, v + dv).drop - alone.at(i, x, v - dv).drop) / (2.0 * dv);
             double coenergySlope = 0.0;  // Simpson's rule, exact for a flux up to third order in i
             constexpr int steps = 40;
@@ -115,16 +115,16 @@ TEST_CASE("Flux that current and position change together is one potential, whos
           "[effects]")
 {
     Alone alone(effectNamed("inductance-current"));
-    const auto names = alone.effect.parameters(alone.extent);
+    const auto names = alone.effect.parameters(alone.operatingRange);
     double place = 0.3;
     for (std::size_t k = 0; k < names.size(); ++k)
         if (names[k].name.front() == 'p')
             alone.parameters[k] = place *= -0.7;
     alone.prepare();
-    const double dx = 1e-4 * alone.extent.displacement, di = 1e-4 * alone.extent.current;
+    const double dx = 1e-4 * alone.operatingRange.displacement, di = 1e-4 * alone.operatingRange.current;
     for (const double bias : {-1.4, -0.7, 0.3, 1.2})  // also beyond the visited currents
         for (const double away : {-0.8, 0.1, 0.6}) {
-            const double i = bias * alone.extent.current, x = away * alone.extent.displacement;
+            const double i = bias * alone.operatingRange.current, x = away * alone.operatingRange.displacement;
             const double byPosition = (alone.at(i, x + dx, 0.0).inductance - alone.at(i, x - dx, 0.0).inductance)
                                       / (2.0 * dx);
             const double byCurrent = (alone.at(i + di, x, 0.0).fluxSlope - alone.at(i - di, x, 0.0).fluxSlope)
@@ -139,8 +139,8 @@ TEST_CASE("Flux that current and position change together is one potential, whos
 TEST_CASE("The reluctance force is the slope of the coenergy 1/2 i^2 L(x)", "[effects]")
 {
     const Alone alone(effectNamed("inductance-position"));
-    const double dx = 1e-4 * alone.extent.displacement;
-    for (const auto& [i, x, v] : somePoints(alone.extent)) {
+    const double dx = 1e-4 * alone.operatingRange.displacement;
+    for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {
         const double slope = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance) / (2.0 * dx);
         CHECK(alone.at(i, x, v).force == Approx(0.5 * i * i * slope).epsilon(1e-5));
     }
@@ -151,7 +151,7 @@ TEST_CASE("Loops that the coil moves against take from terminals and cone what t
     // u i - F v = d/dt (c i^2/2 + sum L_n (h_n^2 - j_n^2)/2) + sum L_n ((dh_n/dt)^2 - (dj_n/dt)^2)/p_n, where the
     // current stands still; L_n and p_n are asked of the effect: a loop alone is heard as L_n dh_n/dt at rest.
     Alone alone(effectNamed("inductance-position"));
-    const auto names = alone.effect.parameters(alone.extent);
+    const auto names = alone.effect.parameters(alone.operatingRange);
     std::vector<std::size_t> loops;
     for (std::size_t p = 0; p < names.size(); ++p)
         if (names[p].name.front() == 'g')
@@ -160,7 +160,7 @@ TEST_CASE("Loops that the coil moves against take from terminals and cone what t
     std::vector<double> L, rate;
     for (std::size_t n = 0; n < loops.size(); ++n) {
         alone.parameters[loops[n]] = 0.2 + 0.3 * static_cast<double>(n);
-        L.push_back(alone.parameters[loops[n]] * alone.extent.scale);
+        L.push_back(alone.parameters[loops[n]] * alone.operatingRange.scale);
         auto memory = alone.rest(), moved = alone.rest();
         memory[2 * n] = 1.0;
         alone.at(0.0, 0.0, 0.0, memory, &moved);
@@ -170,9 +170,9 @@ TEST_CASE("Loops that the coil moves against take from terminals and cone what t
     std::vector<double> memory(alone.rest().size()), moved(memory.size());
     for (std::size_t k = 0; k < memory.size(); ++k)
         memory[k] = std::sin(1.0 + 3.0 * static_cast<double>(k));
-    for (const auto& [i, x, v] : somePoints(alone.extent)) {
+    for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {
         const auto sum = alone.at(i, x, v, memory, &moved);
-        const double dx = 1e-4 * alone.extent.displacement;
+        const double dx = 1e-4 * alone.operatingRange.displacement;
         const double cSlope = (alone.at(i, x + dx, v).inductance - alone.at(i, x - dx, v).inductance) / (2.0 * dx);
         double balance = 0.5 * cSlope * v * i * i;
         for (std::size_t n = 0; n < loops.size(); ++n) {
@@ -187,7 +187,7 @@ TEST_CASE("Loops that the coil moves against take from terminals and cone what t
 TEST_CASE("The force factor converts without loss: force times velocity is voltage times current", "[effects]")
 {
     const Alone alone(effectNamed("force-factor"));
-    for (const auto& [i, x, v] : somePoints(alone.extent)) {
+    for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {
         const auto sum = alone.at(i, x, v);
         CHECK(sum.force * v == Approx(sum.drop * i).epsilon(1e-13));
         CHECK(sum.force != 0.0);
@@ -219,9 +219,10 @@ TEST_CASE("A law is what the effect adds to the base parameter of that name", "[
             continue;
         INFO(effect->id());
         const Alone alone(*effect);
-        CHECK(std::abs(effect->lawAt(alone.extent, alone.parameters.data(), 0.0)) < 1e-14 * alone.extent.scale);
-        for (const auto& [i, x, v] : somePoints(alone.extent)) {
-            const double difference = effect->lawAt(alone.extent, alone.parameters.data(),
+        CHECK(std::abs(effect->lawAt(alone.operatingRange, alone.parameters.data(), 0.0))
+              < 1e-14 * alone.operatingRange.scale);
+        for (const auto& [i, x, v] : somePoints(alone.operatingRange)) {
+            const double difference = effect->lawAt(alone.operatingRange, alone.parameters.data(),
                                                     law->argument == "v"   ? v
                                                     : law->argument == "i" ? i
                                                                            : x);
@@ -244,7 +245,7 @@ TEST_CASE("Jets carry the derivatives that finite differences show, by every par
         for (std::size_t k = 0; k < M; ++k)
             memory[k] = 1e-3 * (0.4 + 0.1 * static_cast<double>(k));
         // Unknowns: the parameters, then i, x, v, then the memory.
-        for (const auto& [i, x, v] : somePoints(alone.extent))
+        for (const auto& [i, x, v] : somePoints(alone.operatingRange))
             for (std::size_t which = 0; which < P + 3 + M; ++which) {
                 INFO(effect->id() << ", unknown " << which);
                 const auto evaluate = [&](double by) {
@@ -261,10 +262,10 @@ TEST_CASE("Jets carry the derivatives that finite differences show, by every par
                     return result;
                 };
                 const double size = which < P    ? (alone.parameters[which] != 0.0 ? std::abs(alone.parameters[which])
-                                                                                   : 1e-3 * alone.extent.scale)
-                                    : which == P ? alone.extent.current
-                                    : which == P + 1 ? alone.extent.displacement
-                                    : which == P + 2 ? alone.extent.velocity
+                                                                                   : 1e-3 * alone.operatingRange.scale)
+                                    : which == P ? alone.operatingRange.current
+                                    : which == P + 1 ? alone.operatingRange.displacement
+                                    : which == P + 2 ? alone.operatingRange.velocity
                                                      : 1e-3;
                 const double step = 1e-5 * size;
                 const auto above = evaluate(step), below = evaluate(-step), here = evaluate(0.0);
@@ -279,9 +280,9 @@ TEST_CASE("Jets carry the derivatives that finite differences show, by every par
                                               : state[which - P - 3];
                 moved.v[5] = 1.0;
                 std::vector<Jet> coefficients(alone.coefficients.size());
-                effect->prepare(alone.extent, parameters.data(), coefficients.data());
+                effect->prepare(alone.operatingRange, parameters.data(), coefficients.data());
                 Balance<Jet> sum;
-                effect->contribute(alone.extent, coefficients.data(), motion, state.data(), rate.data(), sum);
+                effect->contribute(alone.operatingRange, coefficients.data(), motion, state.data(), rate.data(), sum);
                 rate.insert(rate.end(), {sum.inductance, sum.fluxSlope, sum.drop, sum.force, sum.mass});
                 for (std::size_t k = 0; k < rate.size(); ++k) {
                     CHECK(rate[k].a == Approx(here[k]).epsilon(1e-12).margin(1e-300));
@@ -310,8 +311,8 @@ Cycle cycle(const Alone& alone, double frequency, double shift)
     const int cycles = memory.empty() ? 1 : 1 + static_cast<int>(std::ceil(settling * frequency));
     const double w = 2.0 * std::numbers::pi * frequency, h = 1.0 / (frequency * steps);
     const int inner = static_cast<int>(std::ceil(h / fastest));
-    const double I = 0.8 * alone.extent.current,
-                 X = std::min(0.9 * alone.extent.displacement, 0.9 * alone.extent.velocity / w);
+    const double I = 0.8 * alone.operatingRange.current,
+                 X = std::min(0.9 * alone.operatingRange.displacement, 0.9 * alone.operatingRange.velocity / w);
     std::vector<double> k1(memory.size()), k2 = k1, k3 = k1, k4 = k1, stage = k1;
     const auto rates = [&](double t, const std::vector<double>& state, std::vector<double>& rate) {
         return alone.at(I * std::cos(w * t), X * std::cos(w * t + shift), -w * X * std::sin(w * t + shift), state,
@@ -374,7 +375,7 @@ TEST_CASE("Whatever is no law of position or current takes energy in over a cycl
         Alone alone(*effect);
         if (law) {  // a resistance that grows
             std::fill(alone.parameters.begin(), alone.parameters.end(), 0.0);
-            alone.parameters.front() = 0.3 * alone.extent.scale;
+            alone.parameters.front() = 0.3 * alone.operatingRange.scale;
             alone.prepare();
         }
         for (const double frequency : {15.0, 200.0})
@@ -382,7 +383,7 @@ TEST_CASE("Whatever is no law of position or current takes energy in over a cycl
                 INFO(effect->id() << ", " << frequency << " Hz, shift " << shift);
                 const auto energy = cycle(alone, frequency, shift);
                 // resonators take in next to nothing away from where they ring
-                const double least = effect->parts(alone.extent).empty() ? 1e-3 : 0.0;
+                const double least = effect->parts(alone.operatingRange).empty() ? 1e-3 : 0.0;
                 if (effect->felt())
                     CHECK(energy.absorbed > least * energy.exchanged);
                 else

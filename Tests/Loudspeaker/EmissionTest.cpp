@@ -49,7 +49,7 @@ TEST_CASE("A tone from a moving source arrives phase-modulated, as the root of i
 
 TEST_CASE("The phase of a tone heard under a moving cone swings by w x / c", "[emission]")
 {
-    auto model = withEffect(makeModel("electrodynamic"), effectNamed("doppler"), someExtent(1.0));
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("doppler"), someOperatingRange(1.0));
     model.components.back().parameters.front().value = 1.0 / 343.0;
     constexpr double rate = 48000.0, low = 50.0, high = 6000.0, x = 4e-3;
     constexpr std::size_t N = 4800;
@@ -80,7 +80,7 @@ TEST_CASE("The phase of a tone heard under a moving cone swings by w x / c", "[e
 
 TEST_CASE("Modes of the cone are heard and seen, and not felt by the coil", "[emission]")
 {
-    auto model = withEffect(makeModel("electrodynamic"), effectNamed("cone-breakup"), someExtent(1.0));
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("cone-breakup"), someOperatingRange(1.0));
     const auto plain = withoutEffect(model, "cone-breakup");
     auto& p = model.components.back().parameters;
     p[2].value = 0.3;   // g1

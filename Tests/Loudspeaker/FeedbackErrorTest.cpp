@@ -47,11 +47,11 @@ NormalEquations sumOfFinite(const std::vector<SectionFit>& fits)
 /// memories from before.
 Model bent(Model model, const Record& record, const std::string& only = "")
 {
-    const auto extent = visitedExtent(model, record, 3);
+    const auto operatingRange = visitedRange(model, record, 3);
     for (const auto* effect : catalogue()) {
         if (effect->linear() || (!only.empty() && effect->id() != only))
             continue;
-        model = withEffect(model, *effect, extent);
+        model = withEffect(model, *effect, operatingRange);
         double sign = 1.0;
         auto& component = model.components.back();
         for (auto& p : component.parameters)
@@ -140,14 +140,14 @@ TEST_CASE("Several laws are found at once from nothing", "[fed][slow]")
 {
     const std::vector<std::string> hidden {"force-factor", "stiffness", "damping-velocity", "inductance-position"};
     auto [record, model, sections] = ready({{hidden[0], 0.3}, {hidden[1], 0.3}, {hidden[2], 0.2}, {hidden[3], 0.2}});
-    const auto extent = visitedExtent(model, record, 10);
+    const auto operatingRange = visitedRange(model, record, 10);
     for (const auto& id : hidden)
-        model = withEffect(model, effectNamed(id), extent);
+        model = withEffect(model, effectNamed(id), operatingRange);
     FitOptions options;
     options.fed = true;
     const auto linear = sumOfFinite(outputError(model, record, sections, {}, {}));
     const auto summary = fit(model, record, sections, options);
-    INFO(summary.message << ", " << summary.costPerResidual);
+    INFO(summary.message << ", " << summary.chiSquaredPerValue);
     const auto simulated = sumOfFinite(outputError(model, record, sections, {}, {}));
     CHECK(linear.cost > 1e4 * linear.rows);
     CHECK(simulated.cost < 2.0 * simulated.rows);
@@ -157,9 +157,9 @@ TEST_CASE("Less what the laws add, a take shows the responses of its linear part
 {
     auto [record, model, sections] = ready({{"force-factor", 0.3}, {"stiffness", 0.3}});
     CHECK(withoutLaws(model, record).sections.front().measured == record.sections.front().measured);  // no law yet
-    const auto extent = visitedExtent(model, record, 10);
+    const auto operatingRange = visitedRange(model, record, 10);
     for (const auto* id : {"force-factor", "stiffness"})
-        model = withEffect(model, effectNamed(id), extent);
+        model = withEffect(model, effectNamed(id), operatingRange);
     FitOptions options;
     options.fed = true;
     fit(model, record, sections, options);
@@ -195,7 +195,7 @@ TEST_CASE("Played, a model leaves what its simulation leaves, with the columns o
 TEST_CASE("Near the noise a simulation tells more than laws that are fed noise", "[fed]")
 {
     const auto start = ready({{"friction", 0.4}});
-    auto found = withEffect(start.model, effectNamed("friction"), visitedExtent(start.model, start.record));
+    auto found = withEffect(start.model, effectNamed("friction"), visitedRange(start.model, start.record));
     for (auto& p : found.components.back().parameters)
         if (p.strength)
             p.value = 0.3;

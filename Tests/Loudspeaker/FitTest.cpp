@@ -60,7 +60,7 @@ TEST_CASE("The driver's parameters come back within their errors from a noisy ta
     INFO(summary.message);
     CHECK(summary.usable());
     CHECK(summary.converged());
-    CHECK(summary.costPerResidual == Approx(1.0).margin(0.15));
+    CHECK(summary.chiSquaredPerValue == Approx(1.0).margin(0.15));
     for (const auto& [name, value] : truths()) {
         const auto& p = model.baseParameter(name);
         INFO(name << " is " << p.value << " +- " << p.standardError << ", truth " << value);
@@ -101,7 +101,7 @@ TEST_CASE("What is visited is what the bench's cone and coil did", "[fit]")
     setup.noiseDb = -INFINITY;
     const auto take = bench::measure(bench::Loudspeaker {}, setup);
     const auto record = makeRecord(take);
-    const auto extent = visitedExtent(startModel(record), record);
+    const auto operatingRange = visitedRange(startModel(record), record);
     const auto peakOfUsed = [&](Quantity quantity) {
         const auto& e = *take.excitation;
         const auto& samples = take.find(quantity)->samples;
@@ -111,11 +111,11 @@ TEST_CASE("What is visited is what the bench's cone and coil did", "[fit]")
                 peak = std::max(peak, std::abs(samples[static_cast<std::size_t>(r * e.samplesPerRealization() + n)]));
         return peak;
     };
-    CHECK(extent.displacement == Approx(peakOfUsed(Quantity::displacement)).epsilon(0.05));
-    CHECK(extent.current == Approx(peakOfUsed(Quantity::current)).epsilon(0.05));
+    CHECK(operatingRange.displacement == Approx(peakOfUsed(Quantity::displacement)).epsilon(0.05));
+    CHECK(operatingRange.current == Approx(peakOfUsed(Quantity::current)).epsilon(0.05));
     const double resolution = take.sampleRate / take.excitation->period;
-    CHECK(extent.lowFrequency == Approx(resolution * take.excitation->lines.front()));
-    CHECK(extent.highFrequency == Approx(resolution * take.excitation->lines.back()));
+    CHECK(operatingRange.lowFrequency == Approx(resolution * take.excitation->lines.front()));
+    CHECK(operatingRange.highFrequency == Approx(resolution * take.excitation->lines.back()));
 }
 
 TEST_CASE("A record that was adapted starts settled", "[fit]")
@@ -163,10 +163,10 @@ TEST_CASE("A law of the bench comes back as the law of the effect", "[fit][slow]
     auto model = startModel(record);
     adapt(record, model);
     fit(model, record, estimationSections(record));
-    model = withEffect(model, effectNamed("force-factor"), visitedExtent(model, record));
+    model = withEffect(model, effectNamed("force-factor"), visitedRange(model, record));
     const auto summary = fit(model, record, estimationSections(record));
     INFO(summary.message);
-    CHECK(summary.costPerResidual == Approx(1.0).margin(0.25));
+    CHECK(summary.chiSquaredPerValue == Approx(1.0).margin(0.25));
     const auto law = laws(model).front();
     int points = 0, inside = 0;
     for (std::size_t n = 0; n < law.argument.size(); ++n)
@@ -189,9 +189,9 @@ TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][s
     auto record = makeRecord(bench::measure(truth, setup));
     auto model = startModel(record);
     adapt(record, model);
-    const auto extent = visitedExtent(model, record, 4);
-    model = withEffect(withEffect(model, effectNamed("eddy-currents"), extent, 1), effectNamed("inductance-position"),
-                       extent);
+    const auto operatingRange = visitedRange(model, record, 4);
+    model = withEffect(withEffect(model, effectNamed("eddy-currents"), operatingRange, 1),
+                       effectNamed("inductance-position"), operatingRange);
     const auto with = fit(model, record, estimationSections(record));
     INFO(with.message);
     auto fixed = model;
@@ -201,10 +201,10 @@ TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][s
             p.free = false;
         }
     const auto without = fit(fixed, record, estimationSections(record));
-    INFO("with loops that move " << with.costPerResidual << ", with loops that stay " << without.costPerResidual);
+    INFO("with loops that move " << with.chiSquaredPerValue << ", with loops that stay " << without.chiSquaredPerValue);
     // On the bench the loops see k(x) i, in the model c(x) multiplies what they make of i: alike where the cone is slow
     // against them.
-    CHECK(without.costPerResidual > 50.0 * with.costPerResidual);
+    CHECK(without.chiSquaredPerValue > 50.0 * with.chiSquaredPerValue);
 }
 
 TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own slopes lead", "[fit]")
@@ -217,7 +217,7 @@ TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own
     auto record = makeRecord(take);
     auto model = startModel(record);
     adapt(record, model);
-    model = withEffect(model, effectNamed("stiffness"), visitedExtent(model, record));
+    model = withEffect(model, effectNamed("stiffness"), visitedRange(model, record));
     const auto sections = estimationSections(record);
     FitOptions fed;
     fed.fed = true;
@@ -231,7 +231,7 @@ TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own
     REQUIRE(exact.usable());
     REQUIRE(quick.usable());
     CHECK(exact.onlyNoise);
-    CHECK(quick.costPerResidual == Approx(exact.costPerResidual).epsilon(1e-3));
+    CHECK(quick.chiSquaredPerValue == Approx(exact.chiSquaredPerValue).epsilon(1e-3));
     for (const char* name : {"Re", "Bl", "m", "K"}) {
         const auto &a = own.baseParameter(name), &b = borrowed.baseParameter(name);
         INFO(name);

@@ -20,11 +20,11 @@ Model everything()
 {
     auto model = makeModel("electrodynamic");
     model.name = "M\u00fcller \"16\"";
-    Extent extent;
-    extent.displacement = 0.0051 / 3.0;
-    extent.degree = 5;
+    OperatingRange operatingRange;
+    operatingRange.displacement = 0.0051 / 3.0;
+    operatingRange.degree = 5;
     for (const auto* effect : catalogue())
-        model = withEffect(model, *effect, extent);
+        model = withEffect(model, *effect, operatingRange);
     const auto all = parametersOf(model);
     for (std::size_t k = 0; k < all.size(); ++k) {
         all[k]->value = std::min(all[k]->upper, all[k]->value * (1.0 + 1.0 / 3.0) + 1.0 / 7.0);
@@ -69,7 +69,7 @@ TEST_CASE("A model saved, read and saved again is the same, byte for byte", "[mo
     CHECK(parameterVector(read) == parameterVector(model));
     CHECK(std::isnan(read.covariance(0, 0)));
     CHECK(read.covariance(1, 2) == -0.1);
-    CHECK(read.find(catalogue().front()->id())->extent.displacement == 0.0051 / 3.0);
+    CHECK(read.find(catalogue().front()->id())->operatingRange.displacement == 0.0051 / 3.0);
     const auto readParameters = parametersOf(read), parameters = parametersOf(model);
     for (std::size_t k = 0; k < parameters.size(); ++k) {  // the limits of what is plausible are the model's, too
         CHECK(readParameters[k]->prior == parameters[k]->prior);
@@ -101,10 +101,10 @@ TEST_CASE("A model file that cannot be is refused in one sentence that names fil
     CHECK_THAT(changed("/base/parameters/3/value", 0.0), Contains("a mass above 0 kg"));
     CHECK_THAT(changed("/base/parameters/0/value", nullptr), Contains("a finite number"));
     CHECK_THAT(changed("/base/parameters/0/unit", "mohm"), Contains("\"ohm\""));
-    CHECK_THAT(changed("/effects/0/extent/displacement", 0.0), Contains("extent.displacement"));
-    CHECK_THAT(changed("/effects/0/extent/highFrequency", 1.0), Contains("more than lowFrequency"));
-    CHECK_THAT(changed("/effects/0/extent/degree", 40), Contains("a whole number from 1 to "));
-    CHECK_THAT(changed("/effects/0/extent/degree", 6), Contains("lacks the parameter 'c6'"));
+    CHECK_THAT(changed("/effects/0/operatingRange/displacement", 0.0), Contains("operatingRange.displacement"));
+    CHECK_THAT(changed("/effects/0/operatingRange/highFrequency", 1.0), Contains("more than lowFrequency"));
+    CHECK_THAT(changed("/effects/0/operatingRange/degree", 40), Contains("a whole number from 1 to "));
+    CHECK_THAT(changed("/effects/0/operatingRange/degree", 6), Contains("lacks the parameter 'c6'"));
     CHECK_THAT(changed("/covariance", nlohmann::json::array({1.0})), Contains("'covariance'") && Contains("rows"));
     CHECK_THAT(changed("/path/microphoneDistance", "near"), Contains("microphoneDistance"));
 

@@ -71,13 +71,13 @@ Complex coilImpedance(const Network& network, Complex s)
 /// The model with the effect, all of whose parameters are somewhere within what they may be.
 Model with(const Effect& effect)
 {
-    const Extent extent {.displacement = 2e-3,
-                         .velocity = 0.5,
-                         .current = 2.0,
-                         .lowFrequency = 15.0,
-                         .highFrequency = 5000.0,
-                         .degree = 4};
-    auto model = withEffect(makeModel("electrodynamic"), effect, extent);
+    const OperatingRange operatingRange {.displacement = 2e-3,
+                                         .velocity = 0.5,
+                                         .current = 2.0,
+                                         .lowFrequency = 15.0,
+                                         .highFrequency = 5000.0,
+                                         .degree = 4};
+    auto model = withEffect(makeModel("electrodynamic"), effect, operatingRange);
     auto& component = model.components.back();
     double number = 0.13;
     for (auto& p : component.parameters) {

@@ -22,10 +22,10 @@ Model bent()
 {
     auto model = makeModel("electrodynamic");
     for (const auto* effect : catalogue()) {
-        auto extent = someExtent(1.0);
-        extent.degree = 3;
-        extent.highFrequency = 2000.0;
-        model = withEffect(model, *effect, extent);
+        auto operatingRange = someOperatingRange(1.0);
+        operatingRange.degree = 3;
+        operatingRange.highFrequency = 2000.0;
+        model = withEffect(model, *effect, operatingRange);
         auto& component = model.components.back();
         double sign = 1.0;
         if (effect->id() == "friction")
@@ -33,9 +33,9 @@ Model bent()
             component.parameters[1].value = 2e-5;
         for (auto& p : component.parameters)
             if (p.strength)
-                p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.extent.scale
+                p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.operatingRange.scale
                           : std::isfinite(p.prior) || std::isfinite(p.upper)
-                              ? strengthOf(*effect, p, component.extent, 0.05)
+                              ? strengthOf(*effect, p, component.operatingRange, 0.05)
                               : someScale(*effect) / 5.0;
     }
     for (auto* p : parametersOf(model))
@@ -205,7 +205,7 @@ TEST_CASE("The number of threads changes nothing", "[output-error]")
 
 TEST_CASE("A model that runs away is no fit, and a stop is obeyed", "[output-error]")
 {
-    auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someExtent(1.0));
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someOperatingRange(1.0));
     model.components.back().parameters[1].value = -100.0 * model.baseParameter("K").value;
     auto record = someRecord();
     for (auto& sample : record.sections[0].input)
@@ -216,7 +216,7 @@ TEST_CASE("A model that runs away is no fit, and a stop is obeyed", "[output-err
 TEST_CASE("A prior pulls a parameter towards zero as one more measurement would", "[output-error]")
 {
     auto model = makeModel("electrodynamic");
-    model = withEffect(model, effectNamed("stiffness"), someExtent(1.0));
+    model = withEffect(model, effectNamed("stiffness"), someOperatingRange(1.0));
     auto& p = model.components.back().parameters[0];
     p.value = 30.0;
     p.prior = 10.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts that swing on the cone, against the independent bench, and found in an impedance.
-#include "Bench/Loudspeaker.h"
+#include "BenchModel.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
@@ -38,15 +38,8 @@ ResponseTarget impedanceOf(const bench::Loudspeaker& speaker)
 TEST_CASE("Parts on the cone are those of the independent bench", "[effects]")
 {
     const auto speaker = with({{0.002, 300.0, 8.0}, {0.0005, 900.0, 4.0}});
-    auto model = makeModel("electrodynamic");
-    for (const auto& [name, value] : {std::pair {"Re", speaker.Re},
-                                      {"Le", speaker.Le},
-                                      {"Bl", speaker.Bl},
-                                      {"m", speaker.m},
-                                      {"Rms", speaker.Rms},
-                                      {"K", speaker.K}})
-        model.baseParameter(name).value = value;
-    model = withEffect(model, effectNamed("side-resonance"), Extent {});
+    auto model = test::baseOf(speaker);
+    model = withEffect(model, effectNamed("side-resonance"), OperatingRange {});
     auto& p = model.components.back().parameters;
     for (std::size_t k = 0; k < 2; ++k) {
         p[3 * k].value = speaker.sideResonance[k].mass;

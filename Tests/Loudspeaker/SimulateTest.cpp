@@ -33,14 +33,14 @@ Model bent()
                                                                 {"stiffness", {-0.1, 0.25, 0.0, 0.05}},
                                                                 {"inductance-position", {-0.15, 0.02}},
                                                                 {"damping-velocity", {0.03, 0.2}}};
-    auto extent = someExtent(1.0);
-    extent.displacement = 6e-3;  // laws have corners at the ends of what is visited; the bursts stay within
-    extent.velocity = 3.0;
+    auto operatingRange = someOperatingRange(1.0);
+    operatingRange.displacement = 6e-3;  // laws have corners at the ends of what is visited; the bursts stay within
+    operatingRange.velocity = 3.0;
     for (const auto& [id, shares] : laws) {
-        model = withEffect(model, effectNamed(id), extent);
+        model = withEffect(model, effectNamed(id), operatingRange);
         auto& component = model.components.back();
         for (std::size_t k = 0; k < shares.size(); ++k)
-            component.parameters[k].value = shares[k] * component.extent.scale;
+            component.parameters[k].value = shares[k] * component.operatingRange.scale;
     }
     return model;
 }
@@ -125,7 +125,7 @@ TEST_CASE("Halving the step divides the error by sixteen", "[simulate]")
     // its law bends within a fiftieth of the visited range
     auto model = withoutEffect(bent(), "damping-velocity");
     for (auto& component : model.components)
-        component.extent.highFrequency = 1300.0;
+        component.operatingRange.highFrequency = 1300.0;
     const auto u = burst(sampleRate, 0.25, 6.0, 1300.0);
     std::vector<Trajectory> runs(3);
     for (std::size_t n = 0; n < 3; ++n)
@@ -186,7 +186,7 @@ TEST_CASE("Energy in is energy lost and energy stored, at any time", "[simulate]
         std::vector<double> c;
         for (const auto& p : component.parameters)
             c.push_back(p.value);
-        return model.baseParameter(base).value + component.effect->lawAt(component.extent, c.data(), q);
+        return model.baseParameter(base).value + component.effect->lawAt(component.operatingRange, c.data(), q);
     };
     const auto potential = [&](double x) {  // Simpson's rule for int K(x) x dx
         double sum = 0.0;
@@ -238,7 +238,7 @@ TEST_CASE("The steps a sample are enough, and no more than allowed", "[simulate]
 
 TEST_CASE("A model that runs away is told, not simulated", "[simulate]")
 {
-    auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someExtent(1.0));
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someOperatingRange(1.0));
     // a spring that pushes outward
     model.components.back().parameters[1].value = -3.0 * model.baseParameter("K").value;
     const auto u = burst(12000.0, 0.05, 40.0);

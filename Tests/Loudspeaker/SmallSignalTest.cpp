@@ -37,15 +37,15 @@ Model allAtWork()
 {
     auto model = midbass();
     for (const auto* effect : catalogue()) {
-        auto extent = someExtent(1.0);
-        extent.degree = 3;
-        model = withEffect(model, *effect, extent);
+        auto operatingRange = someOperatingRange(1.0);
+        operatingRange.degree = 3;
+        model = withEffect(model, *effect, operatingRange);
         auto& component = model.components.back();
         double sign = 1.0;
         for (auto& p : component.parameters)
             if (p.strength)
-                p.value = effect->law()            ? 0.1 * (sign *= -1.0) * component.extent.scale
-                          : std::isfinite(p.prior) ? strengthOf(*effect, p, component.extent, 0.3)
+                p.value = effect->law()            ? 0.1 * (sign *= -1.0) * component.operatingRange.scale
+                          : std::isfinite(p.prior) ? strengthOf(*effect, p, component.operatingRange, 0.3)
                                                    : someScale(*effect);
     }
     return model;
@@ -105,10 +105,10 @@ TEST_CASE("Laws that are zero at rest leave the linear part alone", "[small-sign
     auto bent = midbass();
     for (const auto* effect : catalogue())
         if (effect->law()) {
-            bent = withEffect(bent, *effect, someExtent(1.0));
+            bent = withEffect(bent, *effect, someOperatingRange(1.0));
             auto& component = bent.components.back();
             for (auto& p : component.parameters)
-                p.value = 0.1 * component.extent.scale;
+                p.value = 0.1 * component.operatingRange.scale;
         }
     REQUIRE(bent.components.size() > 1);
     const auto straight = smallSignal(midbass()), linear = smallSignal(bent);
@@ -136,7 +136,7 @@ TEST_CASE("An effect of no strength changes no response, whatever it stands besi
         for (const auto* other : catalogue()) {
             if (!other->linear() || other == atWork)
                 continue;
-            const auto beside = respond(withEffect(model, *other, someExtent(1.0)), quantities, frequency);
+            const auto beside = respond(withEffect(model, *other, someOperatingRange(1.0)), quantities, frequency);
             for (std::size_t q = 0; q < quantities.size(); ++q)
                 for (std::size_t n = 0; n < frequency.size(); ++n) {
                     INFO(atWork->id() << " beside " << other->id() << ", " << name(quantities[q]) << ", "
@@ -201,14 +201,14 @@ TEST_CASE("The ladder of the eddy currents is K s^a within its accuracy over its
     constexpr double strength = 0.05, accuracy = 3.5e-4;
     for (const double high : {2000.0, 8000.0, 20000.0})
         for (const double a : {0.3, 0.5, 0.6, 0.75, 0.9, 0.98}) {
-            auto extent = someExtent(1.0);
-            extent.highFrequency = high;
-            auto model = withEffect(midbass(), effectNamed("eddy-currents"), extent);
+            auto operatingRange = someOperatingRange(1.0);
+            operatingRange.highFrequency = high;
+            auto model = withEffect(midbass(), effectNamed("eddy-currents"), operatingRange);
             model.baseParameter("Bl").value = 0.0;  // a blocked coil
             model.components.back().parameters[0].value = strength;
             model.components.back().parameters[1].value = a;
             std::vector<double> frequency;
-            for (double f = extent.lowFrequency; f <= high; f *= 1.05)
+            for (double f = operatingRange.lowFrequency; f <= high; f *= 1.05)
                 frequency.push_back(f);
             const auto current = respond(model, {Quantity::current}, frequency).front().value;
             double worst = 0.0;
@@ -259,7 +259,7 @@ TEST_CASE("The eddy currents follow a chain of few resistors and inductors that 
 
 TEST_CASE("What an effect sums up to is its law where nothing departs from it", "[effects]")
 {
-    auto model = withEffect(midbass(), effectNamed("eddy-currents"), someExtent(1.0));
+    auto model = withEffect(midbass(), effectNamed("eddy-currents"), someOperatingRange(1.0));
     model.components.back().parameters[0].value = 0.05;
     model.components.back().parameters[1].value = 0.6;
     const auto figures = figuresOf(model, 1);
@@ -277,11 +277,11 @@ TEST_CASE("Creep is a sum of relaxing springs, stiffer the faster it is stretche
     auto model = makeModel("mechanical");
     const double m = model.baseParameter("m").value, r = model.baseParameter("Rms").value,
                  k = model.baseParameter("K").value;
-    model = withEffect(model, effectNamed("creep"), someExtent(1.0));
+    model = withEffect(model, effectNamed("creep"), someOperatingRange(1.0));
     const double values[] = {S, centre, width};
     for (std::size_t n = 0; n < 3; ++n)
         model.components.back().parameters[n].value = values[n];
-    const int cells = effectNamed("creep").memorySize(model.components.back().extent);
+    const int cells = effectNamed("creep").memorySize(model.components.back().operatingRange);
     std::vector<double> frequency;
     for (double f = 1e-3; f < 1e4; f *= 1.9)
         frequency.push_back(f);

@@ -20,9 +20,9 @@ constexpr double sampleRate = 16000.0;
 /// A suspension whose relaxations take from a thirtieth of a second to a second, far longer than a period of 64 ms.
 Model creeping()
 {
-    Extent extent;
-    extent.lowFrequency = 15.0;
-    auto model = withEffect(makeModel("electrodynamic"), effectNamed("creep"), extent);
+    OperatingRange operatingRange;
+    operatingRange.lowFrequency = 15.0;
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("creep"), operatingRange);
     auto& p = model.components.back().parameters;
     p[0].value = 0.4 * model.baseParameter("K").value;
     p[1].value = -0.1;

@@ -24,10 +24,10 @@ Model bentSpring(double force, double displacement, double bend)
     auto model = makeModel("mechanical");
     for (auto& p : model.components.front().parameters)
         p.value *= force / displacement;
-    auto extent = someExtent(1.0);
-    extent.displacement *= displacement;
-    extent.velocity *= displacement;
-    model = withEffect(model, effectNamed("stiffness"), extent);
+    auto operatingRange = someOperatingRange(1.0);
+    operatingRange.displacement *= displacement;
+    operatingRange.velocity *= displacement;
+    model = withEffect(model, effectNamed("stiffness"), operatingRange);
     model.components.back().parameters[1].value = bend * model.baseParameter("K").value;
     return model;
 }
@@ -46,10 +46,10 @@ const std::vector<std::pair<double, double>> units {{1e-6, 1e6}, {1e6, 1e-6}, {1
 
 TEST_CASE("An exponential and its poles keep their digits in any unit", "[units]")
 {
-    auto extent = someExtent(1.0);
+    auto operatingRange = someOperatingRange(1.0);
     auto model = makeModel("electrodynamic");
     for (const char* effect : {"eddy-currents", "creep"}) {
-        model = withEffect(model, effectNamed(effect), extent);
+        model = withEffect(model, effectNamed(effect), operatingRange);
         model.components.back().parameters.front().value = someScale(effectNamed(effect));
     }
     if (GENERATE(false, true))
@@ -153,6 +153,7 @@ TEST_CASE("A model in any unit is read as it was written", "[units]")
         const auto model = bentSpring(force, displacement, 0.4);
         const auto read = modelFromJson(nlohmann::json::parse(toJson(model).dump()), "some model");
         CHECK(parameterVector(read) == parameterVector(model));
-        CHECK(read.components.back().extent.displacement == model.components.back().extent.displacement);
+        CHECK(read.components.back().operatingRange.displacement
+              == model.components.back().operatingRange.displacement);
     }
 }

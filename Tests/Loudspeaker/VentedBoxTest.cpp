@@ -20,9 +20,9 @@ constexpr double turn = 2.0 * std::numbers::pi;
 /// The base's midbass in a box of these parameters: Kb, fB, 1/QP, 1/QL, 1/QA, Kp/Ka; the port is heard in full.
 Model boxed(std::vector<double> parameters, const char* base = "electrodynamic")
 {
-    Extent extent;
-    extent.lowFrequency = 5.0;
-    auto model = withEffect(makeModel(base), effectNamed("vented-box"), extent);
+    OperatingRange operatingRange;
+    operatingRange.lowFrequency = 5.0;
+    auto model = withEffect(makeModel(base), effectNamed("vented-box"), operatingRange);
     parameters.push_back(1.0);
     for (std::size_t k = 0; k < parameters.size(); ++k)
         model.components.back().parameters[k].value = parameters[k];

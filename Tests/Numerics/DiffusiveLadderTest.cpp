@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ladder against s^a and s^(a-1) on the imaginary axis.
+// The ladder against s^a on the imaginary axis.
 #include "Engine/Numerics/DiffusiveLadder.h"
 #include "Scratch.h"
 
@@ -11,15 +11,14 @@ using namespace excursion::test;
 
 namespace {
 
-/// The largest relative error on a band, of the power and of the integral.
+/// The largest relative error on a band.
 double worstError(const DiffusiveLadder& ladder, double low, double high)
 {
     double worst = 0.0;
     for (int k = 0; k <= 2000; ++k) {
         const std::complex<double> s(0.0, 2.0 * std::numbers::pi * low * std::pow(high / low, k / 2000.0));
-        const auto power = std::pow(s, ladder.exponent), integral = std::pow(s, ladder.exponent - 1.0);
-        worst = std::max({worst, std::abs(ladder.power(s) - power) / std::abs(power),
-                          std::abs(ladder.integral(s) - integral) / std::abs(integral)});
+        const auto power = std::pow(s, ladder.exponent);
+        worst = std::max(worst, std::abs(ladder.power(s) - power) / std::abs(power));
     }
     return worst;
 }

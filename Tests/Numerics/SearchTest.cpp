@@ -165,7 +165,7 @@ TEST_CASE("A step may have fewer numbers than a place: the point of a circle nex
         }
         const Eigen::Vector2d aim {3.0, 4.0};
     } circle;
-    for (const auto& damping : {Damping::bold(), Damping::steady()}) {
+    for (const auto& damping : {Damping {}, Damping::steady()}) {
         SearchOptions options;
         options.costTolerance = 1e-15;
         options.damping = damping;

@@ -7,6 +7,7 @@
 #include "Engine/Linear/StateSpaceFile.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
+#include "Plugin/Played.h"
 #include "Plugin/Processor.h"
 
 #include <catch2/catch.hpp>
@@ -25,6 +26,7 @@ bool dispatchNextMessageOnSystemQueue(bool returnIfNoPendingMessages);
 }
 
 using namespace excursion;
+using namespace excursion::test;
 using plugin::Processor;
 
 namespace {
@@ -122,13 +124,6 @@ std::string refused(const nlohmann::ordered_json& document)
     return status.words;
 }
 
-juce::MemoryBlock stateOf(Processor& processor)
-{
-    juce::MemoryBlock block;
-    processor.getStateInformation(block);
-    return block;
-}
-
 }  // namespace
 
 TEST_CASE("Every class of models is played by the plugin as its own simulation has it", "[plugin][blackbox]")
@@ -151,8 +146,7 @@ TEST_CASE("Every class of models is played by the plugin as its own simulation h
     }
 }
 
-TEST_CASE("A model without physics is turned around by the plugin, with the gain that was told before",
-          "[plugin][blackbox]")
+TEST_CASE("A model without physics is inverted by the plugin, with the gain that was told before", "[plugin][blackbox]")
 {
     int turned = 0;
     for (const auto& box : boxes()) {
@@ -175,7 +169,7 @@ TEST_CASE("A model without physics is turned around by the plugin, with the gain
             const Eigen::VectorXd straight = simulate(plain, vectorOf(volts));
             const double before = distortionDb(simulated(*box, volts), straight, 16384),
                          after = distortionDb(simulated(*box, bent), straight, 16384);
-            const auto meters = processor.take();
+            const auto meters = processor.collectMeters();
             INFO("from " << before << " to " << after << " dB, turned down by " << meters.displacementReduction << ", "
                          << meters.region);
             CHECK(meters.displacementReduction == 0.0);
@@ -263,7 +257,7 @@ TEST_CASE("A model of the excursion keeps excursion, voltage and heat within the
         CHECK(peakOf(out) <= 1.0001 * recipe.voltageLimit);
         CHECK(warmest < 1.01 * recipe.powerLimit);
         CHECK(warmest > 0.2 * recipe.powerLimit);  // half of the time it is quiet
-        const auto meters = processor.take();
+        const auto meters = processor.collectMeters();
         CHECK((meters.displacement > 0.0) == std::isfinite(range));
         CHECK(meters.powerReduction > 0.0);
     }
@@ -370,7 +364,7 @@ TEST_CASE("Models are rehearsed, taken back and handed over while audio runs on 
         }
         while (juce::dispatchNextMessageOnSystemQueue(true)) {}
         CHECK(processor.box() != nullptr);
-        CHECK(processor.take().faults == 0);
+        CHECK(processor.collectMeters().faults == 0);
         processor.setModel(processor.model());
         CHECK(processor.getLatencySamples() == driver);
     }
@@ -500,7 +494,7 @@ TEST_CASE("A model without physics is kept in the state, byte for byte, and play
     }
 }
 
-TEST_CASE("A model that cannot be turned around plays, and lets the signal through where it should be linearized",
+TEST_CASE("A model that cannot be inverted plays, and lets the signal through where it should be linearized",
           "[plugin][blackbox]")
 {
     Processor processor;
@@ -510,7 +504,7 @@ TEST_CASE("A model that cannot be turned around plays, and lets the signal throu
     const auto status = processor.rehearsing().status();
     INFO(status.words);
     CHECK_FALSE(status.trouble);
-    CHECK(status.words.find("cannot be turned around") != std::string::npos);
+    CHECK(status.words.find("cannot be inverted") != std::string::npos);
     REQUIRE(processor.box());
     const auto volts = noise(processor.box()->played.box.stimulus, 0.7, rate, 5, 2);
     setMode(processor, Mode::linearize);

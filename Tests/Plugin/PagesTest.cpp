@@ -106,7 +106,8 @@ TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clic
     CHECK(second->file.ladder.verdict == Verdict::complete);
     CHECK(second->file.ladder.rungs[1].added == first->file.ladder.rungs[0].diagnosis.ranking[0].effect);
     CHECK(second->file.ladder.rungs[1].model.components.back().effect->title() == second->truth);
-    CHECK(second->file.ladder.rungs[1].comparison.chi < 0.2 * second->file.ladder.rungs[0].comparison.chi);
+    CHECK(second->file.ladder.rungs[1].comparison.chiSquaredPerValue
+          < 0.2 * second->file.ladder.rungs[0].comparison.chiSquaredPerValue);
     CHECK(picture(editor, "diagnose-complete") > 1000);
     click(editor, "Linearize with this model");
     CHECK(processor.model().effectIds() == second->file.ladder.model().effectIds());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "BlackBox/EveryClass.h"
+#include "Plugin/Played.h"
 #include "Plugin/Processor.h"
 
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -14,6 +15,7 @@
 #include <thread>
 
 using namespace excursion;
+using namespace excursion::test;
 using plugin::Processor;
 
 namespace {
@@ -67,13 +69,6 @@ void layout(Processor& processor, int channels)
     REQUIRE(processor.setBusesLayout(buses));
 }
 
-juce::MemoryBlock stateOf(Processor& processor)
-{
-    juce::MemoryBlock block;
-    processor.getStateInformation(block);
-    return block;
-}
-
 }  // namespace
 
 TEST_CASE("Every mode does what the engine's chain does, at every rate, in mono and stereo", "[plugin]")
@@ -122,15 +117,8 @@ TEST_CASE("The host's bypass is the signal as it was, as late as ever", "[plugin
     processor.prepareToPlay(48000.0, 512);
     const auto u = tone(48000.0, 0.5, 0.4);
     const auto latency = static_cast<std::size_t>(processor.getLatencySamples());
-    juce::MidiBuffer midi;
-    std::vector<float> out;
-    for (std::size_t n = 0; n + 480 <= u.size(); n += 480) {
-        juce::AudioBuffer<float> buffer(2, 480);
-        for (int c = 0; c < 2; ++c)
-            buffer.copyFrom(c, 0, u.data() + n, 480);
-        processor.processBlockBypassed(buffer, midi);
-        out.insert(out.end(), buffer.getReadPointer(0), buffer.getReadPointer(0) + 480);
-    }
+    const auto out = playedInBlocks(
+        u, [&](auto& buffer, auto& midi) { processor.processBlockBypassed(buffer, midi); }, [](std::size_t) {});
     double worst = 0.0;  // once the mode has been faded out
     for (std::size_t n = 4800; n < out.size(); ++n)
         worst = std::max(worst, std::abs(static_cast<double>(out[n] - u[n - latency])));
@@ -192,20 +180,15 @@ TEST_CASE("An effect is switched off while audio runs, and a model replaced, wit
     setMode(processor, Mode::speaker);
     processor.prepareToPlay(48000.0, 480);
     const auto u = tone(48000.0, 4.0, 0.5);
-    juce::MidiBuffer midi;
-    std::vector<float> out;
-    for (std::size_t n = 0; n + 480 <= u.size(); n += 480) {
-        juce::AudioBuffer<float> buffer(2, 480);
-        for (int c = 0; c < 2; ++c)
-            buffer.copyFrom(c, 0, u.data() + n, 480);
-        processor.processBlock(buffer, midi);
-        out.insert(out.end(), buffer.getReadPointer(0), buffer.getReadPointer(0) + 480);
+    const auto meanwhile = [&](std::size_t n) {
         if (n == 48000)
             *processor.parameters().effects()[1] = false;
         if (n == 96000)
             processor.setModel(plugin::modelFromText(plugin::factoryDrivers().back().text, "a driver"));
         std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the thread that builds has its time
-    }
+    };
+    const auto out = playedInBlocks(
+        u, [&](auto& buffer, auto& midi) { processor.processBlock(buffer, midi); }, meanwhile);
     double steepest = 0.0;
     for (std::size_t n = 1; n < out.size(); ++n)
         steepest = std::max(steepest, std::abs(static_cast<double>(out[n] - out[n - 1])));

@@ -2,6 +2,7 @@
 // A host may prepare the plugin for anything.
 #include "Engine/Error.h"
 #include "Plugin/Editor.h"
+#include "Plugin/Played.h"
 
 #include <catch2/catch.hpp>
 
@@ -11,17 +12,11 @@
 #include <vector>
 
 using namespace excursion;
+using namespace excursion::test;
 using plugin::Editor;
 using plugin::Processor;
 
 namespace {
-
-juce::MemoryBlock stateOf(Processor& processor)
-{
-    juce::MemoryBlock block;
-    processor.getStateInformation(block);
-    return block;
-}
 
 std::vector<float> noise(std::size_t n)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is saved comes back exactly, or is refused.
+#include "Plugin/Played.h"
 #include "Plugin/Processor.h"
 
 #include <catch2/catch.hpp>
@@ -9,16 +10,10 @@
 #include <vector>
 
 using namespace excursion;
+using namespace excursion::test;
 using plugin::Processor;
 
 namespace {
-
-juce::MemoryBlock stateOf(Processor& processor)
-{
-    juce::MemoryBlock block;
-    processor.getStateInformation(block);
-    return block;
-}
 
 void restore(Processor& processor, const juce::MemoryBlock& state)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A target in the plugin: played, kept, taken back, and told on the last page before it is used.
 #include "Engine/Predistortion/TargetFilter.h"
+#include "Plugin/Played.h"
 #include "Plugin/Walk.h"
 
 #include <catch2/catch.hpp>
@@ -10,6 +11,7 @@
 #include <numbers>
 
 using namespace excursion;
+using namespace excursion::test;
 using plugin::Editor;
 using plugin::PageName;
 using plugin::Processor;
@@ -17,13 +19,6 @@ using plugin::Processor;
 namespace {
 
 constexpr double rate = 48000.0;
-
-juce::MemoryBlock stateOf(Processor& processor)
-{
-    juce::MemoryBlock block;
-    processor.getStateInformation(block);
-    return block;
-}
 
 void put(Processor& processor, Mode mode, const Target& target)
 {

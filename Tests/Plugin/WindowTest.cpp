@@ -138,8 +138,7 @@ TEST_CASE("Every page can be read at every size: nothing is cut off or covered, 
     }
 }
 
-TEST_CASE("A model without physics can be read at every size, whether it can be turned around or not",
-          "[plugin][blackbox]")
+TEST_CASE("A model without physics can be read at every size, whether it can be inverted or not", "[plugin][blackbox]")
 {
     Processor processor;
     Editor editor(processor);

@@ -74,7 +74,7 @@ void checkResidual(const Model& model, double sampleRate, int oversampling)
     const auto wanted = exact(linear, played.u, sampleRate), before = exact(model, played.u, sampleRate);
     Predistorter predistorter(model, {sampleRate, oversampling});
     const auto after = exact(model, through(predistorter, played.u), sampleRate);
-    CHECK(predistorter.take().faults == 0);
+    CHECK(predistorter.collectMeters().faults == 0);
     for (const auto quantity : {Quantity::displacement, Quantity::acceleration}) {
         const auto db = [&](const Measurement& take) {
             return distortionDb(played, take.find(quantity)->samples, wanted.find(quantity)->samples);

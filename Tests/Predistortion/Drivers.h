@@ -31,19 +31,19 @@ inline Model midbass()
 /// The effect in the model, strong and not symmetric: laws change by some 25 % over xmax.
 inline Model withStrong(const Model& plain, const Effect& effect)
 {
-    Extent extent;
-    extent.displacement = xmax;
-    extent.velocity = 2.0;
-    extent.current = 10.0;
-    extent.lowFrequency = 15.0;
-    extent.highFrequency = 8000.0;
-    auto model = withEffect(plain, effect, extent);
+    OperatingRange operatingRange;
+    operatingRange.displacement = xmax;
+    operatingRange.velocity = 2.0;
+    operatingRange.current = 10.0;
+    operatingRange.lowFrequency = 15.0;
+    operatingRange.highFrequency = 8000.0;
+    auto model = withEffect(plain, effect, operatingRange);
     auto& added = model.components.back();
     if (const auto law = effect.law()) {
         // d(Le i)/di falls thrice as far as Le(i)
         const bool rises = law->base == "K" || law->base == "Rms", flux = law->argument == "i";
-        added.parameters[0].value = (rises ? 0.05 : flux ? -0.02 : -0.06) * added.extent.scale;
-        added.parameters[1].value = (rises ? 0.25 : flux ? -0.03 : -0.2) * added.extent.scale;
+        added.parameters[0].value = (rises ? 0.05 : flux ? -0.02 : -0.06) * added.operatingRange.scale;
+        added.parameters[1].value = (rises ? 0.25 : flux ? -0.03 : -0.2) * added.operatingRange.scale;
     } else {
         for (auto& parameter : added.parameters)
             if (parameter.strength && !parameter.heard)

@@ -109,7 +109,7 @@ TEST_CASE("The speaker in real time does what a simulation does", "[predistortio
         double reach = 0.0;
         for (const double x : channel(whole, Quantity::displacement))
             reach = std::max(reach, std::abs(x));
-        CHECK(speaker.take().displacement == Approx(reach).epsilon(1e-3));
+        CHECK(speaker.collectMeters().displacement == Approx(reach).epsilon(1e-3));
         auto distortion = a;
         for (std::size_t n = 0; n < a.size(); ++n)
             distortion[n] -= channel(linear, Quantity::acceleration)[n];

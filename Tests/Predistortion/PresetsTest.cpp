@@ -77,7 +77,7 @@ TEST_CASE("Every factory driver loads, is stable, has laws that make sense and a
             const double before = rms(u), after = rms(through(chain, u));
             CHECK(after < 4.0 * before);
             CHECK(after > (mode == Mode::distortion ? 0.0005 : 0.03) * before);
-            const auto meters = chain.take();
+            const auto meters = chain.collectMeters();
             CHECK(meters.predistorter.faults + meters.speaker.faults == 0);
             if (mode == Mode::audition)
                 CHECK(meters.speaker.displacement < 1.05 * measuredDisplacement(model));
@@ -93,7 +93,7 @@ TEST_CASE("Every recipe loads, and is one that can be kept", "[presets]")
     CHECK(recipes.size() >= 3);
     for (const auto& file : recipes) {
         INFO(file.string());
-        const auto recipe = readRecipe(file);
+        const auto recipe = readDocument(file, recipeFromJson);
         std::string reason;
         CHECK(recipe.isValid(&reason));
         CHECK(reason.empty());

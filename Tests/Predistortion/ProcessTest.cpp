@@ -40,7 +40,7 @@ void checkBlocks(Engine make())
         n += count;
     }
     CHECK(cut == whole);
-    CHECK(engine.take().faults == 1);
+    CHECK(engine.collectMeters().faults == 1);
 }
 
 /// It has run, and is reset: as a new one.
@@ -68,7 +68,7 @@ void checkFaults(Engine make())
         engine.reset();
         const auto got = through(engine, dirty);
         CHECK(allFinite(got));
-        CHECK(engine.take().faults >= 1);
+        CHECK(engine.collectMeters().faults >= 1);
         CHECK(peak(got) < 3.0 * peak(expected));
         double late = 0.0;  // once it has been faded back, and the linear driver has settled
         for (std::size_t n = 36000; n < got.size(); ++n)
@@ -111,16 +111,16 @@ Model inUnits(double volts, double amperes, double metres)
     for (const auto& [name, value] : base)
         model.baseParameter(name).value = value;
     for (const char* const id : {"force-factor", "stiffness", "inductance-position"}) {
-        Extent extent;
-        extent.displacement = xmax * metres;
-        extent.velocity = 2.0 * metres;
-        extent.current = 10.0 * amperes;
-        extent.lowFrequency = 15.0;
-        extent.highFrequency = 8000.0;
-        model = withEffect(model, effectNamed(id), extent);
+        OperatingRange operatingRange;
+        operatingRange.displacement = xmax * metres;
+        operatingRange.velocity = 2.0 * metres;
+        operatingRange.current = 10.0 * amperes;
+        operatingRange.lowFrequency = 15.0;
+        operatingRange.highFrequency = 8000.0;
+        model = withEffect(model, effectNamed(id), operatingRange);
         auto& added = model.components.back();
-        added.parameters[0].value = 0.05 * added.extent.scale;
-        added.parameters[1].value = 0.2 * added.extent.scale;
+        added.parameters[0].value = 0.05 * added.operatingRange.scale;
+        added.parameters[1].value = 0.2 * added.operatingRange.scale;
     }
     return model;
 }
@@ -133,7 +133,7 @@ TEST_CASE("What is played does not depend on the units", "[predistortion]")
         Speaker speaker(model, {48000.0, 2});
         auto bent = through(predistorter, burst(48000.0, 0.5, 10.0 * volts)),
              heard = through(speaker, burst(48000.0, 0.5, 10.0 * volts));
-        CHECK(predistorter.take().faults + speaker.take().faults == 0);
+        CHECK(predistorter.collectMeters().faults + speaker.collectMeters().faults == 0);
         for (auto& u : bent)
             u /= volts;
         for (auto& a : heard)
@@ -208,7 +208,7 @@ TEST_CASE("The limits hold, whatever comes and whatever the amount", "[predistor
         INFO(amount);
         Predistorter engine(everything(), {48000.0, 2}, {amount, 3e-3, 12.0});
         CHECK(peak(through(engine, noise(20000, 40.0))) <= 12.0);
-        CHECK(engine.take().voltageReduction > 0.0);
+        CHECK(engine.collectMeters().voltageReduction > 0.0);
     }
     // Much too loud for the limit: the driver itself, simulated, stays within it.
     const auto u = burst(48000.0, 0.4, 16.0);
@@ -218,7 +218,7 @@ TEST_CASE("The limits hold, whatever comes and whatever the amount", "[predistor
     REQUIRE(reach(u) > 4.5e-3);
     Predistorter engine(everything(), {48000.0, 2}, {1.0, 3e-3, infinity});
     CHECK(reach(through(engine, u)) < 3.01e-3);
-    const auto meters = engine.take();
+    const auto meters = engine.collectMeters();
     CHECK(meters.displacement < 3e-3);
     CHECK(meters.displacementReduction > 2.3);
     Predistorter idle(everything(), {48000.0, 2}, {0.0, 3e-3, infinity});
@@ -273,8 +273,8 @@ TEST_CASE("No model and no signal makes the inverse run away", "[predistortion]"
         auto model = withoutEffect(everything(), id);
         model = withStrong(model, effectNamed(id));
         auto& law = model.components.back();
-        law.parameters[0].value = 0.3 * law.extent.scale;
-        law.parameters[1].value = factor * law.extent.scale;
+        law.parameters[0].value = 0.3 * law.operatingRange.scale;
+        law.parameters[1].value = factor * law.operatingRange.scale;
         for (const double level : {5.0, 100.0, 1e4}) {
             INFO(level);
             Predistorter limited(model, {48000.0, 2}, {1.0, xmax, 50.0}), free(model, {48000.0, 2}, {});

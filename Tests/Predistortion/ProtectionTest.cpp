@@ -180,7 +180,7 @@ Tally study(int drivers, double seconds, double error, unsigned seed)
             tally.worst.voltage = std::max(tally.worst.voltage, reached.voltage);
             tally.worst.power = std::max(tally.worst.power, reached.power);
         }
-        CHECK(engine.take().faults == 0);
+        CHECK(engine.collectMeters().faults == 0);
         ++tally.runs;
     }
     return tally;
@@ -231,7 +231,7 @@ TEST_CASE("The meters show the motion of the driver that was given what came out
             sample *= 5.0;
         engine.process(u.data(), u.data(), u.size());
         const auto take = simulate(model, u, rate, {});
-        const auto meters = engine.take();
+        const auto meters = engine.collectMeters();
         CHECK(meters.displacement == Approx(peak(take.find(Quantity::displacement)->samples)).epsilon(0.005));
         CHECK(meters.voltage == Approx(peak(u)).epsilon(1e-12));
         CHECK(meters.voltageReduction > 0.1);
@@ -281,7 +281,7 @@ TEST_CASE("Limiting adds no treble: what it leaves above 2 kHz is what turning d
                 engine.set(now);
                 engine.process(u.data() + n, out.data() + n, std::min<std::size_t>(64, u.size() - n));
             }
-            REQUIRE(engine.take().displacementReduction > 6.0);
+            REQUIRE(engine.collectMeters().displacementReduction > 6.0);
             INFO(frequency << " Hz, treble " << 10.0 * std::log10(powerAbove(2000.0, out, rate)) << " dB of "
                            << 20.0 * std::log10(rms(out)));
             CHECK(powerAbove(2000.0, out, rate) < 1e-6 * rms(out) * rms(out));

@@ -14,9 +14,10 @@ namespace {
 /// The stiff driver with modes of the cone in the middle of what `burst` plays and above.
 Model breakingUp()
 {
-    Extent extent;
-    extent.highFrequency = 2000.0;
-    auto model = withEffect(withStrong(midbass(), effectNamed("stiffness")), effectNamed("cone-breakup"), extent);
+    OperatingRange operatingRange;
+    operatingRange.highFrequency = 2000.0;
+    auto model = withEffect(withStrong(midbass(), effectNamed("stiffness")), effectNamed("cone-breakup"),
+                            operatingRange);
     for (auto& p : model.components.back().parameters)
         p.value = p.name == "g2" ? 0.8 : p.name == "g4" ? -0.4 : p.value;
     return model;

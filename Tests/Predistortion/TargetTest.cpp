@@ -144,7 +144,7 @@ TEST_CASE("Predistorter and loudspeaker have the target's response, to below f0 
                 CHECK(worst < 0.1);
                 if (inductance < 1e-4)
                     CHECK(plain < 0.1);
-                CHECK(predistorter.take().faults == 0);
+                CHECK(predistorter.collectMeters().faults == 0);
             }
 }
 
@@ -272,7 +272,7 @@ TEST_CASE("The limits hold for what a target asks for", "[predistortion][target]
             INFO(frequency << " Hz, signal " << kind);
             CHECK(peak(take.find(Quantity::displacement)->samples) < controls.displacementLimit * 1.001);
             CHECK(peak(bent) <= controls.voltageLimit);
-            const auto meters = predistorter.take();
+            const auto meters = predistorter.collectMeters();
             CHECK(meters.faults == 0);
             CHECK(meters.power < controls.powerLimit * 1.02);
             if (kind == 1 && frequency < 50.0)

@@ -62,14 +62,13 @@ Pnlss anyPnlss(const StateSpace& linear)
 }
 
 /// Writes, reads and writes again: the same bytes. Returns what was read.
-template <class Document>
-Document again(const Document& document, void (*write)(const Document&, const std::filesystem::path&),
-               Document (*read)(const std::filesystem::path&))
+template <class Document, class From>
+Document again(const Document& document, From from)
 {
     const Scratch scratch;
-    write(document, scratch / "1.json");
-    auto back = read(scratch / "1.json");
-    write(back, scratch / "2.json");
+    writeJson(toJson(document), scratch / "1.json");
+    Document back = readDocument(scratch / "1.json", from);
+    writeJson(toJson(back), scratch / "2.json");
     RC_ASSERT(readText(scratch / "1.json") == readText(scratch / "2.json"));
     return back;
 }
@@ -93,7 +92,7 @@ TEST_CASE("A linear model written and read is the same")
         const auto n = between(0, 4), m = between(1, 3), p = between(1, 3);
         const NamedStateSpace named {anyName(), names(m), names(p), anyStateSpace(*rc::gen::arbitrary<bool>(), n, m, p),
                                      std::abs(within1())};
-        const auto back = again(named, writeStateSpace, readStateSpace);
+        const auto back = again(named, stateSpaceFromJson);
         RC_ASSERT(same(back.model, named.model));
         RC_ASSERT(back.name == named.name);
         RC_ASSERT(back.inputs == named.inputs);
@@ -103,7 +102,7 @@ TEST_CASE("A linear model written and read is the same")
     holds("fractional state space", 40, [] {
         const NamedFractionalStateSpace named {
             anyName(), names(1), names(2), {1.0 + 0.999 * within1(), anyStateSpace(false, between(0, 3), 1, 2)}};
-        const auto back = again(named, writeFractionalStateSpace, readFractionalStateSpace);
+        const auto back = again(named, fractionalStateSpaceFromJson);
         RC_ASSERT(same(back.model.form, named.model.form));
         RC_ASSERT(back.model.alpha == named.model.alpha);
     });
@@ -114,7 +113,7 @@ TEST_CASE("A model with polynomials written and read is the same")
     holds("PNLSS", 60, [] {
         const auto m = between(1, 2), p = between(1, 2);
         const NamedPnlss named {anyName(), names(m), names(p), anyPnlss(anyStateSpace(true, between(1, 3), m, p))};
-        const auto back = again(named, writePnlss, readPnlss);
+        const auto back = again(named, pnlssFromJson);
         RC_ASSERT(same(back.model, named.model));
     });
     holds("fractional PNLSS", 40, [] {
@@ -126,7 +125,7 @@ TEST_CASE("A model with polynomials written and read is the same")
         for (auto& fractional : named.model.fractional)
             fractional = *rc::gen::arbitrary<bool>();
         named.grid = {anyRate(), between(1, 16), {1.0 + std::abs(within1()), 3e3 + within1(), 4.0 + within1()}};
-        const auto back = again(named, writeFractionalPnlss, readFractionalPnlss);
+        const auto back = again(named, fractionalPnlssFromJson);
         RC_ASSERT(same(back.model.form, named.model.form));
         RC_ASSERT(back.model.alpha == named.model.alpha);
         RC_ASSERT((back.model.fractional == named.model.fractional).all());
@@ -139,7 +138,7 @@ TEST_CASE("A model with polynomials written and read is the same")
     holds("parallel Hammerstein", 40, [] {
         const Named<ParallelHammerstein> named {
             anyName(), anyName(), anyName(), {anyRate(), anyMatrix(between(1, 6), between(1, 4)), *anyNumber()}};
-        const auto back = again(named, writeParallelHammerstein, readParallelHammerstein);
+        const auto back = again(named, parallelHammersteinFromJson);
         RC_ASSERT(back.model.filters == named.model.filters);
         RC_ASSERT(back.model.offset == named.model.offset);
         RC_ASSERT(back.model.sampleRate == named.model.sampleRate);
@@ -153,7 +152,7 @@ TEST_CASE("A model with polynomials written and read is the same")
         for (auto& exponent : named.model.exponents.reshaped())
             exponent = between(0, 3);
         named.model.coefficients = anyMatrix(K, 1);
-        const auto back = again(named, writeNarx, readNarx);
+        const auto back = again(named, narxFromJson);
         RC_ASSERT(back.model.outputLags == named.model.outputLags);
         RC_ASSERT(back.model.inputLags == named.model.inputLags);
         RC_ASSERT(back.model.exponents == named.model.exponents);
@@ -163,7 +162,7 @@ TEST_CASE("A model with polynomials written and read is the same")
         Named<BlockModel> named {anyName(), anyName(), anyName(), {}};
         named.model = {anyStateSpace(true, between(1, 3), 1, 1), anyMatrix(between(0, 3), 1),
                        anyMatrix(between(0, 3), 1), anyMatrix(between(0, 3), 1), *anyNumber()};
-        const auto back = again(named, writeBlockModel, readBlockModel);
+        const auto back = again(named, blockModelFromJson);
         RC_ASSERT(same(back.model.linear, named.model.linear));
         for (const auto branch : blockBranches())
             RC_ASSERT(back.model.of(branch) == named.model.of(branch));
@@ -183,7 +182,7 @@ TEST_CASE("A model with polynomials written and read is the same")
             for (int j = 0; j < T3; ++j)
                 for (int k = 0; k < T3; ++k)
                     model.third[static_cast<std::size_t>(i)](j, k) = kernel(i + j + k, 0);  // alike by symmetry
-        const auto back = again(named, writeVolterraSeries, readVolterraSeries);
+        const auto back = again(named, volterraSeriesFromJson);
         RC_ASSERT(back.model.first == model.first);
         RC_ASSERT(back.model.second == model.second);
         RC_ASSERT(back.model.third == model.third);
@@ -196,13 +195,13 @@ TEST_CASE("A driver with any effects written and read is the same")
     holds("driver", 60, [] {
         auto model = makeModel(*rc::gen::element<std::string>("electrodynamic", "mechanical"));
         model.name = anyName();
-        Extent extent;
-        extent.displacement = 1e-3 * (1.5 + within1());
-        extent.degree = between(2, 8);
-        extent.lowFrequency = 10.0 + within1();
+        OperatingRange operatingRange;
+        operatingRange.displacement = 1e-3 * (1.5 + within1());
+        operatingRange.degree = between(2, 8);
+        operatingRange.lowFrequency = 10.0 + within1();
         for (const auto* effect : catalogue())
             if (*rc::gen::arbitrary<bool>() && (model.electrical() || !effect->electrical()))
-                model = withEffect(model, *effect, extent);
+                model = withEffect(model, *effect, operatingRange);
         for (auto* parameter : parametersOf(model)) {
             parameter->value = std::clamp(parameter->value * (1.0 + 0.3 * within1()) + 0.01 * std::abs(within1()),
                                           parameter->lower, parameter->upper);
@@ -210,7 +209,7 @@ TEST_CASE("A driver with any effects written and read is the same")
                 parameter->standardError = std::abs(within1());
         }
         model.microphoneDistance = 1.5 + within1();
-        const auto back = again(model, writeModel, readModel);
+        const auto back = again(model, [](const JsonField& field) { return modelFromJson(field); });
         RC_ASSERT(back.name == model.name);
         RC_ASSERT(back.effectIds() == model.effectIds());
         RC_ASSERT(parameterVector(back) == parameterVector(model));

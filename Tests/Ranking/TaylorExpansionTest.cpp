@@ -26,17 +26,17 @@ double coefficient(const FractionalPnlss& model, Index row, const Eigen::RowVect
     return 0.0;
 }
 
-/// Laws of degree 2 given by their monomials b_1 q + b_2 q^2, as Chebyshev coefficients over the extent.
+/// Laws of degree 2 given by their monomials b_1 q + b_2 q^2, as Chebyshev coefficients over the operating range.
 Model withLaw(const Model& plain, const char* id, double b1, double b2)
 {
-    Extent extent;
-    extent.displacement = xmax;
-    extent.velocity = 2.0;
-    extent.current = 10.0;
-    extent.degree = 2;
-    auto model = withEffect(plain, effectNamed(id), extent);
+    OperatingRange operatingRange;
+    operatingRange.displacement = xmax;
+    operatingRange.velocity = 2.0;
+    operatingRange.current = 10.0;
+    operatingRange.degree = 2;
+    auto model = withEffect(plain, effectNamed(id), operatingRange);
     auto& parameters = model.components.back().parameters;
-    const double range = extent.displacement;
+    const double range = operatingRange.displacement;
     parameters[0].value = b1 * range;
     parameters[1].value = 0.5 * b2 * range * range;
     return model;

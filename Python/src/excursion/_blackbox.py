@@ -164,7 +164,7 @@ class Ranking(Result):
     def linearization(self) -> pd.DataFrame:
         """Over the class: ``beforeDb``, the distortion as the model was fitted, ``modelDb`` and ``leftDb``, what
         predistortion leaves of it on the model and on the take, ``load`` (share of a core), ``latency`` (s);
-        ``trouble`` where the class is not turned around."""
+        ``trouble`` where the class is not inverted."""
         return table(
             [
                 {"class": model["class"], **model["linearization"]}

@@ -40,7 +40,7 @@ class Comparison(Result):
 
     @property
     def error(self) -> pd.DataFrame:
-        """By channel, over all levels: ``db``, ``noiseFloorDb`` in dB of the channel, ``chi`` (1: only noise)."""
+        """By channel, over all levels: ``db``, ``noiseFloorDb`` in dB of it, ``chiSquaredPerValue`` (1: only noise)."""
         return errors(self.document["error"])
 
     @property
@@ -58,8 +58,8 @@ class Comparison(Result):
         return problems(self.document.get("problems"))
 
     def table(self) -> pd.DataFrame:
-        """Over channel and level (V rms), in dB of the channel: error ``db``, ``noiseFloorDb``, ``chi``, and the error
-        on ``linear``, ``odd`` and ``even`` lines."""
+        """Over channel and level (V rms): error ``db`` and ``noiseFloorDb`` in dB of the channel, ``chiSquaredPerValue``,
+        and the error on ``linear``, ``odd`` and ``even`` lines in dB."""
         rows = []
         for channel in self.document["channels"]:
             for level in channel["levels"]:

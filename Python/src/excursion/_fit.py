@@ -23,12 +23,13 @@ def model_argument(call: Call, model: ModelLike, name: str = "given.json") -> st
 
 
 def known(error: dict[str, Any]) -> dict[str, Any]:
-    """An error of a document; chi is of no meaning where the noise is not known."""
-    return error if error["noiseFloorDb"] is not None else {**error, "chi": None}
+    """An error of a document; chiSquaredPerValue is of no meaning where the noise is not known."""
+    found = {("chiSquaredPerValue" if key == "chi" else key): value for key, value in error.items()}
+    return found if error["noiseFloorDb"] is not None else {**found, "chiSquaredPerValue": None}
 
 
 def errors(found: dict[str, Any] | None) -> pd.DataFrame:
-    """The error by channel: ``db`` and ``noiseFloorDb`` in dB of the channel, ``chi`` (1: only noise is left)."""
+    """The error by channel: ``db`` and ``noiseFloorDb`` in dB of the channel, ``chiSquaredPerValue`` (1: only noise)."""
     rows = [{"channel": channel, **known(error)} for channel, error in (found or {}).items()]
     return table(rows, "channel")
 
@@ -43,7 +44,7 @@ class Fit(Result):
 
     @property
     def error(self) -> pd.DataFrame:
-        """By channel, on data that no fit saw: ``db``, ``noiseFloorDb`` in dB of it, ``chi`` (1: only noise)."""
+        """By channel, on data that no fit saw: ``db``, ``noiseFloorDb`` in dB of it, ``chiSquaredPerValue`` (1: noise)."""
         return errors(self.document["error"])
 
     @property

@@ -34,14 +34,15 @@ class Rung:
 
     @property
     def error(self) -> pd.DataFrame:
-        """By channel: ``db`` and ``noiseFloorDb`` in dB of the channel, ``chi`` (1: only noise is left)."""
+        """By channel: ``db`` and ``noiseFloorDb`` in dB of the channel, ``chiSquaredPerValue`` (1: only noise)."""
         return errors(self.document["error"])
 
     @property
-    def chi(self) -> float:
+    def chi_squared_per_value(self) -> float:
         """Mean squared error over squared noise, 1 at best; NaN where the take does not tell its noise."""
         comparison = self.document["comparison"]
-        return number(comparison["chi"]) if comparison["noiseKnown"] else number(None)
+        found = comparison.get("chiSquaredPerValue", comparison.get("chi"))  # ladders of before say "chi"
+        return number(found if comparison["noiseKnown"] else None)
 
     def __repr__(self) -> str:
         return f"<excursion.Rung: {'+ ' + self.added if self.added else 'first model'}>"
@@ -86,16 +87,17 @@ class Ladder(Judgement):
         return WhatIf(found) if found else None
 
     def table(self) -> pd.DataFrame:
-        """One row a rung: what was ``added``, the error by channel in dB, and ``chi``; "noise" is the last row, where
-        it is known."""
+        """One row a rung: what was ``added``, the error by channel in dB, and ``chiSquaredPerValue``; "noise" is the last
+        row, where it is known."""
         rows: list[dict[str, Any]] = []
         for number_, rung in enumerate(self.rungs):
             error = {f"{channel} dB": one["db"] for channel, one in rung.document["error"].items()}
-            rows.append({"rung": number_, "added": rung.added or "", **error, "chi": rung.chi})
+            left = {"chiSquaredPerValue": rung.chi_squared_per_value}
+            rows.append({"rung": number_, "added": rung.added or "", **error, **left})
         if self.rungs:
             floor = {f"{channel} dB": one["noiseFloorDb"] for channel, one in self.rungs[-1].document["error"].items()}
             if all(db is not None for db in floor.values()):
-                rows.append({"rung": "noise", "added": "", **floor, "chi": 1.0})
+                rows.append({"rung": "noise", "added": "", **floor, "chiSquaredPerValue": 1.0})
         return table(rows, "rung")
 
     def save_report(self, path: PathLike) -> None:

@@ -142,7 +142,7 @@ void putErrors(Table& table, std::size_t unit, const Comparison& comparison)
                       {channel.total.noiseFloorDb.value_or(nothing), nothing}, false);
     }
     if (comparison.noiseKnown)
-        table.put(unit, "misfit", "", {comparison.chi, nothing}, false);
+        table.put(unit, "chiSquaredPerValue", "", {comparison.chiSquaredPerValue, nothing}, false);
 }
 
 double distanceScale(const Quantities& q)

@@ -199,7 +199,7 @@ BlackBox blackBoxOf(const ParallelHammerstein& model, const Stimulus& stimulus)
         return box;
     }
     throw Error(Error::Kind::data, "The filters of this model cannot be written with " + std::to_string(mostStates)
-                                       + " states: " + plainText(20.0 * std::log10(error), 1) + " dB are left.");
+                                       + " states: " + plainText(20.0 * std::log10(error), 1) + " dB would be left.");
 }
 
 }  // namespace excursion

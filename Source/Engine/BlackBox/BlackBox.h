@@ -12,7 +12,7 @@
 namespace excursion {
 
 /// A model without physics, of one input and one output, in the one form in which all classes of them are played and
-/// turned around (discrete time):
+/// inverted (discrete time):
 ///     z = S x + T u + G q,   q = R p(z, u),   x(t+1) = A x + B u + E q,   y = C x + D u + F q
 /// with K monomials p in what the nonlinearity sees, z and the input, and as few combinations q of them as E and F ask
 /// for. G is zero except of fractional orders, whose steps are implicit.

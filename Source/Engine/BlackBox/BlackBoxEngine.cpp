@@ -70,16 +70,16 @@ void BlackBoxEngine::process(double* volts, std::size_t n, Fade& played)
     }
 }
 
-ChainEngine::Meters BlackBoxEngine::take()
+ChainEngine::Meters BlackBoxEngine::collectMeters()
 {
     Meters meters;
-    const auto speaker = speaker_.take();
+    const auto speaker = speaker_.collectMeters();
     meters.region = speaker.region;
     if (moves_)
         meters.speaker.displacement = speaker.output;
     meters.faults = speaker.faults + faults_.load(std::memory_order_relaxed);
     if (bend_) {
-        const auto bend = bend_->take();
+        const auto bend = bend_->collectMeters();
         meters.predistorter = bend;
         // What keeps to where the fit was keeps the cone from going too far as well.
         meters.predistorter.displacementReduction += bend.regionReduction;

@@ -13,7 +13,7 @@
 
 namespace excursion {
 
-/// A model without physics in a chain: BlackBoxPredistorter, where the model can be turned around, and behind it the
+/// A model without physics in a chain: BlackBoxPredistorter, where the model can be inverted, and behind it the
 /// BlackBoxSpeaker. The model's output is heard at the level that the signal has under the stimulus of the fit (see
 /// PlayedBox::perOutput). Besides the limits (see BlackBoxPredistorter) it keeps to the region of the fit, which the
 /// meters tell as what the motion was turned down by.
@@ -32,7 +32,7 @@ public:
     void setLinearShareRemoved(double share) override { speaker_.setLinearShareRemoved(share); }
     void process(double* volts, std::size_t n, Fade& played) override;
     void publish() override {}
-    Meters take() override;
+    Meters collectMeters() override;
 
 private:
     std::optional<BlackBoxPredistorter> bend_;

@@ -10,7 +10,7 @@
 
 namespace excursion {
 
-/// How a black box is turned around.
+/// How a black box is inverted.
 struct BlackBoxDesign {
     PreviewControl control;
     int preview = 0;  ///< samples of the model, of each pass

@@ -238,19 +238,19 @@ void BlackBoxPredistorter::publish()
     peak_ = {};
 }
 
-BlackBoxPredistorter::Meters BlackBoxPredistorter::take()
+BlackBoxPredistorter::Meters BlackBoxPredistorter::collectMeters()
 {
     Meters meters;
-    meters.displacement = displacement_.take();
-    meters.voltage = out_.take();
-    meters.power = power_.take();
-    meters.displacementReduction = displacementReduction_.take();
-    meters.voltageReduction = voltageReduction_.take();
-    meters.powerReduction = powerReduction_.take();
+    meters.displacement = displacement_.readAndReset();
+    meters.voltage = out_.readAndReset();
+    meters.power = power_.readAndReset();
+    meters.displacementReduction = displacementReduction_.readAndReset();
+    meters.voltageReduction = voltageReduction_.readAndReset();
+    meters.powerReduction = powerReduction_.readAndReset();
     meters.faults = faults_.load(std::memory_order_relaxed);
-    meters.correction = correction_.take();
-    meters.region = region_.take();
-    meters.regionReduction = regionReduction_.take();
+    meters.correction = correction_.readAndReset();
+    meters.region = region_.readAndReset();
+    meters.regionReduction = regionReduction_.readAndReset();
     return meters;
 }
 

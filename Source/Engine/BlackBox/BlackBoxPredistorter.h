@@ -15,7 +15,7 @@
 
 namespace excursion {
 
-/// A black box that is ready to be turned around: where it has been, where it rests, and what that is worth. Made once,
+/// A black box that is ready to be inverted: where it has been, where it rests, and what that is worth. Made once,
 /// for any number of channels. Throws Error, see visitedBy(), restOf() and rehearse().
 struct RehearsedBox {
     explicit RehearsedBox(const BlackBox&);
@@ -55,13 +55,13 @@ public:
     /// @param in, out  n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);
 
-    /// Since the last call of take(); may be read from another thread.
+    /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters : Predistorter::Meters {  ///< displacement: of the model that is given what comes out
         double correction = 0.0;            ///< peak of the correction
         double region = 0.0;                ///< how far out the loudspeaker went, 1: as far as the fit has been
         double regionReduction = 0.0;       ///< dB, by which the signal was turned down at most to stay there
     };
-    Meters take();
+    Meters collectMeters();
 
 private:
     double correctionFor(double u, double limit);

@@ -152,9 +152,9 @@ BlackBoxRehearsal rehearse(const BlackBox& box, const Region& region, const Rest
     }
     if (!(best.gainDb() >= worthwhile))
         throw Error(Error::Kind::data,
-                    "This model cannot be turned around: of its distortion of " + plainText(best.beforeDb, 1) + " dB"
-                        + " at the level of its fit "
-                        + (std::isfinite(best.afterDb) ? plainText(best.afterDb, 1) + " dB" + " would be left."
+                    "This model cannot be inverted: at the level of its fit its distortion is "
+                        + plainText(best.beforeDb, 1) + " dB, and "
+                        + (std::isfinite(best.afterDb) ? plainText(best.afterDb, 1) + " dB would be left."
                                                        : "no correction was found that keeps it in bounds."));
     const auto& bands = box.stimulus.frequency;
     const auto whole = bandPowers(straight, rate, bands), before = bandPowers(bent, rate, bands),

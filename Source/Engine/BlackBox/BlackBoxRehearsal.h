@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// What turning a black box around is worth, found out before it is used: the model plays what it was fitted under, as
+/// What inverting a black box is worth, found out before it is used: the model plays what it was fitted under, as
 /// it is and with the correction, and its output is held against that of its linear part.
 struct BlackBoxRehearsal {
     BlackBoxDesign design;    ///< the best of those tried

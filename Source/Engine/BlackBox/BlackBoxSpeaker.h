@@ -31,13 +31,16 @@ public:
     /// @param out  in the output's unit; n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);
 
-    /// Since the last call of take(); may be read from another thread.
+    /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
         double region = 0.0;  ///< how far out it went, 1: as far as the fit has been
         double output = 0.0;  ///< peak, from rest
         int faults = 0;       ///< since construction
     };
-    Meters take() { return {region_.take(), output_.take(), faults_.load(std::memory_order_relaxed)}; }
+    Meters collectMeters()
+    {
+        return {region_.readAndReset(), output_.readAndReset(), faults_.load(std::memory_order_relaxed)};
+    }
 
 private:
     void rest();

@@ -156,7 +156,7 @@ struct Box {
     BlackBox operator()(const VolterraSeries&) const
     {
         throw Error(Error::Kind::data,
-                    "'" + source + "' holds a Volterra series; the model that it was made of is turned around.");
+                    "'" + source + "' holds a Volterra series; use the model that it was made from.");
     }
     BlackBox operator()(const Fractional& model) const { return blackBoxOf(model.model, model.grid); }
     BlackBox operator()(const ParallelHammerstein& model) const { return blackBoxOf(model, stimulus); }
@@ -173,7 +173,7 @@ struct Box {
     }
 };
 
-/// Whether the class is played and turned around, so that its document has to tell what it was fitted under.
+/// Whether the class is played and inverted, so that its document has to tell what it was fitted under.
 bool needsStimulus(const ModelDocument& document)
 {
     return !std::holds_alternative<StateSpace>(document.model)

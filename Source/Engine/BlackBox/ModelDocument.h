@@ -43,7 +43,7 @@ ModelDocument modelDocumentFrom(const JsonField&);
 /// @param sampleRate  Hz, of the input: the model's, where it has one
 Eigen::MatrixXd simulate(const ModelDocument&, const Eigen::MatrixXd& input, double sampleRate);
 
-/// In the form in which it is played in real time and turned around. Throws Error (data) for a linear one, for a
+/// In the form in which it is played in real time and inverted. Throws Error (data) for a linear one, for a
 /// Volterra series, which is a part of the model it was made of, for one that does not say what it was fitted under,
 /// whose linear part is not stable, or that its class' blackBoxOf() refuses.
 BlackBox blackBoxOf(const ModelDocument&);

@@ -69,7 +69,7 @@ std::string wordsOf(const PlayedBox& played)
 {
     const auto what = whatItIs(played.box);
     if (!played.rehearsal)
-        return what + ". It plays, but is not turned around. " + played.refusal;
+        return what + ". It plays, but it is not inverted. " + played.refusal;
     const auto& gain = *played.rehearsal;
     const std::string unit = played.box.input == "voltage" ? "V" : played.box.input == "force" ? "N" : "";
     auto text = what + ". As it was fitted, with " + engineering(played.box.stimulus.rms, unit, 3)

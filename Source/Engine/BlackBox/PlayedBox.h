@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// A black box that is ready to be played, and to be turned around where that helps: what is found out once, before any
+/// A black box that is ready to be played, and to be inverted where that helps: what is found out once, before any
 /// signal is touched, and serves any number of channels.
 struct PlayedBox {
     /// Rehearses. Throws Error (data) for a model that runs away or does not come to rest, (cancelled).
@@ -18,7 +18,7 @@ struct PlayedBox {
     BlackBox box;
     Region region;
     Rest rest;
-    std::optional<BlackBoxRehearsal> rehearsal;  ///< none where turning it around does not help
+    std::optional<BlackBoxRehearsal> rehearsal;  ///< none where inverting it does not help
     std::string refusal;                         ///< then why, one sentence
     /// input's unit per output's unit: rms of the stimulus over the rms that the linear part makes of it. Times this,
     /// the output is as loud as the signal was under the fit.

@@ -40,7 +40,7 @@ Answer answerOf(const Measurement& take, Quantity quantity)
 }
 
 /// Rms of 1 - sum_j c_j B_kj with the best real c, which are told.
-double misfitOf(const std::vector<std::vector<Complex>>& columns, Eigen::VectorXd& c)
+double relativeErrorOf(const std::vector<std::vector<Complex>>& columns, Eigen::VectorXd& c)
 {
     const auto F = static_cast<Eigen::Index>(columns.front().size());
     Eigen::MatrixXd A(2 * F, static_cast<Eigen::Index>(columns.size()));
@@ -55,15 +55,15 @@ double misfitOf(const std::vector<std::vector<Complex>>& columns, Eigen::VectorX
     const Eigen::VectorXd size = A.colwise().norm();
     const Eigen::MatrixXd scaled = A * size.cwiseInverse().asDiagonal();
     c = scaled.colPivHouseholderQr().solve(one);
-    const double misfit = (one - scaled * c).norm() / std::sqrt(static_cast<double>(F));
+    const double relativeError = (one - scaled * c).norm() / std::sqrt(static_cast<double>(F));
     c = c.cwiseQuotient(size);
-    return misfit;
+    return relativeError;
 }
 
 /// How badly a loudspeaker explains these channels, 0 .. 1.
 /// @param kind      of the motion
 /// @param pressure  may be empty
-double misfitOf(const Answer& current, const Answer& motion, Quantity kind, const Answer* pressure)
+double relativeErrorOf(const Answer& current, const Answer& motion, Quantity kind, const Answer* pressure)
 {
     constexpr std::size_t fewest = 12;
     const auto omega = [&](std::size_t k) { return Complex(0.0, 2.0 * std::numbers::pi * current.frequency[k]); };
@@ -86,12 +86,12 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
     if (coil[0].size() < fewest)
         return bad;
     Eigen::VectorXd c, without;
-    double sum = misfitOf(coil, c);
+    double sum = relativeErrorOf(coil, c);
     if (!(c[0] * c[3] != 0.0) || c[0] < 0.0)
         return bad;
     const double counterVoltage = c[3];
     constexpr double told = 2.0;  // times worse without the voltage of the moving coil: its sign is known
-    const bool signKnown = misfitOf({coil[0], coil[1], coil[2]}, without) > told * sum;
+    const bool signKnown = relativeErrorOf({coil[0], coil[1], coil[2]}, without) > told * sum;
 
     constexpr double around = 6.0;
     std::vector<std::vector<Complex>> cone(3);
@@ -110,7 +110,7 @@ double misfitOf(const Answer& current, const Answer& motion, Quantity kind, cons
     }
     if (cone[0].size() < fewest)
         return bad;
-    sum += misfitOf(cone, c);
+    sum += relativeErrorOf(cone, c);
     if (!(c[0] * c[2] > 0.0))  // no resonance
         return bad;
     // The force factor that drives the cone is the one that brakes the coil: with voltage and current exchanged all
@@ -141,11 +141,11 @@ std::vector<Answer> perCurrent(const std::vector<Answer>& answers, std::size_t c
     return result;
 }
 
-Problem mislabelled(Quantity label, Quantity truth, double misfit)
+Problem mislabelled(Quantity label, Quantity truth, double relativeError)
 {
     return {"mislabelled",
             label,
-            100.0 * misfit,
+            100.0 * relativeError,
             "%",
             true,
             "The " + std::string(name(label)) + " channel behaves like the " + std::string(name(truth))
@@ -175,7 +175,7 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
     for (const auto label : labels)
         answers.push_back(answerOf(take, label));
 
-    const auto misfit = [&](const std::vector<Answer>& told, const std::vector<Quantity>& named) {
+    const auto relativeError = [&](const std::vector<Answer>& told, const std::vector<Quantity>& named) {
         const Answer *current = nullptr, *motion = nullptr, *pressure = nullptr;
         Quantity kind = Quantity::displacement;
         for (std::size_t k = 0; k < named.size(); ++k) {
@@ -183,10 +183,10 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
             if (isMotion(named[k]))
                 kind = named[k];
         }
-        return misfitOf(*current, *motion, kind, pressure);
+        return relativeErrorOf(*current, *motion, kind, pressure);
     };
     constexpr double implausible = 0.3, plausible = 0.15, farBetter = 3.0;
-    const double asTold = misfit(answers, labels);
+    const double asTold = relativeError(answers, labels);
     if (!(asTold > implausible))
         return true;
     std::vector<std::size_t> order(labels.size());
@@ -207,7 +207,7 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
             const bool sameKind = std::find(labels.begin(), labels.end(), kind) != labels.end();
             if (!sameKind && named != labels)
                 continue;
-            if (const double left = misfit(answers, other); left < least) {
+            if (const double left = relativeError(answers, other); left < least) {
                 least = left;
                 best = other;
             }
@@ -215,7 +215,7 @@ bool checkLabels(const Measurement& take, const std::vector<bool>& alive, std::v
     } while (std::next_permutation(order.begin(), order.end()));
     const auto current = static_cast<std::size_t>(std::find(labels.begin(), labels.end(), Quantity::current)
                                                   - labels.begin());
-    if (const double left = misfit(perCurrent(answers, current), labels);
+    if (const double left = relativeError(perCurrent(answers, current), labels);
         left < least && left < plausible && farBetter * left < asTold) {
         problems.push_back(mislabelled(Quantity::voltage, Quantity::current, asTold));
         problems.push_back(mislabelled(Quantity::current, Quantity::voltage, asTold));

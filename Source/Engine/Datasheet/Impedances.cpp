@@ -50,7 +50,7 @@ double resistanceFrequency(const Model& model)
     const double error = model.covariance.size() > 0 ? std::sqrt(model.covariance(0, 0)) : 0.0;
     if (model.components.size() < 2 || error <= known * std::abs(Re.value))  // not a number: not known
         return 0.0;
-    const double low = model.components.back().extent.lowFrequency;
+    const double low = model.components.back().operatingRange.lowFrequency;
     const double there = blockedImpedance(model, {low}).front().real();
     constexpr double something = 1e-3;
     return std::abs(there - Re.value) > something * there ? low : 0.0;

@@ -47,10 +47,10 @@ Model withMotion(Model model, double factor)
     }
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         auto& component = model.components[k];
-        component.extent.displacement *= factor;
-        component.extent.velocity *= factor;
+        component.operatingRange.displacement *= factor;
+        component.operatingRange.velocity *= factor;
         if (const auto base = component.effect->sizedBy(); !base.empty())
-            component.extent.scale *= std::pow(factor, lengthPower(model.baseParameter(base)));
+            component.operatingRange.scale *= std::pow(factor, lengthPower(model.baseParameter(base)));
     }
     if (model.covariance.size() > 0) {
         const Eigen::Map<const Eigen::VectorXd> scale(by.data(), static_cast<Eigen::Index>(by.size()));

@@ -28,7 +28,8 @@ struct ScaledModel {
 
 /// The model whose coil and sound are the same and whose cone moves `factor` times as far: a unit of length that is
 /// `factor` times as small, in which energies and currents are what they were (m, Rms, K go with factor^-2, Bl, forces
-/// and, where the sound tells it, Sd with factor^-1). Laws, extents, standard errors and the covariance go along.
+/// and, where the sound tells it, Sd with factor^-1). Laws, operating ranges, standard errors and the covariance go
+/// along.
 Model withMotion(Model, double factor);
 
 /// Puts in what is known.

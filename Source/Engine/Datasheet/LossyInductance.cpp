@@ -221,7 +221,7 @@ std::pair<double, double> bandOf(const Model& model)
 {
     std::pair<double, double> band {10.0, 10000.0};
     for (std::size_t k = 1; k < model.components.size(); ++k)
-        band = {model.components[k].extent.lowFrequency, model.components[k].extent.highFrequency};
+        band = {model.components[k].operatingRange.lowFrequency, model.components[k].operatingRange.highFrequency};
     return band;
 }
 

@@ -72,7 +72,7 @@ Curve inPercent(Curve curve, bool reciprocal)
 std::complex<double> blockedImpedance(const Model& model, const Dynamics<double>& dynamics, double x, double frequency)
 {
     // what the take visited, once there is an effect
-    const double small = 1e-3 * model.components.back().extent.current;
+    const double small = 1e-3 * model.components.back().operatingRange.current;
     const auto order = static_cast<std::size_t>(dynamics.order());
     std::vector<std::size_t> states {0};
     for (std::size_t k = 3; k < order; ++k)
@@ -182,10 +182,10 @@ StrokeLimits strokeLimits(const Model& model)
     StrokeLimits result;
     for (const auto& component : model.components)
         if (const auto law = component.effect->law(); law && law->argument == "x")
-            result.range = std::max(result.range, component.extent.displacement);
+            result.range = std::max(result.range, component.operatingRange.displacement);
     if (result.range == 0.0)
         for (const auto& component : model.components)
-            result.range = std::max(result.range, component.extent.displacement);
+            result.range = std::max(result.range, component.operatingRange.displacement);
     constexpr double toneOverResonance = 8.5;
     result.resonance = resonanceOf(model.base().parameters);
     result.tone = toneOverResonance * result.resonance;

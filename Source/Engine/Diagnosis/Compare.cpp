@@ -27,7 +27,7 @@ ErrorLevel levelOf(const ErrorPower& power, const NormalEquations& normal, bool 
     level.db = db(power.error, power.measured);
     if (noiseKnown)
         level.noiseFloorDb = db(power.noise, power.measured);
-    level.chi = normal.cost / std::max(1.0, normal.rows);
+    level.chiSquaredPerValue = normal.cost / std::max(1.0, normal.rows);
     return level;
 }
 
@@ -196,7 +196,7 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
         }
         result.channels.push_back(std::move(channel));
     }
-    result.chi = everything.cost / std::max(1.0, everything.rows);
+    result.chiSquaredPerValue = everything.cost / std::max(1.0, everything.rows);
     if (options.spectra)
         result.residuals = residualCurves(model, record, sections, fits);
     progress.at(1.0, "compared");

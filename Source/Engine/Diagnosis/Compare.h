@@ -13,11 +13,12 @@
 namespace excursion {
 
 /// How far a model's channel is from the measurement: relative rms error [B 4.26] and the rms of the noise against
-/// the same reference, dB. `chi` is the mean of |error|^2/sigma^2 over the lines: 1 when only noise is left.
+/// the same reference, dB. `chiSquaredPerValue` is the mean of |error|^2/sigma^2 over the lines: 1 when only noise is
+/// left.
 struct ErrorLevel {
     double db = 0.0;
     std::optional<double> noiseFloorDb;  ///< empty when the take cannot tell its noise
-    double chi = 0.0;
+    double chiSquaredPerValue = 0.0;
 };
 
 /// What kind of error is left, as powers relative to the measured channel, dB. Needs known excited lines; grids without
@@ -57,7 +58,7 @@ struct Comparison {
     std::vector<double> levels;  ///< V rms; one entry 0 when the take has no levels
     std::vector<ChannelComparison> channels;
     std::vector<ResidualCurve> residuals;  ///< at the loudest level
-    double chi = 0.0;                      ///< over all channels and levels
+    double chiSquaredPerValue = 0.0;       ///< over all channels and levels
     bool noiseKnown = false;
     bool validated = false;  ///< on sections that no fit saw
 };

@@ -125,12 +125,13 @@ Json toJson(const ErrorLevel& error)
 {
     return {{"db", numberOrNull(error.db)},
             {"noiseFloorDb", optionalNumber(error.noiseFloorDb)},
-            {"chi", numberOrNull(error.chi)}};
+            {"chiSquaredPerValue", numberOrNull(error.chiSquaredPerValue)}};
 }
 
 ErrorLevel errorLevelFromJson(const JsonField& field)
 {
-    return {field.at("db").numberOrNaN(), field.at("noiseFloorDb").optionalNumber(), field.at("chi").numberOrNaN()};
+    return {field.at("db").numberOrNaN(), field.at("noiseFloorDb").optionalNumber(),
+            field.at("chiSquaredPerValue", "chi").numberOrNaN()};
 }
 
 Json toJson(const std::map<Quantity, ErrorLevel>& errors)
@@ -173,7 +174,7 @@ Json toJson(const Comparison& comparison)
                    {"version", formatVersion},
                    {"validated", comparison.validated},
                    {"noiseKnown", comparison.noiseKnown},
-                   {"chi", numberOrNull(comparison.chi)},
+                   {"chiSquaredPerValue", numberOrNull(comparison.chiSquaredPerValue)},
                    {"error", toJson(errorByChannel(comparison))},
                    {"levels", numbersOrNulls(comparison.levels)}};
     document["channels"] = Json::array();
@@ -191,7 +192,7 @@ Comparison comparisonFromJson(const JsonField& field)
     Comparison comparison;
     comparison.validated = field.at("validated").flag();
     comparison.noiseKnown = field.at("noiseKnown").flag();
-    comparison.chi = field.at("chi").numberOrNaN();
+    comparison.chiSquaredPerValue = field.at("chiSquaredPerValue", "chi").numberOrNaN();
     comparison.levels = field.at("levels").numbers();
     for (const auto& channel : field.at("channels").items())
         comparison.channels.push_back(channelFrom(channel));

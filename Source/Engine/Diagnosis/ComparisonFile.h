@@ -17,7 +17,7 @@ namespace excursion {
 nlohmann::ordered_json toJson(const Comparison&);
 Comparison comparisonFromJson(const JsonField&);
 
-/// {"db": -28.1, "noiseFloorDb": null, "chi": 3.2}
+/// {"db": -28.1, "noiseFloorDb": null, "chiSquaredPerValue": 3.2}
 nlohmann::ordered_json toJson(const ErrorLevel&);
 ErrorLevel errorLevelFromJson(const JsonField&);
 

@@ -22,7 +22,7 @@ namespace {
 bool isNoise(const ChannelComparison& channel)
 {
     constexpr double mostLines = 1.6, mostDb = 3.0;  // 2 dB of mean squared error over the noise's
-    return channel.total.chi <= mostLines
+    return channel.total.chiSquaredPerValue <= mostLines
            && channel.total.db <= channel.total.noiseFloorDb.value_or(-std::numeric_limits<double>::infinity()) + mostDb
            && !channel.wanderDb;
 }
@@ -41,7 +41,10 @@ public:
         : noiseKnown_(comparison.noiseKnown), least_(isNoise(comparison) ? 0.02 : 0.002)
     {
     }
-    double operator()(double chi) const { return noiseKnown_ ? std::max(chi - 1.0, least_) : std::max(chi, 1e-12); }
+    double operator()(double chiSquaredPerValue) const
+    {
+        return noiseKnown_ ? std::max(chiSquaredPerValue - 1.0, least_) : std::max(chiSquaredPerValue, 1e-12);
+    }
 
 private:
     bool noiseKnown_;
@@ -49,46 +52,48 @@ private:
 };
 
 /// Those that cannot be it, as they do not pay or have been bent to stand for something else, come behind those that
-/// can. Of these the ones come first that the catalogue as a whole speaks for, as others may only borrow what belongs to
-/// one that is not in yet; unless another leaves far less: several that explain the same have little each that is
+/// can. Of these the ones come first that the catalogue as a whole speaks for, as others may only borrow what belongs
+/// to one that is not in yet; unless another leaves far less: several that explain the same have little each that is
 /// theirs alone, and one of them is there.
 void putInOrder(std::vector<RankedEffect>& ranking, const Excess& excess)
 {
     constexpr double far = 4.0;
     double least = std::numeric_limits<double>::infinity();
     for (const auto& r : ranking)
-        if (r.significant && r.confirmedChi > 0.0)
-            least = std::min(least, excess(r.confirmedChi));
+        if (r.significant && r.confirmedChiSquaredPerValue > 0.0)
+            least = std::min(least, excess(r.confirmedChiSquaredPerValue));
     const auto preferred = [&](const RankedEffect& r) {
-        return r.vote.standsAlone() || (r.vote.backs() && !(excess(r.confirmedChi) > far * least));
+        return r.vote.standsAlone() || (r.vote.backs() && !(excess(r.confirmedChiSquaredPerValue) > far * least));
     };
     std::stable_sort(ranking.begin(), ranking.end(), [&](const RankedEffect& a, const RankedEffect& b) {
         if (a.significant != b.significant)
             return a.significant;
         if (a.significant && preferred(a) != preferred(b))
             return preferred(a);
-        const bool triedA = a.confirmedChi > 0.0, triedB = b.confirmedChi > 0.0;
+        const bool triedA = a.confirmedChiSquaredPerValue > 0.0, triedB = b.confirmedChiSquaredPerValue > 0.0;
         if (triedA != triedB)
             return triedA;
-        return triedA ? a.confirmedChi < b.confirmedChi : a.predictedChi < b.predictedChi;
+        return triedA ? a.confirmedChiSquaredPerValue < b.confirmedChiSquaredPerValue
+                      : a.predictedChiSquaredPerValue < b.predictedChiSquaredPerValue;
     });
 }
 
 /// Confidence of the tried effects: the first is sure when it explains at least half of the excess and the second
 /// leaves much more.
-void judge(std::vector<RankedEffect>& ranking, double chi, const Excess& excess, Diagnosis& diagnosis)
+void judge(std::vector<RankedEffect>& ranking, double chiSquaredPerValue, const Excess& excess, Diagnosis& diagnosis)
 {
-    const double before = excess(chi);
+    const double before = excess(chiSquaredPerValue);
     for (std::size_t k = 0; k < ranking.size(); ++k) {
         auto& entry = ranking[k];
-        if (entry.confirmedChi <= 0.0 || !entry.significant)
+        if (entry.confirmedChiSquaredPerValue <= 0.0 || !entry.significant)
             continue;
-        const double left = excess(entry.confirmedChi);
+        const double left = excess(entry.confirmedChiSquaredPerValue);
         double rival = before;
         for (std::size_t j = 0; j < ranking.size(); ++j)
             if (j != k)
-                rival = std::min(
-                    rival, excess(ranking[j].confirmedChi > 0.0 ? ranking[j].confirmedChi : ranking[j].predictedChi));
+                rival = std::min(rival, excess(ranking[j].confirmedChiSquaredPerValue > 0.0
+                                                   ? ranking[j].confirmedChiSquaredPerValue
+                                                   : ranking[j].predictedChiSquaredPerValue));
         const double explained = std::clamp(1.0 - left / before, 0.0, 1.0);
         entry.confidence = std::min(1.0, 2.0 * explained) * rival / (rival + left);
     }
@@ -96,7 +101,8 @@ void judge(std::vector<RankedEffect>& ranking, double chi, const Excess& excess,
         return;
     // Two effects that each explain most of the same residual, and leave about as much, cannot be told apart.
     for (std::size_t k = 1; k < ranking.size() && ranking[k].significant; ++k) {
-        const double first = excess(ranking[0].confirmedChi), other = excess(ranking[k].confirmedChi);
+        const double first = excess(ranking[0].confirmedChiSquaredPerValue),
+                     other = excess(ranking[k].confirmedChiSquaredPerValue);
         if (other < 1.25 * first && other < 0.4 * before && ranking[k].vote.backs() == ranking[0].vote.backs())
             diagnosis.indistinguishable.push_back(ranking[k].effect);
     }
@@ -135,8 +141,8 @@ bool outdone(const std::vector<RankedEffect>& ranking, const Excess& excess)
 {
     constexpr double far = 4.0;
     return std::any_of(ranking.begin(), ranking.end(), [&](const RankedEffect& other) {
-        return !other.significant && other.confirmedChi > 0.0
-               && far * excess(other.confirmedChi) < excess(ranking.front().confirmedChi);
+        return !other.significant && other.confirmedChiSquaredPerValue > 0.0
+               && far * excess(other.confirmedChiSquaredPerValue) < excess(ranking.front().confirmedChiSquaredPerValue);
     });
 }
 
@@ -144,9 +150,10 @@ bool outdone(const std::vector<RankedEffect>& ranking, const Excess& excess)
 Verdict verdictOf(const std::vector<RankedEffect>& ranking, const Comparison& comparison, double smallestShare)
 {
     const Excess excess(comparison);
-    const double before = excess(comparison.chi);
+    const double before = excess(comparison.chiSquaredPerValue);
     if (!ranking.empty() && ranking.front().significant && !outdone(ranking, excess)
-        && (ranking.front().vote.standsAlone() || 1.0 - excess(ranking.front().confirmedChi) / before >= smallestShare))
+        && (ranking.front().vote.standsAlone()
+            || 1.0 - excess(ranking.front().confirmedChiSquaredPerValue) / before >= smallestShare))
         return Verdict::missingEffect;
     return isNoise(comparison) ? Verdict::complete : Verdict::unknownEffect;
 }
@@ -164,7 +171,7 @@ RankedEffect triedByResponse(const Effect& effect, const Model& model, const std
     RankedEffect entry;
     entry.effect = effect.id();
     entry.model = model;
-    entry.predictedChi = entry.confirmedChi = squaredError(model, targets);
+    entry.predictedChiSquaredPerValue = entry.confirmedChiSquaredPerValue = squaredError(model, targets);
     for (const auto& target : targets)
         entry.predictedErrorDb[target.quantity] = entry.confirmedErrorDb[target.quantity] = responseErrorDb(model,
                                                                                                             target);
@@ -221,7 +228,7 @@ RankedEffect promisedBy(const Score& score)
 {
     RankedEffect entry;
     entry.effect = score.effect->id();
-    entry.predictedChi = score.chi;
+    entry.predictedChiSquaredPerValue = score.chiSquaredPerValue;
     entry.predictedErrorDb = score.errorDb;
     entry.vote = score.vote;
     entry.model = score.model;
@@ -257,8 +264,9 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         auto errorAfter = candidate.errorDb;
         // The prediction is linear: a strong effect promises less than it brings, so a little promise is worth a trial.
         // It is not wrong by twenty times, though: the work is spared when another has already left so much less.
-        const bool promising = falls(scores.chi, candidate.chi, 0.5 * options.significantFall)
-                               && excess(candidate.chi) < 20.0 * bestLeft;
+        const bool promising = falls(scores.chiSquaredPerValue, candidate.chiSquaredPerValue,
+                                     0.5 * options.significantFall)
+                               && excess(candidate.chiSquaredPerValue) < 20.0 * bestLeft;
         if (promising && tried < options.trials) {
             const double share = 0.7 / options.trials, begun = 0.3 + share * tried++;
             progress.at(begun, "trying " + entry.effect);
@@ -267,22 +275,23 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
             if (summary.usable()) {
                 const auto after = compare(trial, record, {quick.substeps, false});
                 entry.model = trial;
-                entry.confirmedChi = after.chi;
+                entry.confirmedChiSquaredPerValue = after.chiSquaredPerValue;
                 for (const auto& channel : after.channels)
                     entry.confirmedErrorDb[channel.quantity] = channel.total.db;
                 const auto& added = trial.components.back();
-                entry.significant = falls(before.chi, after.chi, options.significantFall)
-                                    && added.effect->plausible(added.extent, added.parameters, trial.base().parameters);
+                entry.significant = falls(before.chiSquaredPerValue, after.chiSquaredPerValue, options.significantFall)
+                                    && added.effect->plausible(added.operatingRange, added.parameters,
+                                                               trial.base().parameters);
                 errorAfter = entry.confirmedErrorDb;
                 if (entry.significant)
-                    bestLeft = std::min(bestLeft, excess(after.chi));
+                    bestLeft = std::min(bestLeft, excess(after.chiSquaredPerValue));
             }
         }
         entry.reason = reasonFor(*candidate.effect, entry.model, before, errorAfter);
         diagnosis.ranking.push_back(std::move(entry));
     }
     putInOrder(diagnosis.ranking, excess);
-    judge(diagnosis.ranking, before.chi, excess, diagnosis);
+    judge(diagnosis.ranking, before.chiSquaredPerValue, excess, diagnosis);
     constexpr double smallestShare = 0.15;  // of what is not noise; less is a symptom of something else
     constexpr double mostLeft = 0.15;       // by all effects together
     diagnosis.verdict = verdictOf(diagnosis.ranking, before, smallestShare);
@@ -290,9 +299,10 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     // rest, may share a symptom with something unknown.
     if (diagnosis.verdict == Verdict::missingEffect && before.noiseKnown) {
         const auto& first = diagnosis.ranking.front();
-        if (!first.vote.standsAlone() && excess(first.confirmedChi) > mostLeft * excess(before.chi)) {
+        if (!first.vote.standsAlone()
+            && excess(first.confirmedChiSquaredPerValue) > mostLeft * excess(before.chiSquaredPerValue)) {
             const auto beyond = score(first.model, record, test, {});
-            if (leastLeft(scores.chiByChannel, beyond.togetherChi) > mostLeft)
+            if (leastLeft(scores.chiSquaredPerValueByChannel, beyond.togetherChiSquaredPerValue) > mostLeft)
                 diagnosis.verdict = Verdict::unknownEffect;
         }
     }
@@ -331,7 +341,8 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
         auto entry = triedByResponse(*candidates[n], lower ? trials[n] : model, targets, before);
         // Without noise to compare with, an effect must lower the error by a decibel to pay for its parameters, and be
         // sure of them.
-        entry.significant = entry.confirmedChi < 0.8 * now && isSeen(entry.model, entry.model.components.size() - 1);
+        entry.significant = entry.confirmedChiSquaredPerValue < 0.8 * now
+                            && isSeen(entry.model, entry.model.components.size() - 1);
         diagnosis.ranking.push_back(std::move(entry));
     }
     putInOrder(diagnosis.ranking, Excess(before));
@@ -349,7 +360,7 @@ void nameNext(Diagnosis& diagnosis, const Model& model, const Spectra& spectra, 
                                     [&](const RankedEffect& r) { return r.effect == next.added; });
     if (place == diagnosis.ranking.end())
         throw Error(Error::Kind::usage, "The diagnosis has not tried the effect \"" + next.added + "\".");
-    if (squaredError(next.model, targets) < place->confirmedChi)
+    if (squaredError(next.model, targets) < place->confirmedChiSquaredPerValue)
         *place = triedByResponse(effectNamed(next.added), next.model, targets, before);
     place->significant = true;
     place->vote = next.vote;

@@ -30,12 +30,12 @@ struct RankedEffect {
     double confidence = 0.0;                      ///< 0..1
     std::map<Quantity, double> predictedErrorDb;  ///< from the score test
     std::map<Quantity, double> confirmedErrorDb;  ///< after a refit, on validation data; empty when not tried
-    double predictedChi = 0.0;
-    double confirmedChi = 0.0;  ///< 0 when not tried
-    Vote vote;                  ///< of the catalogue as a whole; none of a frequency response
-    bool significant = false;   ///< it pays for its parameters
-    std::string reason;         ///< one sentence that a person can check on a plot
-    Model model;                ///< with the effect, as refitted; without components when not tried
+    double predictedChiSquaredPerValue = 0.0;
+    double confirmedChiSquaredPerValue = 0.0;  ///< 0 when not tried
+    Vote vote;                                 ///< of the catalogue as a whole; none of a frequency response
+    bool significant = false;                  ///< it pays for its parameters
+    std::string reason;                        ///< one sentence that a person can check on a plot
+    Model model;                               ///< with the effect, as refitted; without components when not tried
 };
 
 struct Diagnosis {
@@ -54,7 +54,7 @@ struct Diagnosis {
 struct DiagnoseOptions {
     FitOptions fit;
     int trials = 4;                 ///< candidates that are confirmed by a refit
-    double significantFall = 0.02;  ///< smallest relative fall of chi on validation data that counts
+    double significantFall = 0.02;  ///< smallest relative fall of chiSquaredPerValue on validation data that counts
     bool isValid(std::string* reason) const;
 };
 

@@ -22,8 +22,8 @@ Json rankedJson(const RankedEffect& ranked)
             {"confidence", numberOrNull(ranked.confidence)},
             {"predictedErrorDb", toJson(ranked.predictedErrorDb)},
             {"confirmedErrorDb", tried ? toJson(ranked.confirmedErrorDb) : Json(nullptr)},
-            {"predictedChi", numberOrNull(ranked.predictedChi)},
-            {"confirmedChi", tried ? numberOrNull(ranked.confirmedChi) : Json(nullptr)},
+            {"predictedChiSquaredPerValue", numberOrNull(ranked.predictedChiSquaredPerValue)},
+            {"confirmedChiSquaredPerValue", tried ? numberOrNull(ranked.confirmedChiSquaredPerValue) : Json(nullptr)},
             {"uniqueDb", numberOrNull(ranked.vote.uniqueDb)},
             {"inconsistency", numberOrNull(ranked.vote.inconsistency)},
             {"significant", ranked.significant},
@@ -36,10 +36,10 @@ RankedEffect rankedFrom(const JsonField& field)
     ranked.effect = field.at("effect").text();
     ranked.confidence = field.at("confidence").numberOrNaN();
     ranked.predictedErrorDb = decibelsFromJson(field.at("predictedErrorDb"));
-    ranked.predictedChi = field.at("predictedChi").numberOrNaN();
+    ranked.predictedChiSquaredPerValue = field.at("predictedChiSquaredPerValue", "predictedChi").numberOrNaN();
     if (field.has("confirmedErrorDb")) {
         ranked.confirmedErrorDb = decibelsFromJson(field.at("confirmedErrorDb"));
-        ranked.confirmedChi = field.at("confirmedChi").numberOrNaN();
+        ranked.confirmedChiSquaredPerValue = field.at("confirmedChiSquaredPerValue", "confirmedChi").numberOrNaN();
     }
     if (field.has("uniqueDb"))  // not told of a frequency response, nor by files from before
         ranked.vote.uniqueDb = field.at("uniqueDb").numberOrNaN();

@@ -15,11 +15,11 @@ double worth(const Comparison& before, const Comparison& after, const Comparison
 {
     double largest = 0.0, best = 0.0;
     for (const auto& channel : before.channels)
-        largest = std::max(largest, channel.total.chi - 1.0);
+        largest = std::max(largest, channel.total.chiSquaredPerValue - 1.0);
     for (std::size_t c = 0; c < before.channels.size(); ++c) {
-        const double removed = before.channels[c].total.chi - after.channels[c].total.chi;
-        if (before.channels[c].total.chi - 1.0 > 0.01 * largest)
-            best = std::max(best, removed / std::max(0.1, last.channels[c].total.chi - 1.0));
+        const double removed = before.channels[c].total.chiSquaredPerValue - after.channels[c].total.chiSquaredPerValue;
+        if (before.channels[c].total.chiSquaredPerValue - 1.0 > 0.01 * largest)
+            best = std::max(best, removed / std::max(0.1, last.channels[c].total.chiSquaredPerValue - 1.0));
     }
     return best;
 }

@@ -150,7 +150,7 @@ std::vector<Rung> Improvement::rungsTogether(const Record& record, const Progres
     if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown))
         return {};
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
-    if (!(rungs.back().comparison.chi < base.comparison.chi))
+    if (!(rungs.back().comparison.chiSquaredPerValue < base.comparison.chiSquaredPerValue))
         return {};
     return rungs;
 }
@@ -192,7 +192,7 @@ Rung Improvement::judged(Rung rung, const Progress& progress) const
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
     if (const auto* record = std::get_if<Record>(&data_);
         record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable()
-        && (rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.costPerResidual < nearNoise))) {
+        && (rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.chiSquaredPerValue < nearNoise))) {
         auto better = rung.model;
         if (const auto run = fitBySimulation(better, *record, options_.diagnose.fit, true, progress.part(0.5, 0.7));
             run.usable()) {

@@ -52,7 +52,7 @@ Json fitJson(const FitSummary& fit)
 {
     return {{"usable", fit.usable()},       {"converged", fit.converged()},
             {"iterations", fit.iterations}, {"reason", fit.message},
-            {"substeps", fit.substeps},     {"costPerResidual", numberOrNull(fit.costPerResidual)}};
+            {"substeps", fit.substeps},     {"chiSquaredPerValue", numberOrNull(fit.chiSquaredPerValue)}};
 }
 
 FitSummary fitFrom(const JsonField& field)
@@ -66,7 +66,7 @@ FitSummary fitFrom(const JsonField& field)
     fit.iterations = field.at("iterations").count(0, most);
     fit.message = field.at("reason").text();
     fit.substeps = field.at("substeps").count(0, most);
-    fit.costPerResidual = field.at("costPerResidual").numberOrNaN();
+    fit.chiSquaredPerValue = field.at("chiSquaredPerValue", "costPerResidual").numberOrNaN();
     return fit;
 }
 

@@ -15,8 +15,9 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     Model higher = model;
     std::vector<std::size_t> candidates;
     for (std::size_t k = 1; k < model.components.size(); ++k)
-        if (model.components[k].effect->law() && model.components[k].extent.degree + by <= curve::maximumDegree) {
-            higher = withDegree(std::move(higher), k, model.components[k].extent.degree + by);
+        if (model.components[k].effect->law()
+            && model.components[k].operatingRange.degree + by <= curve::maximumDegree) {
+            higher = withDegree(std::move(higher), k, model.components[k].operatingRange.degree + by);
             candidates.push_back(k);
         }
     if (candidates.empty())
@@ -54,7 +55,7 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
         std::sort(use.begin(), use.end());
         const double then = predictedCost(sums.estimation, gaussNewtonStep(sums.estimation, use));
         if (now - then > std::max(least, price * static_cast<double>(added[k].size()))) {
-            result = withDegree(std::move(result), k, model.components[k].extent.degree + by);
+            result = withDegree(std::move(result), k, model.components[k].operatingRange.degree + by);
             raised.push_back(model.components[k].effect->id());
         }
     }

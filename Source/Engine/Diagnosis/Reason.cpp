@@ -109,7 +109,7 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
     const auto* component = model.find(effect.id());
     if (!component)
         return "";
-    auto figures = effect.summary(component->extent, valuesOf(*component).data());
+    auto figures = effect.summary(component->operatingRange, valuesOf(*component).data());
     if (figures.empty())
         for (const auto& p : component->parameters)
             figures.push_back({p.name, p.unit, p.value});

@@ -42,7 +42,7 @@ ChannelRemainder partOf(const ChannelComparison& channel, const Comparison& comp
     part.noiseFloorDb = channel.total.noiseFloorDb;
     part.wanderDb = channel.wanderDb;
     if (comparison.noiseKnown)
-        part.aboveNoiseDb = 10.0 * std::log10(std::max(channel.total.chi, 1e-30));
+        part.aboveNoiseDb = 10.0 * std::log10(std::max(channel.total.chiSquaredPerValue, 1e-30));
     if (part.noiseFloorDb)
         part.repeats = std::max(0.0, 1.0 - std::pow(10.0, (*part.noiseFloorDb - part.db) / 10.0));
     if (!channel.spectrumByLevel.empty() && !channel.spectrumByLevel.back().frequency.empty()) {

@@ -2,7 +2,7 @@
 #include "Engine/Diagnosis/ResidualCurves.h"
 
 #include "Engine/Loudspeaker/Fit.h"
-#include "Engine/Loudspeaker/Simulate.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Loudspeaker/StartState.h"
 #include "Engine/Signal/Fft.h"

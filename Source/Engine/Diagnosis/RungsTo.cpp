@@ -48,7 +48,7 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
             ++others;
         }
         if (entry.effect == next.added) {
-            entry.confirmedChi = next.comparison.chi;
+            entry.confirmedChiSquaredPerValue = next.comparison.chiSquaredPerValue;
             for (const auto& channel : next.comparison.channels)
                 entry.confirmedErrorDb[channel.quantity] = channel.total.db;
             errorAfter = entry.confirmedErrorDb;
@@ -62,7 +62,8 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
                          const auto place = [&](const RankedEffect& r) {
                              return r.effect == next.added ? 0 : r.significant ? 1 : 2;
                          };
-                         return place(a) != place(b) ? place(a) < place(b) : a.predictedChi < b.predictedChi;
+                         return place(a) != place(b) ? place(a) < place(b)
+                                                     : a.predictedChiSquaredPerValue < b.predictedChiSquaredPerValue;
                      });
     diagnosis.sentence = effectNamed(next.added).title() + " is missing"
                          + (others > 1 ? ", and " + std::to_string(others) + " other effects explain what it does not."
@@ -102,9 +103,9 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
                 trial.fit = fitFed(trial.model, record, estimationSections(record), brief, part.part(0.4, 0.9));
             }
             trial.comparison = compare(trial.model, record);
-            if (next.added.empty() || trial.comparison.chi < next.comparison.chi)
+            if (next.added.empty() || trial.comparison.chiSquaredPerValue < next.comparison.chiSquaredPerValue)
                 next = std::move(trial);
-            if (next.comparison.chi < rung.comparison.chi)
+            if (next.comparison.chiSquaredPerValue < rung.comparison.chiSquaredPerValue)
                 break;  // else another one may go first
         }
         rung.diagnosis = diagnosisOf(rung, next, scores, whole);

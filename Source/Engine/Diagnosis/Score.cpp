@@ -56,7 +56,7 @@ const Component& componentOf(const Model& model, const Effect& effect)
 Model shapedAs(const Component& found, Model model)
 {
     auto& newest = model.components.back();
-    newest.extent = found.extent;
+    newest.operatingRange = found.operatingRange;
     for (std::size_t k = 0; k < newest.parameters.size(); ++k) {
         newest.parameters[k].free = found.parameters[k].free;
         if (!newest.parameters[k].strength)
@@ -70,7 +70,7 @@ Model shapedAs(const Component& found, Model model)
 ScoreResult score(const Model& model, const Record& record, const ScoreOptions& options, const Progress& progress)
 {
     Model augmented = model;
-    const Extent extent = visitedExtent(model, record, options.degree);
+    const OperatingRange operatingRange = visitedRange(model, record, options.degree);
     struct Entry {
         Model model;  ///< with the effect at zero strength
         Model byResponse;
@@ -90,12 +90,12 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         const auto* known = options.shapes && options.shapes->has(effect->id()) ? &componentOf(*options.shapes, *effect)
                                                                                 : nullptr;
         if (effect->linear() && known)
-            consider(shapedAs(*known, withEffect(model, *effect, extent)), {});
+            consider(shapedAs(*known, withEffect(model, *effect, operatingRange)), {});
         else if (effect->linear() && !options.shapes)
-            searched.push_back(withEffect(model, *effect, extent));
+            searched.push_back(withEffect(model, *effect, operatingRange));
         else if (!effect->linear())
-            for (std::size_t start = 0; start < effect->starts(extent).size(); ++start)
-                consider(withEffect(model, *effect, extent, start), {});
+            for (std::size_t start = 0; start < effect->starts(operatingRange).size(); ++start)
+                consider(withEffect(model, *effect, operatingRange, start), {});
     }
     std::vector<Model> found(searched.size());
     const auto still = searched.empty() ? Record {} : withoutLaws(model, record, options.threads);
@@ -137,7 +137,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         throw Error(Error::Kind::numerical,
                     "The model runs away on this take, so nothing can be said about what it lacks; fit it again.");
     const double rows = std::max(1.0, sums.validation.rows);
-    result.chi = sums.validation.cost / rows;
+    result.chiSquaredPerValue = sums.validation.cost / rows;
 
     std::vector<Eigen::Index> together = own;
     for (const auto& entry : entries) {
@@ -146,7 +146,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         const auto d = feasibleStep(sums.estimation, augmented, entry.component, own, positions);
         Score score;
         score.effect = entry.model.components.back().effect;
-        score.chi = predictedCost(sums.validation, d) / rows;
+        score.chiSquaredPerValue = predictedCost(sums.validation, d) / rows;
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
             const auto& channel = sums.byChannel[c];
             const double ratio = channel.cost > 0.0 ? predictedCost(channel, d) / channel.cost : 1.0;
@@ -155,14 +155,14 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
         // A base that has settled on a part of what the effect does leaves no small step to it.
         if (!entry.byResponse.components.empty())
             if (const auto there = sumsOf(entry.byResponse, record, {}, {}, options, {});
-                there.finite && there.validation.cost < score.chi * rows) {
-                score.chi = there.validation.cost / rows;
+                there.finite && there.validation.cost < score.chiSquaredPerValue * rows) {
+                score.chiSquaredPerValue = there.validation.cost / rows;
                 for (std::size_t c = 0; c < record.channels.size(); ++c)
                     score.errorDb[record.channels[c]] = decibels(there.power[c].error, there.power[c].measured);
             }
         const auto known = std::find_if(result.scores.begin(), result.scores.end(),
                                         [&](const Score& s) { return s.effect == score.effect; });
-        if (known != result.scores.end() && known->chi <= score.chi)
+        if (known != result.scores.end() && known->chiSquaredPerValue <= score.chiSquaredPerValue)
             continue;
         // The model at the end of the step; the trial shortens the step should it be too long.
         score.model = entry.model;
@@ -193,11 +193,11 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     }
     for (const auto& channel : sums.byChannel) {
         const double channelRows = std::max(1.0, channel.rows);
-        result.chiByChannel.push_back(channel.cost / channelRows);
-        result.togetherChi.push_back(predictedCost(channel, all) / channelRows);
+        result.chiSquaredPerValueByChannel.push_back(channel.cost / channelRows);
+        result.togetherChiSquaredPerValue.push_back(predictedCost(channel, all) / channelRows);
     }
     std::stable_sort(result.scores.begin(), result.scores.end(),
-                     [](const Score& a, const Score& b) { return a.chi < b.chi; });
+                     [](const Score& a, const Score& b) { return a.chiSquaredPerValue < b.chiSquaredPerValue; });
     return result;
 }
 

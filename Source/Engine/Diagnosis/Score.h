@@ -18,16 +18,16 @@ struct Score {
     Model model;
     /// of a linear effect: as a search on the frequency responses found it; without components when none was made
     Model byResponse;
-    double chi = 0.0;                    ///< predicted, all channels
+    double chiSquaredPerValue = 0.0;     ///< predicted, all channels
     Vote vote;                           ///< of all candidates at once; none without periods
     std::map<Quantity, double> errorDb;  ///< predicted, by channel
 };
 
 struct ScoreResult {
-    double chi = 0.0;  ///< of the model as it is, on the validation sections
+    double chiSquaredPerValue = 0.0;  ///< of the model as it is, on the validation sections
     /// by channel of the record: as it is, and predicted with all candidates at once
-    std::vector<double> chiByChannel, togetherChi;
-    std::vector<Score> scores;  ///< one an effect, best start each, lowest chi first
+    std::vector<double> chiSquaredPerValueByChannel, togetherChiSquaredPerValue;
+    std::vector<Score> scores;  ///< one an effect, best start each, lowest chiSquaredPerValue first
 };
 
 /// Score (Lagrange multiplier) test of every applicable effect of the catalogue that the model lacks: all are put in at

@@ -147,7 +147,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto sections = estimationSections(record);
     constexpr double clean = 1.2;
     const auto near = [&](const FitSummary& s) {
-        return s.usable() && !(record.noiseKnown && s.costPerResidual > nearNoise);
+        return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
     };
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
         auto chosen = options;
@@ -164,7 +164,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     summary = stage(30, 5e-7, true, 0.3, 0.5);
     // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
     // noise the cost falls by next to nothing for long.
-    if (near(summary) && summary.onlyNoise && summary.costPerResidual < clean)
+    if (near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean)
         return stage(1, 5e-5, false, 0.5, 1.0);
     if (!record.noiseKnown)
         return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
@@ -185,7 +185,7 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     bool found = false;
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& component = model.components[k];
-        if (!component.effect->linear() || component.effect->parts(component.extent).empty())
+        if (!component.effect->linear() || component.effect->parts(component.operatingRange).empty())
             continue;
         auto anew = model;
         if (!fitByResponse(anew, k, still).usable() || !quickFit(anew, record, sections, glance).usable()
@@ -243,13 +243,13 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         summary = next;
     }
     if (hasPeriods(record)) {
-        if (record.noiseKnown && (summary.costPerResidual > atNoise || !summary.onlyNoise))
+        if (record.noiseKnown && (summary.chiSquaredPerValue > atNoise || !summary.onlyNoise))
             findPartsAnew(model, record, sections, quick);
         quick.search = {15, 1e-4};
         if (!quick.fedGradient)
             summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));
         // While more is missing a simulation tells little more than laws that are fed.
-        if (record.noiseKnown && summary.costPerResidual > nearNoise && !quick.fedGradient)
+        if (record.noiseKnown && summary.chiSquaredPerValue > nearNoise && !quick.fedGradient)
             return summary;
     }
     return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));

@@ -37,7 +37,7 @@ std::set<std::string> implausible(const Model& model)
     std::set<std::string> found;
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& one = model.components[k];
-        if (!one.effect->plausible(one.extent, one.parameters, model.base().parameters))
+        if (!one.effect->plausible(one.operatingRange, one.parameters, model.base().parameters))
             found.insert(one.effect->id());
     }
     return found;
@@ -64,14 +64,14 @@ public:
 
     /// What a model leaves of a channel.
     struct Channel {
-        double chi = 0.0;    ///< mean squared residual in units of the noise
+        double chiSquaredPerValue = 0.0;  ///< mean squared residual in units of the noise
         double power = 0.0;  ///< of the error over that of the noise; infinite where the noise is not known
 
         bool isNoise() const { return power <= ErrorPower::most; }
     };
     /// What a model leaves; no channels where a law's memory runs away.
     struct Left {
-        double chi = std::numeric_limits<double>::infinity();  ///< of all channels
+        double chiSquaredPerValue = std::numeric_limits<double>::infinity();  ///< of all channels
         double cost = std::numeric_limits<double>::infinity();
         std::vector<Channel> channels;
 
@@ -80,7 +80,7 @@ public:
             return !channels.empty()
                    && std::all_of(channels.begin(), channels.end(), [](const Channel& c) { return c.isNoise(); });
         }
-        bool isNoise() const { return areNoise() && chi < atNoise; }
+        bool isNoise() const { return areNoise() && chiSquaredPerValue < atNoise; }
     };
     Left left(const Model& model) const
     {
@@ -95,7 +95,7 @@ public:
         if (!sum)
             return left;
         left.cost = sum->cost;
-        left.chi = sum->cost / std::max(1.0, sum->rows);
+        left.chiSquaredPerValue = sum->cost / std::max(1.0, sum->rows);
         for (std::size_t c = 0; c < record_.channels.size(); ++c) {
             double cost = 0.0, rows = 0.0;
             ErrorPower power;
@@ -122,8 +122,8 @@ public:
         for (std::size_t c = 0; c < less.channels.size(); ++c) {
             const double sure = record_.noiseKnown && !less.channels[c].isNoise() ? sureNoise : 0.0;
             const double least = record_.noiseKnown ? 0.5 * (1.0 - sure) : 0.0;
-            most = std::max(most, decibels(std::max(more.channels[c].chi - sure, least)
-                                           / std::max({less.channels[c].chi - sure, least, 1e-300})));
+            most = std::max(most, decibels(std::max(more.channels[c].chiSquaredPerValue - sure, least)
+                                           / std::max({less.channels[c].chiSquaredPerValue - sure, least, 1e-300})));
             if (record_.noiseKnown)
                 most = std::max(
                     most, decibels(std::max(more.channels[c].power, 1.0) / std::max(less.channels[c].power, 1.0)));
@@ -161,7 +161,7 @@ public:
                     then = left(leaner);
             }
             one.vote = votedBy(effect, vote, then, now);
-            one.times = then.chi / now.chi;
+            one.times = then.chiSquaredPerValue / now.chiSquaredPerValue;
             one.staysNoise = then.areNoise();
             one.leaner = std::move(leaner);
         }
@@ -204,7 +204,7 @@ public:
                 const auto then = left(leaner), now = left(model);
                 if (keeps(Tried {votedBy(effect, tried.vote, then, now),
                                  {},
-                                 then.chi / now.chi,
+                                 then.chiSquaredPerValue / now.chiSquaredPerValue,
                                  then.areNoise(),
                                  !implausible(model).contains(effect)}))
                     continue;
@@ -244,7 +244,8 @@ public:
             auto anew = model;
             if (!fitByResponse(anew, k, still).usable() || !fit(anew, brief).usable())
                 continue;
-            if (auto then = left(anew); lost(best, then) > hardlyNeeded && then.chi < best.chi) {
+            if (auto then = left(anew);
+                lost(best, then) > hardlyNeeded && then.chiSquaredPerValue < best.chiSquaredPerValue) {
                 model = std::move(anew);
                 best = std::move(then);
                 helped = true;
@@ -291,14 +292,14 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
 {
     Model fuller = model;
     const auto still = withoutLaws(model, record, search.test().threads);
-    double now = search.left(model).chi;
+    double now = search.left(model).chiSquaredPerValue;
     for (const auto& s : scores) {  // lowest first
         if (!s.vote.backs() || without.contains(s.effect->id()))
             continue;
         auto next = fuller;
         next.components.push_back(s.model.components.back());
         if (s.effect->linear() && fitNewestByResponse(next, still).usable())
-            if (const double then = search.left(next).chi; then < now) {
+            if (const double then = search.left(next).chiSquaredPerValue; then < now) {
                 fuller = std::move(next);
                 now = then;
                 continue;
@@ -377,7 +378,8 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     if (const auto loud = fittedToLoudest(base, record, options); loud && !search.left(whole.model).isNoise()) {
         auto other = grown(*loud, record, search, progress.part(0.4, 0.7));
         search.chooseResiduals(whole.model);
-        if (other.fit.usable() && search.left(other.model).chi < search.left(whole.model).chi)
+        if (other.fit.usable()
+            && search.left(other.model).chiSquaredPerValue < search.left(whole.model).chiSquaredPerValue)
             whole = std::move(other);
     }
     if (!whole.fit.usable())
@@ -385,11 +387,11 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
     search.chooseResiduals(whole.model);
     const auto keeps = [&](const Tried& one) {
-        const bool unknownLeft = !record.noiseKnown || whole.fit.costPerResidual > nearNoise;
+        const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)
             return false;
         return unknownLeft ? one.vote.standsAlone()
-                           : one.vote.backs() || whole.fit.costPerResidual * one.times > atNoise || !one.staysNoise;
+                           : one.vote.backs() || whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
     };
     constexpr int rounds = 3;  // what has gone may have held up another one
     auto tried = search.takeOut(whole.model, true, keeps);

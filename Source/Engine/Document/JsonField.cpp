@@ -11,8 +11,6 @@
 namespace excursion {
 namespace {
 
-using Json = nlohmann::json;
-
 std::string expectedWithin(double least, double most)
 {
     if (least > std::numeric_limits<double>::lowest() && most < std::numeric_limits<double>::max())
@@ -24,14 +22,14 @@ std::string expectedWithin(double least, double most)
 
 }  // namespace
 
-JsonField::JsonField(const Json& value, std::string path, std::string source)
+JsonField::JsonField(const nlohmann::json& value, std::string path, std::string source)
     : value_(value), path_(std::move(path)), source_(std::move(source))
 {
 }
 
 void JsonField::refuse(const std::string& expected) const
 {
-    auto found = value_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    auto found = value_.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     if (found.size() > 60)
         found = "a long " + std::string(value_.type_name());
     const auto what = path_.empty() ? std::string("the document") : "field '" + path_ + "'";
@@ -157,12 +155,12 @@ void JsonField::requireFormat(std::string_view format, int version) const
         number.refuse(std::to_string(version) + ", the only version that this program reads");
 }
 
-Json readJson(const std::filesystem::path& path)
+nlohmann::json readJson(const std::filesystem::path& path)
 {
     const auto text = readText(path);
     try {
-        return Json::parse(text);
-    } catch (const Json::exception& e) {  // its text names line and column
+        return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::exception& e) {  // its text names line and column
         throw Error(Error::Kind::input, "'" + path.string() + "' is not a JSON document: " + e.what() + ".");
     }
 }

@@ -22,8 +22,10 @@ public:
     [[noreturn]] void refuse(const std::string& expected) const;
 
     bool isNull() const { return value_.is_null(); }
-    bool has(const char* key) const;        ///< there and not null
-    JsonField at(const char* key) const;    ///< throws Error (input) when missing
+    bool has(const char* key) const;      ///< there and not null
+    JsonField at(const char* key) const;  ///< throws Error (input) when missing
+    /// The same of a field that had another name in the version before.
+    JsonField at(const char* key, const char* before) const { return at(!has(key) && has(before) ? before : key); }
     std::vector<JsonField> items() const;   ///< of an array, which may be empty
     std::vector<std::string> keys() const;  ///< of an object
     const std::string& path() const { return path_; }
@@ -50,5 +52,13 @@ private:
 
 /// Parses a file that must hold one JSON object; throws Error (input).
 nlohmann::json readJson(const std::filesystem::path&);
+
+/// What `from` makes of the document in a file: readDocument(path, pnlssFromJson). Throws Error (input).
+template <class From>
+auto readDocument(const std::filesystem::path& path, From from)
+{
+    const auto document = readJson(path);
+    return from(JsonField(document, "", path.string()));
+}
 
 }  // namespace excursion

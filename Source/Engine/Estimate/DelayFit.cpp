@@ -99,8 +99,8 @@ DelayFit fitDelay(const DelayFitProblem& problem, double longest)
     bestCost = unexplained.cost(fit.seconds);
     const auto degrees = std::max<Eigen::Index>(1, 2 * problem.omega.size() - unexplained.rank() - 1);
     fit.standardError = std::sqrt(bestCost / static_cast<double>(degrees) / unexplained.sensitivity(fit.seconds));
-    fit.misfit = std::sqrt(bestCost / unexplained.total());
-    fit.misfitWithout = std::sqrt(costWithout / unexplained.total());
+    fit.relativeError = std::sqrt(bestCost / unexplained.total());
+    fit.relativeErrorWithout = std::sqrt(costWithout / unexplained.total());
     return fit;
 }
 

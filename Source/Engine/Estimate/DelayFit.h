@@ -23,10 +23,10 @@ struct DelayFitProblem {
 };
 
 struct DelayFit {
-    double seconds = 0.0;        ///< tau
-    double standardError = 0.0;  ///< of tau, from the residuals
-    double misfit = 1.0;         ///< rms of |e|/|Q| weighted, with the delay
-    double misfitWithout = 1.0;  ///< the same with tau = 0
+    double seconds = 0.0;               ///< tau
+    double standardError = 0.0;         ///< of tau, from the residuals
+    double relativeError = 1.0;         ///< rms of |e|/|Q| weighted, with the delay
+    double relativeErrorWithout = 1.0;  ///< the same with tau = 0
 };
 
 /// The best delay in [-longest, longest] seconds. The lines must outnumber the columns.

@@ -90,19 +90,19 @@ double decibels(double ratio) { return 20.0 * std::log10(ratio); }
 
 struct Thresholds {
     double radians;  ///< phase that the delay turns at the top of the band
-    double fall;     ///< dB that the misfit falls
+    double fall;     ///< dB that the relative error falls
 };
 
 /// The verdict over several models of the same lines: all that fit well must agree.
 PhysicalDelay judge(const std::vector<DelayFit>& fits, double highestOmega, const Thresholds& thresholds)
 {
     const auto best = *std::min_element(fits.begin(), fits.end(),
-                                        [](const auto& a, const auto& b) { return a.misfit < b.misfit; });
+                                        [](const auto& a, const auto& b) { return a.relativeError < b.relativeError; });
     double without = 1.0;
     bool agree = true;
     for (const auto& fit : fits) {
-        without = std::min(without, fit.misfitWithout);
-        if (fit.misfit < 2.0 * best.misfit)
+        without = std::min(without, fit.relativeErrorWithout);
+        if (fit.relativeError < 2.0 * best.relativeError)
             agree = agree
                     && std::abs(fit.seconds - best.seconds) < 0.15 * std::abs(best.seconds) + 5.0 * fit.standardError;
     }
@@ -114,10 +114,10 @@ PhysicalDelay judge(const std::vector<DelayFit>& fits, double highestOmega, cons
     constexpr double roundFrom = 2.0, roundFall = 10.0;  // rad, dB
     const double turned = std::abs(best.seconds) * highestOmega,
                  fall = std::max(thresholds.fall, turned > roundFrom ? roundFall : 0.0);
-    verdict.conclusive = best.misfit < 0.3;
+    verdict.conclusive = best.relativeError < 0.3;
     verdict.clear = verdict.conclusive && agree && turned > thresholds.radians
                     && std::abs(best.seconds) > 5.0 * best.standardError
-                    && decibels(without / std::max(best.misfit, 1e-300)) > fall;
+                    && decibels(without / std::max(best.relativeError, 1e-300)) > fall;
     return verdict;
 }
 
@@ -202,12 +202,12 @@ PhysicalDelay currentDelay(const Frf& admittance)
         basis.insert(basis.end(), inductive);
         return fitLines(lines, basis);
     };
-    const auto better = [](const DelayFit& a, const DelayFit& b) { return a.misfit < b.misfit; };
+    const auto better = [](const DelayFit& a, const DelayFit& b) { return a.relativeError < b.relativeError; };
     // A family is represented by its best member with the delay, and without it by its best one too.
     const auto keepBest = [&](std::vector<DelayFit> members) {
         auto best = *std::min_element(members.begin(), members.end(), better);
         for (const auto& member : members)
-            best.misfitWithout = std::min(best.misfitWithout, member.misfitWithout);
+            best.relativeErrorWithout = std::min(best.relativeErrorWithout, member.relativeErrorWithout);
         fits.push_back(best);
     };
 
@@ -287,7 +287,7 @@ bool pressureIsInverted(const Frf& pressure, Quantity motion)
     PhysicalDelay flight;
     flight.seconds = fit.seconds;
     flight.clear = true;
-    return fit.misfit < 0.3 && mostlyNegative(lines, flight, [](Complex, Complex Q) { return Q.real(); });
+    return fit.relativeError < 0.3 && mostlyNegative(lines, flight, [](Complex, Complex Q) { return Q.real(); });
 }
 
 }  // namespace excursion

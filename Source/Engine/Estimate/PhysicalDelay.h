@@ -22,9 +22,9 @@ struct PhysicalDelay {
 /// single law, so the inductive part is L s, K s^a, L s + K s^a and L s + R2 s/(s + p) in turn
 /// (0.4 <= a <= 0.95; p within the band). A dispersive inductance resembles a delay over a narrow band; the
 /// delay is clear only when all models that fit well agree on it, it turns the phase by 0.3 rad within the band,
-/// exceeds 5 standard errors, and lets the misfit of the best model fall by 3 dB, by 10 dB when it turns the phase by
+/// exceeds 5 standard errors, and lets the error of the best model fall by 3 dB, by 10 dB when it turns the phase by
 /// more than 2 rad, as a delay of that size leaves nothing in place. When less than 1.6 octaves lie above 2.5 times the
-/// resonance, the fit begins at 1.7 times with a c4/s^4, and the misfit must fall by 6 dB.
+/// resonance, the fit begins at 1.7 times with a c4/s^4, and the error must fall by 6 dB.
 /// Inverted: Re Z < 0 on most lines of the whole band, which no passive impedance can (Brune 1931).
 /// @param admittance  current/voltage with its variance
 PhysicalDelay currentDelay(const Frf& admittance);
@@ -40,7 +40,7 @@ enum class MotionReference {
 /// and for a voltage drive also with s^3 and s^2.6 (the inductance). Breakup starts where |drive/X| / w^2 leaves its
 /// plateau: a delay does not touch magnitudes. When the band ends too near the resonance, the whole band is used with
 /// a s^2 + b s + c + d log(s), d being creep and hysteresis. The delay is clear when it turns the phase by 0.2 rad
-/// (voltage drive: 1 rad), exceeds 5 standard errors, lets the misfit fall by 4.5 dB (6 dB; both 10 dB beyond 2 rad),
+/// (voltage drive: 1 rad), exceeds 5 standard errors, lets the error fall by 4.5 dB (6 dB; both 10 dB beyond 2 rad),
 /// and the lower half of the band says the same, as it does not when a mode of the cone turns the phase. Inverted: a <
 /// 0.
 /// @param motion  motion/drive with its variance

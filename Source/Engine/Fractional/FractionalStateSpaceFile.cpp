@@ -37,15 +37,4 @@ NamedFractionalStateSpace fractionalStateSpaceFromJson(const JsonField& field)
     return named;
 }
 
-NamedFractionalStateSpace readFractionalStateSpace(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return fractionalStateSpaceFromJson(JsonField(document, "", path.string()));
-}
-
-void writeFractionalStateSpace(const NamedFractionalStateSpace& named, const std::filesystem::path& path)
-{
-    writeJson(toJson(named), path);
-}
-
 }  // namespace excursion

@@ -21,7 +21,4 @@ nlohmann::ordered_json toJson(const NamedFractionalStateSpace&);
 /// not fit.
 NamedFractionalStateSpace fractionalStateSpaceFromJson(const JsonField&);
 
-NamedFractionalStateSpace readFractionalStateSpace(const std::filesystem::path&);
-void writeFractionalStateSpace(const NamedFractionalStateSpace&, const std::filesystem::path&);
-
 }  // namespace excursion

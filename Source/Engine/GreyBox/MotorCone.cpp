@@ -124,16 +124,16 @@ void divide(const FrequencyData& displacement, const FrequencyData& pressure, co
     const Resolvent resolvent(motor);
     const auto points = evaluationPoints(cone.frequency, 0.0);
     Eigen::VectorXcd modelled(points.size());
-    double misfit = 0.0;
+    double relativeError = 0.0;
     for (Index k = 0; k < cone.lines(); ++k) {
         modelled[k] = resolvent.response(points[k])(0, 0);
         if (known && std::abs(modelled[k]) < least * displacement.deviation(k, 0))
             result.told[static_cast<std::size_t>(k)] = false;
         else
-            misfit += std::norm(modelled[k] / displacement.value(k, 0) - 1.0);
+            relativeError += std::norm(modelled[k] / displacement.value(k, 0) - 1.0);
     }
-    misfit = std::sqrt(misfit
-                       / std::max(1.0, static_cast<double>(std::count(result.told.begin(), result.told.end(), true))));
+    relativeError = std::sqrt(
+        relativeError / std::max(1.0, static_cast<double>(std::count(result.told.begin(), result.told.end(), true))));
     for (Index k = 0; k < cone.lines(); ++k) {
         const Complex s = points[k];
         const bool told = result.told[static_cast<std::size_t>(k)];
@@ -148,7 +148,7 @@ void divide(const FrequencyData& displacement, const FrequencyData& pressure, co
         const double ofPressure = pressure.deviation(k, 0) / std::abs(s * s * moved);
         double relative = 0.0;  // r_x
         if (result.from == ConeFrom::quotient)
-            relative = !measured ? misfit : known ? displacement.deviation(k, 0) / std::abs(moved) : 0.0;
+            relative = !measured ? relativeError : known ? displacement.deviation(k, 0) / std::abs(moved) : 0.0;
         cone.deviation(k, 0) = std::hypot(ofPressure, relative * std::abs(cone.value(k, 0)));
     }
 }

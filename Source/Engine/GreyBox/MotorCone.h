@@ -39,7 +39,7 @@ enum class ConeFrom {
 /// stands less than `leastSignalDb` above that noise the split cannot be told: the quotient would be biased, by
 /// exp(-|X|^2/deviation^2) of itself. There the pressure over the motor's model takes its place in any case, so the
 /// cascade follows the pressure; what is the motor's and what the cone's rests on the model alone. Beside the quotient
-/// such a line counts with the relative misfit of the motor, rms over the lines that are told, as its r_x.
+/// such a line counts with the relative error of the motor, rms over the lines that are told, as its r_x.
 struct MotorConeOptions {
     int motorOrder = 3, coneOrder = 10;
     int relativeDegree = 3;  ///< of voltage to displacement: 3 with an inductance that counts, else 2

@@ -59,31 +59,31 @@ ColumnTitle columnTitle(std::string_view title)
     ColumnTitle read;
     auto text = trimmed(title);
     read.name = std::string(text);
-    const auto take = [&](std::string_view name, std::string_view unit) {
+    const auto consider = [&](std::string_view name, std::string_view unit) {
         read.name = std::string(trimmed(name));
         read.unit = std::string(trimmed(unit));
     };
     if (standsAlone(text)) {
-        take({}, text);
+        consider({}, text);
     } else if (!text.empty() && (text.back() == ']' || text.back() == ')')) {
         // A bracket at the end that holds no unit, as in Re(Z), belongs to the name.
         const auto open = text.rfind(text.back() == ']' ? '[' : '(');
         if (open != std::string_view::npos) {
             const auto inner = trimmed(text.substr(open + 1, text.size() - open - 2));
             if (text.back() == ']' || isUnit(inner))
-                take(text.substr(0, open), inner);
+                consider(text.substr(0, open), inner);
         }
     } else {
         // "f/Hz", "x / mm": the first stroke behind which a unit stands; but "X/U" is a ratio of quantities.
         const auto stroke = text.find('/');
         if (stroke != std::string_view::npos && stroke > 0 && isUnit(trimmed(text.substr(stroke + 1)))
             && !responseNamed(lowerCase(text))) {
-            take(text.substr(0, stroke), text.substr(stroke + 1));
+            consider(text.substr(0, stroke), text.substr(stroke + 1));
         } else {
             for (const char separator : {'_', ' ', ','}) {
                 const auto at = text.rfind(separator);
                 if (at != std::string_view::npos && at > 0 && isUnit(trimmed(text.substr(at + 1)))) {
-                    take(text.substr(0, at), text.substr(at + 1));
+                    consider(text.substr(0, at), text.substr(at + 1));
                     break;
                 }
             }

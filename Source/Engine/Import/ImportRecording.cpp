@@ -303,7 +303,7 @@ private:
         }
     }
 
-    Response responseOf(const AssignedChannel& a, const ImportedFile& done) const
+    ResponseFunction responseOf(const AssignedChannel& a, const ImportedFile& done) const
     {
         std::vector<ResponseCurve> curves;
         if (done.loopback && done.loopback->curve)

@@ -53,7 +53,7 @@ std::vector<double> finer(const std::vector<double>& x, std::size_t factor)
 }  // namespace
 
 std::vector<double> onPlanClock(std::span<const double> x, const PlanClock& clock, double recordedRate, double planRate,
-                                std::size_t length, const Response& response)
+                                std::size_t length, const ResponseFunction& response)
 {
     if (clock.step == 1.0 && clock.start == std::floor(clock.start) && !response)
         return stretch(x, static_cast<std::ptrdiff_t>(clock.start), length, 0);

@@ -18,7 +18,7 @@ struct PlanClock {
 };
 
 /// What a channel was recorded through, as a function of the frequency in Hz; its inverse is applied.
-using Response = std::function<std::complex<double>(double)>;
+using ResponseFunction = std::function<std::complex<double>(double)>;
 
 /// A recording read on a plan's clock: y(n) = x(start + n step), n = 0 .. length - 1, the band-limited signal between
 /// the samples of x, which is silent outside. With a response, what came before it: y's spectrum over H(f).
@@ -30,6 +30,6 @@ using Response = std::function<std::complex<double>(double)>;
 /// signal is a guess.
 /// @param recordedRate, planRate  Hz, nominal: recordedRate/planRate within 1 % of step
 std::vector<double> onPlanClock(std::span<const double> x, const PlanClock&, double recordedRate, double planRate,
-                                std::size_t length, const Response& = {});
+                                std::size_t length, const ResponseFunction& = {});
 
 }  // namespace excursion

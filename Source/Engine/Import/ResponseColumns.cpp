@@ -172,7 +172,7 @@ std::vector<Complex> complexOf(Parts& parts, const std::vector<double>& frequenc
     return values;
 }
 
-struct Response {
+struct ReadResponse {
     ResponseName name;
     std::string unit;
     std::vector<Complex> values;
@@ -205,16 +205,16 @@ Spectra spectraOf(const TextTable& table, const ResponseColumns& columns, bool p
     tidy(spectra.frequency, all, table, spectra.remarks, source);
 
     const auto points = spectra.frequency.size();
-    std::vector<Response> read;
+    std::vector<ReadResponse> read;
     for (auto& parts : all)
         read.push_back(
             {parts.response, unitOf(parts), complexOf(parts, spectra.frequency, phaseless, spectra.remarks, source)});
     if (read.empty())
         refuseResponse(Kind::usage, source, "has no column that was said to be a response.");
     const auto impedance = std::find_if(read.begin(), read.end(),
-                                        [](const Response& r) { return r.name.isImpedance(); });
+                                        [](const ReadResponse& r) { return r.name.isImpedance(); });
     const bool perVoltage = std::any_of(read.begin(), read.end(),
-                                        [](const Response& r) { return r.name.input == Quantity::voltage; });
+                                        [](const ReadResponse& r) { return r.name.input == Quantity::voltage; });
     if (impedance != read.end() && perVoltage) {
         for (auto& value : impedance->values)
             value = 1.0 / value;

@@ -21,9 +21,9 @@ std::string_view unquoted(std::string_view text)
     return text;
 }
 
-/// Calls take(index, cell) for each cell of a line until it returns false.
-template <class Take>
-void eachCell(std::string_view line, char separator, Take take)
+/// Calls visit(index, cell) for each cell of a line until it returns false.
+template <class Visit>
+void eachCell(std::string_view line, char separator, Visit visit)
 {
     for (std::size_t index = 0;; ++index) {
         if (separator == ' ') {
@@ -32,7 +32,7 @@ void eachCell(std::string_view line, char separator, Take take)
                 return;
         }
         const auto end = separator == ' ' ? line.find_first_of(" \t\v\f") : line.find(separator);
-        if (!take(index, unquoted(line.substr(0, end))) || end == std::string_view::npos)
+        if (!visit(index, unquoted(line.substr(0, end))) || end == std::string_view::npos)
             return;
         line.remove_prefix(end + 1);
     }

@@ -215,11 +215,11 @@ PoleZeroGain poleZeroGainOf(const StateSpace& model)
             return evaluationPoint(data.frequency[static_cast<std::size_t>(k)], g.sampleRate);
         };
         trial.gain = (data.value(strongest, 0) / product(trial, pointAt(strongest))).real();
-        double misfit = 0.0;
+        double error = 0.0;
         for (Index k = 0; k < data.lines(); ++k)
-            misfit = std::max(misfit, std::abs(trial.gain * product(trial, pointAt(k)) - data.value(k, 0)) / largest);
-        if (misfit < least) {
-            least = misfit;
+            error = std::max(error, std::abs(trial.gain * product(trial, pointAt(k)) - data.value(k, 0)) / largest);
+        if (error < least) {
+            least = error;
             g.zeros = trial.zeros;
             g.gain = trial.gain;
         }

@@ -93,15 +93,4 @@ NamedStateSpace stateSpaceFromJson(const JsonField& field)
     return named;
 }
 
-NamedStateSpace readStateSpace(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return stateSpaceFromJson(JsonField(document, "", path.string()));
-}
-
-void writeStateSpace(const NamedStateSpace& named, const std::filesystem::path& path)
-{
-    writeJson(toJson(named), path);
-}
-
 }  // namespace excursion

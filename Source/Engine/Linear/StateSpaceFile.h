@@ -6,8 +6,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <filesystem>
-
 namespace excursion {
 
 /// A linear model with the names of what it connects, as the document "excursion-state-space" 1 keeps it.
@@ -23,9 +21,6 @@ nlohmann::ordered_json toJson(const NamedStateSpace&);
 
 /// Throws Error (input) naming the field when the document is none of these, or its shapes do not fit.
 NamedStateSpace stateSpaceFromJson(const JsonField&);
-
-NamedStateSpace readStateSpace(const std::filesystem::path&);
-void writeStateSpace(const NamedStateSpace&, const std::filesystem::path&);
 
 /// A matrix as a list of rows; with no columns each row is an empty list.
 nlohmann::ordered_json matrixJson(const Eigen::MatrixXd&);

@@ -15,30 +15,33 @@ void drawCone(const double* c, NetworkDrawing& into)
 
 class Electrodynamic final : public EffectOf<Electrodynamic>, public NetworkParts {
 public:
-    std::string id() const override { return "electrodynamic"; }
-    std::string title() const override { return "Linear electrodynamic driver"; }
-    std::string physics() const override { return "A coil in a magnetic field drives a mass on a damped spring."; }
-    std::string symptoms() const override { return "One resonance in the impedance; no distortion."; }
-    std::string remedy() const override { return "None is needed."; }
-    bool electrical() const override { return true; }
-    bool linear() const override { return true; }
+    Electrodynamic()
+        : EffectOf({.id = "electrodynamic",
+                    .title = "Linear electrodynamic driver",
+                    .physics = "A coil in a magnetic field drives a mass on a damped spring.",
+                    .symptoms = "One resonance in the impedance; no distortion.",
+                    .remedy = "None is needed.",
+                    .electrical = true,
+                    .linear = true})
+    {
+    }
 
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         return {positiveParameter("Re", "ohm", 6.0),  positiveParameter("Le", "H", 3e-4),
                 positiveParameter("Bl", "N/A", 5.0),  positiveParameter("m", "kg", 1e-2),
                 positiveParameter("Rms", "N s/m", 1), positiveParameter("K", "N/m", 2e3)};
     }
-    int coefficientCount(const Extent&) const override { return 6; }
+    int coefficientCount(const OperatingRange&) const override { return 6; }
 
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         std::copy(p, p + 6, c);
     }
 
     template <class T>
-    void addTo(const Extent&, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange&, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
         const T &Re = c[0], &Le = c[1], &Bl = c[2], &m = c[3], &Rms = c[4], &K = c[5];
         sum.inductance += Le;
@@ -47,7 +50,7 @@ public:
         sum.force += Bl * at.i - Rms * at.v - K * at.x;
     }
 
-    void draw(const Extent&, const double* c, NetworkDrawing& into) const override
+    void draw(const OperatingRange&, const double* c, NetworkDrawing& into) const override
     {
         into.resistor(c[0]);
         into.inductor(c[1]);
@@ -58,35 +61,38 @@ public:
 
 class Mechanical final : public EffectOf<Mechanical>, public NetworkParts {
 public:
-    std::string id() const override { return "mechanical"; }
-    std::string title() const override { return "Linear mechanical driver"; }
-    std::string physics() const override { return "A force drives a mass on a damped spring."; }
-    std::string symptoms() const override { return "One resonance in the receptance; no distortion."; }
-    std::string remedy() const override { return "None is needed."; }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
+    Mechanical()
+        : EffectOf({.id = "mechanical",
+                    .title = "Linear mechanical driver",
+                    .physics = "A force drives a mass on a damped spring.",
+                    .symptoms = "One resonance in the receptance; no distortion.",
+                    .remedy = "None is needed.",
+                    .electrical = false,
+                    .linear = true})
+    {
+    }
 
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         return {positiveParameter("m", "kg", 1e-2), positiveParameter("Rms", "N s/m", 1),
                 positiveParameter("K", "N/m", 2e3)};
     }
-    int coefficientCount(const Extent&) const override { return 3; }
+    int coefficientCount(const OperatingRange&) const override { return 3; }
 
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         std::copy(p, p + 3, c);
     }
 
     template <class T>
-    void addTo(const Extent&, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange&, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
         sum.mass += c[0];
         sum.force -= c[1] * at.v + c[2] * at.x;
     }
 
-    void draw(const Extent&, const double* c, NetworkDrawing& into) const override { drawCone(c, into); }
+    void draw(const OperatingRange&, const double* c, NetworkDrawing& into) const override { drawCone(c, into); }
 };
 
 }  // namespace

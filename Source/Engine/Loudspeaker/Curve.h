@@ -92,15 +92,15 @@ inline double valueAt(int n, const double* c, double q, double range)
 inline double plausible(int k, double scale) { return 2.0 * std::abs(scale) * std::pow(0.75, k); }
 
 /// The n coefficients c_1..c_n as parameters, all strengths.
-inline std::vector<Parameter> parameters(const Extent& extent, const std::string& unit)
+inline std::vector<Parameter> parameters(const OperatingRange& operatingRange, const std::string& unit)
 {
     std::vector<Parameter> result;
-    for (int k = 1; k <= extent.degree; ++k) {
+    for (int k = 1; k <= operatingRange.degree; ++k) {
         Parameter p;
         p.name = "c" + std::to_string(k);
         p.unit = unit;
         p.strength = true;
-        p.prior = plausible(k, extent.scale);
+        p.prior = plausible(k, operatingRange.scale);
         result.push_back(p);
     }
     return result;
@@ -113,14 +113,16 @@ inline std::vector<Parameter> parameters(const Extent& extent, const std::string
 template <class Self>
 class CurveLaw : public EffectOf<Self> {
 public:
-    std::vector<Parameter> parameters(const Extent& e) const override
+    using EffectOf<Self>::EffectOf;
+
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         return curve::parameters(e, this->law()->unit);
     }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 1; }
 
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         curve::prepare(e.degree, p, c);
     }

@@ -21,18 +21,19 @@ public:
         int coefficients = 0;
         for (const auto& component : model.components) {
             const auto& e = *component.effect;
-            parts_.push_back({&e, &component.extent, coefficients, order_});
-            coefficients += e.coefficientCount(component.extent);
-            order_ += e.memorySize(component.extent);
+            parts_.push_back({&e, &component.operatingRange, coefficients, order_});
+            coefficients += e.coefficientCount(component.operatingRange);
+            order_ += e.memorySize(component.operatingRange);
         }
         coefficients_.resize(static_cast<std::size_t>(coefficients));
         for (std::size_t k = 0; k < parts_.size(); ++k) {
             const auto& part = parts_[k];
-            part.effect->prepare(*part.extent, parameters.data() + offset, coefficients_.data() + part.coefficients);
+            part.effect->prepare(*part.operatingRange, parameters.data() + offset,
+                                 coefficients_.data() + part.coefficients);
             offset += model.components[k].parameters.size();
         }
-        path_.assign(static_cast<std::size_t>(model.path.effect->coefficientCount(model.path.extent)), T(0.0));
-        model.path.effect->prepare(model.path.extent, parameters.data() + offset, path_.data());
+        path_.assign(static_cast<std::size_t>(model.path.effect->coefficientCount(model.path.operatingRange)), T(0.0));
+        model.path.effect->prepare(model.path.operatingRange, parameters.data() + offset, path_.data());
         radiation_ = &model.path;
     }
 
@@ -44,7 +45,7 @@ public:
         const Motion<T> at {z[0], z[1], z[2]};
         Balance<T> sum;
         for (const auto& part : parts_)
-            part.effect->contribute(*part.extent, coefficients_.data() + part.coefficients, at, z + part.memory,
+            part.effect->contribute(*part.operatingRange, coefficients_.data() + part.coefficients, at, z + part.memory,
                                     dz + part.memory, sum);
         dz[1] = at.v;
         if (electrical_) {
@@ -61,17 +62,17 @@ public:
     {
         const Motion<T> at {z[0], z[1], z[2]};
         Emission<T> sum;
-        radiation_->effect->emit(radiation_->extent, path_.data(), at, dz[2], nullptr, nullptr, sum);
+        radiation_->effect->emit(radiation_->operatingRange, path_.data(), at, dz[2], nullptr, nullptr, sum);
         for (const auto& part : parts_)
-            part.effect->emit(*part.extent, coefficients_.data() + part.coefficients, at, dz[2], z + part.memory,
-                              dz + part.memory, sum);
+            part.effect->emit(*part.operatingRange, coefficients_.data() + part.coefficients, at, dz[2],
+                              z + part.memory, dz + part.memory, sum);
         return sum;
     }
 
 private:
     struct Part {
         const Effect* effect;
-        const Extent* extent;
+        const OperatingRange* operatingRange;
         int coefficients;  ///< where its coefficients start
         int memory;        ///< where its memory starts in the state
     };

@@ -22,24 +22,24 @@ double resonanceOf(const std::vector<Parameter>& base)
     return std::sqrt(parameterNamed(base, "K").value / parameterNamed(base, "m").value) / (2.0 * std::numbers::pi);
 }
 
-std::vector<std::vector<double>> Effect::starts(const Extent& extent) const
+std::vector<std::vector<double>> Effect::starts(const OperatingRange& operatingRange) const
 {
     std::vector<double> values;
-    for (const auto& parameter : parameters(extent))
+    for (const auto& parameter : parameters(operatingRange))
         values.push_back(parameter.strength ? 0.0 : parameter.value);
     return {values};
 }
 
-std::vector<Part> Effect::parts(const Extent&) const { return {}; }
+std::vector<Part> Effect::parts(const OperatingRange&) const { return {}; }
 
-std::vector<double> Effect::restarts(const Extent&, const std::vector<double>&) const { return {}; }
+std::vector<double> Effect::restarts(const OperatingRange&, const std::vector<double>&) const { return {}; }
 
-bool Effect::plausible(const Extent&, const std::vector<Parameter>&, const std::vector<Parameter>&) const
+bool Effect::plausible(const OperatingRange&, const std::vector<Parameter>&, const std::vector<Parameter>&) const
 {
     return true;
 }
 
-std::vector<Figure> Effect::summary(const Extent&, const double*) const { return {}; }
+std::vector<Figure> Effect::summary(const OperatingRange&, const double*) const { return {}; }
 
 std::string Effect::sizedBy() const
 {
@@ -47,6 +47,6 @@ std::string Effect::sizedBy() const
     return info ? info->base : "";
 }
 
-double Effect::lawAt(const Extent&, const double*, double) const { return 0.0; }
+double Effect::lawAt(const OperatingRange&, const double*, double) const { return 0.0; }
 
 }  // namespace excursion

@@ -50,7 +50,7 @@ struct Emission {
 
 /// Where and how finely an effect is to hold: what the take really visited. It is part of a model, so a
 /// model means the same wherever it is loaded.
-struct Extent {
+struct OperatingRange {
     double displacement = 1e-3;    ///< peak, m
     double velocity = 1.0;         ///< peak, m/s
     double current = 1.0;          ///< peak, A
@@ -117,118 +117,138 @@ struct Part {
     std::vector<std::vector<double>> starts;
 };
 
-/// One physical effect. A subclass is the whole of it: its words, its parameters, its memory, what it adds to the
+/// What an effect is called and how a person knows it, and the two facts that decide where it can be.
+struct EffectCard {
+    std::string id;           ///< "force-factor"
+    std::string title;        ///< "Force factor Bl(x)"
+    std::string physics;      ///< one sentence
+    std::string symptoms;     ///< what betrays it, in words a person can check on a plot
+    std::string remedy;       ///< what a designer can do about it
+    bool electrical = false;  ///< needs a coil; a mechanical-only driver has none
+    bool linear = false;      ///< changes the frequency response, adds no distortion
+};
+
+/// One physical effect. A subclass is the whole of it: its card, its parameters, its memory, what it adds to the
 /// driver's two equations and what to the sound that leaves it, written once through EffectOf for any number type.
 class Effect {
 public:
+    explicit Effect(EffectCard card) : card_(std::move(card)) {}
     virtual ~Effect() = default;
 
-    virtual std::string id() const = 0;                    ///< "force-factor"
-    virtual std::string title() const = 0;                 ///< "Force factor Bl(x)"
-    virtual std::string physics() const = 0;               ///< one sentence
-    virtual std::string symptoms() const = 0;              ///< what betrays it, in words a person can check on a plot
-    virtual std::string remedy() const = 0;                ///< what a designer can do about it
-    virtual bool electrical() const = 0;                   ///< needs a coil; a mechanical-only driver has none
-    virtual bool linear() const = 0;                       ///< changes the frequency response, adds no distortion
+    const std::string& id() const { return card_.id; }
+    const std::string& title() const { return card_.title; }
+    const std::string& physics() const { return card_.physics; }
+    const std::string& symptoms() const { return card_.symptoms; }
+    const std::string& remedy() const { return card_.remedy; }
+    bool electrical() const { return card_.electrical; }
+    bool linear() const { return card_.linear; }
     virtual bool felt() const { return true; }             ///< acts on coil and cone; else it is heard or seen only
     virtual bool shownBy(Quantity) const { return true; }  ///< a channel of that quantity can show it
     virtual bool undone() const { return felt(); }  ///< predistortion reckons with it; else it leaves it as it is
 
-    virtual std::vector<Parameter> parameters(const Extent&) const = 0;
+    virtual std::vector<Parameter> parameters(const OperatingRange&) const = 0;
 
     /// Shapes to try when nothing is known yet: parameter vectors with every strength at zero.
-    virtual std::vector<std::vector<double>> starts(const Extent&) const;
+    virtual std::vector<std::vector<double>> starts(const OperatingRange&) const;
 
     /// For a linear effect that is a sum of parts, which may be narrow: a search on finely resolved frequency responses
     /// takes them up one after the other, each where it explains most of what is left, for as long as another one pays.
     /// None: the effect is searched as a whole.
-    virtual std::vector<Part> parts(const Extent&) const;
+    virtual std::vector<Part> parts(const OperatingRange&) const;
 
     /// Resonances of the base in Hz from which a search on a frequency response begins together with a start, besides
     /// the one that the base has: a base that was fitted without the effect may sit on a part of what the effect does.
-    virtual std::vector<double> restarts(const Extent&, const std::vector<double>& start) const;
+    virtual std::vector<double> restarts(const OperatingRange&, const std::vector<double>& start) const;
 
     /// Whether such values can be the effect's own, beside a base with those parameters. If not, its shape has been
     /// bent to stand for something else, and it is not named.
-    virtual bool plausible(const Extent&, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const;
+    virtual bool plausible(const OperatingRange&, const std::vector<Parameter>& own,
+                           const std::vector<Parameter>& base) const;
 
     /// What the parameters come to, in a few numbers (without errors, see figuresOf() in Summary.h); none where they
     /// speak for themselves.
-    virtual std::vector<Figure> summary(const Extent&, const double* parameters) const;
+    virtual std::vector<Figure> summary(const OperatingRange&, const double* parameters) const;
 
     virtual std::optional<LawInfo> law() const { return std::nullopt; }
     /// Difference that the effect adds at `argument` to the base parameter of its law.
-    virtual double lawAt(const Extent&, const double* parameters, double argument) const;
+    virtual double lawAt(const OperatingRange&, const double* parameters, double argument) const;
 
-    /// Name of the base parameter whose value is Extent::scale; of a law the one that it bends. Empty: none.
+    /// Name of the base parameter whose value is OperatingRange::scale; of a law the one that it bends. Empty: none.
     virtual std::string sizedBy() const;
 
-    virtual int memorySize(const Extent&) const { return 0; }  ///< extra states
+    virtual int memorySize(const OperatingRange&) const { return 0; }  ///< extra states
     /// The memory changes little within a period: what it holds was made by the whole take before. Its rate is to be
     /// affine in it.
     virtual bool slow() const { return false; }
     virtual bool relaxes() const { return false; }  ///< yields in the course of time
-    virtual int coefficientCount(const Extent&) const = 0;
+    virtual int coefficientCount(const OperatingRange&) const = 0;
 
     /// Turns parameters into coefficients: all that depends on the parameters alone, once a run.
-    virtual void prepare(const Extent&, const double* parameters, double* coefficients) const = 0;
-    virtual void prepare(const Extent&, const Jet* parameters, Jet* coefficients) const = 0;
+    virtual void prepare(const OperatingRange&, const double* parameters, double* coefficients) const = 0;
+    virtual void prepare(const OperatingRange&, const Jet* parameters, Jet* coefficients) const = 0;
 
     /// Adds to the balance; writes the time derivative of its memory. Called several times a sample:
     /// no allocation, no lock, no exception.
-    virtual void contribute(const Extent&, const double* coefficients, const Motion<double>&, const double* memory,
-                            double* memoryRate, Balance<double>&) const = 0;
-    virtual void contribute(const Extent&, const Jet* coefficients, const Motion<Jet>&, const Jet* memory,
+    virtual void contribute(const OperatingRange&, const double* coefficients, const Motion<double>&,
+                            const double* memory, double* memoryRate, Balance<double>&) const = 0;
+    virtual void contribute(const OperatingRange&, const Jet* coefficients, const Motion<Jet>&, const Jet* memory,
                             Jet* memoryRate, Balance<Jet>&) const = 0;
-    virtual void contribute(const Extent&, const Tangent* coefficients, const Motion<Tangent>&, const Tangent* memory,
-                            Tangent* memoryRate, Balance<Tangent>&) const = 0;
+    virtual void contribute(const OperatingRange&, const Tangent* coefficients, const Motion<Tangent>&,
+                            const Tangent* memory, Tangent* memoryRate, Balance<Tangent>&) const = 0;
 
     /// Whether it adds to the emission.
     virtual bool emits() const = 0;
 
     /// Adds to the emission; asked after contribute(), without whose memoryRate what a memory radiates is not known.
     /// @param acceleration  of the coil, m/s^2
-    virtual void emit(const Extent&, const double* coefficients, const Motion<double>&, const double& acceleration,
-                      const double* memory, const double* memoryRate, Emission<double>&) const = 0;
-    virtual void emit(const Extent&, const Jet* coefficients, const Motion<Jet>&, const Jet& acceleration,
+    virtual void emit(const OperatingRange&, const double* coefficients, const Motion<double>&,
+                      const double& acceleration, const double* memory, const double* memoryRate,
+                      Emission<double>&) const = 0;
+    virtual void emit(const OperatingRange&, const Jet* coefficients, const Motion<Jet>&, const Jet& acceleration,
                       const Jet* memory, const Jet* memoryRate, Emission<Jet>&) const = 0;
+
+private:
+    EffectCard card_;
 };
 
 /// Lets a subclass write its physics once:
-///     template <class T> void prepareFor(const Extent&, const T* parameters, T* coefficients) const;
-///     template <class T> void addTo(const Extent&, const T* coefficients, const Motion<T>&, const T* memory,
+///     template <class T> void prepareFor(const OperatingRange&, const T* parameters, T* coefficients) const;
+///     template <class T> void addTo(const OperatingRange&, const T* coefficients, const Motion<T>&, const T* memory,
 ///                                   T* memoryRate, Balance<T>&) const;
 /// and, if it is heard or seen otherwise than through the cone's motion,
-///     template <class T> void radiate(const Extent&, const T* coefficients, const Motion<T>&, const T& acceleration,
+///     template <class T> void radiate(const OperatingRange&, const T* coefficients, const Motion<T>&, const T&
+///     acceleration,
 ///                                     const T* memory, const T* memoryRate, Emission<T>&) const;
 template <class Self>
 class EffectOf : public Effect {
 public:
-    void prepare(const Extent& e, const double* p, double* c) const final { self().prepareFor(e, p, c); }
-    void prepare(const Extent& e, const Jet* p, Jet* c) const final { self().prepareFor(e, p, c); }
-    void contribute(const Extent& e, const double* c, const Motion<double>& motion, const double* memory, double* rate,
-                    Balance<double>& balance) const final
+    using Effect::Effect;
+
+    void prepare(const OperatingRange& e, const double* p, double* c) const final { self().prepareFor(e, p, c); }
+    void prepare(const OperatingRange& e, const Jet* p, Jet* c) const final { self().prepareFor(e, p, c); }
+    void contribute(const OperatingRange& e, const double* c, const Motion<double>& motion, const double* memory,
+                    double* rate, Balance<double>& balance) const final
     {
         add(self(), e, c, motion, memory, rate, balance);
     }
-    void contribute(const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet* memory, Jet* rate,
+    void contribute(const OperatingRange& e, const Jet* c, const Motion<Jet>& motion, const Jet* memory, Jet* rate,
                     Balance<Jet>& balance) const final
     {
         add(self(), e, c, motion, memory, rate, balance);
     }
-    void contribute(const Extent& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory,
+    void contribute(const OperatingRange& e, const Tangent* c, const Motion<Tangent>& motion, const Tangent* memory,
                     Tangent* rate, Balance<Tangent>& balance) const final
     {
         add(self(), e, c, motion, memory, rate, balance);
     }
     bool emits() const final { return radiates<double>; }
-    void emit(const Extent& e, const double* c, const Motion<double>& motion, const double& acceleration,
+    void emit(const OperatingRange& e, const double* c, const Motion<double>& motion, const double& acceleration,
               const double* memory, const double* rate, Emission<double>& emission) const final
     {
         emitFor(e, c, motion, acceleration, memory, rate, emission);
     }
-    void emit(const Extent& e, const Jet* c, const Motion<Jet>& motion, const Jet& acceleration, const Jet* memory,
-              const Jet* rate, Emission<Jet>& emission) const final
+    void emit(const OperatingRange& e, const Jet* c, const Motion<Jet>& motion, const Jet& acceleration,
+              const Jet* memory, const Jet* rate, Emission<Jet>& emission) const final
     {
         emitFor(e, c, motion, acceleration, memory, rate, emission);
     }
@@ -236,19 +256,19 @@ public:
 private:
     // What is asked all the time is compiled for the processor at hand, with all that it calls; a virtual function
     // itself cannot be.
-    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const double* c,
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const OperatingRange& e, const double* c,
                                                         const Motion<double>& motion, const double* memory,
                                                         double* rate, Balance<double>& balance)
     {
         self.addTo(e, c, motion, memory, rate, balance);
     }
-    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Jet* c,
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const OperatingRange& e, const Jet* c,
                                                         const Motion<Jet>& motion, const Jet* memory, Jet* rate,
                                                         Balance<Jet>& balance)
     {
         self.addTo(e, c, motion, memory, rate, balance);
     }
-    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const Extent& e, const Tangent* c,
+    EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const OperatingRange& e, const Tangent* c,
                                                         const Motion<Tangent>& motion, const Tangent* memory,
                                                         Tangent* rate, Balance<Tangent>& balance)
     {
@@ -256,13 +276,13 @@ private:
     }
 
     template <class T, class Whose = Self>
-    static constexpr bool radiates = requires(const Whose& effect, const Extent& e, const T* of,
+    static constexpr bool radiates = requires(const Whose& effect, const OperatingRange& e, const T* of,
                                               const Motion<T>& motion, Emission<T>& emission)
     {
         effect.radiate(e, of, motion, motion.i, of, of, emission);
     };
     template <class T>
-    void emitFor(const Extent& e, const T* c, const Motion<T>& motion, const T& acceleration, const T* memory,
+    void emitFor(const OperatingRange& e, const T* c, const Motion<T>& motion, const T& acceleration, const T* memory,
                  const T* rate, Emission<T>& emission) const
     {
         if constexpr (radiates<T>)

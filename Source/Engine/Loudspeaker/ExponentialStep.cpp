@@ -52,7 +52,7 @@ Eigen::MatrixXd ofCoefficients(Eigen::MatrixXd phi, double length)
 bool ExponentialStep::isLaw(const Component& component)
 {
     const auto& effect = *component.effect;
-    return !effect.linear() && (effect.felt() || effect.memorySize(component.extent) > 0);
+    return !effect.linear() && (effect.felt() || effect.memorySize(component.operatingRange) > 0);
 }
 
 ExponentialStep::ExponentialStep(const Model& model, double h)
@@ -62,13 +62,13 @@ ExponentialStep::ExponentialStep(const Model& model, double h)
     Eigen::Index n = 3;
     Balance<double> atRest;
     for (const auto& component : model_.components) {
-        const Eigen::Index size = component.effect->memorySize(component.extent);
+        const Eigen::Index size = component.effect->memorySize(component.operatingRange);
         auto coefficients = coefficientsOf(component, valuesOf(component));
         auto& places = component.effect->linear() ? linearPlace_ : lawPlace_;
         if (component.effect->linear()) {
             const std::vector<double> memory(static_cast<std::size_t>(size), 0.0);
             std::vector<double> unused(memory);
-            component.effect->contribute(component.extent, coefficients.data(), {0.0, 0.0, 0.0}, memory.data(),
+            component.effect->contribute(component.operatingRange, coefficients.data(), {0.0, 0.0, 0.0}, memory.data(),
                                          unused.data(), atRest);
         } else if (isLaw(component)) {
             laws_.push_back({&component, std::move(coefficients), static_cast<Eigen::Index>(places.size())});
@@ -172,7 +172,7 @@ void ExponentialStep::ask(double u, double* N)
 {
     Balance<double> sum;
     for (const auto& law : laws_)
-        law.component->effect->contribute(law.component->extent, law.coefficients.data(), {y_[0], y_[1], y_[2]},
+        law.component->effect->contribute(law.component->operatingRange, law.coefficients.data(), {y_[0], y_[1], y_[2]},
                                           y_.data() + motions + law.memory, N + rates + law.memory, sum);
     // The linear part's drop is u - L A_i z - u, its force m A_v z; the whole drop and force act on the whole
     // inductance and mass.
@@ -243,13 +243,13 @@ double ExponentialStep::fastestLaw()
     const auto laws = N_[0].size(), memories = laws - rates;
     double fastest = 0.0;
     for (const auto& law : laws_) {
-        const auto& extent = law.component->extent;
-        for (const double i : {-extent.current, extent.current})
+        const auto& operatingRange = law.component->operatingRange;
+        for (const double i : {-operatingRange.current, operatingRange.current})
             for (int k = -4; k <= 4; ++k)
-                for (const double v : {-extent.velocity, extent.velocity}) {
+                for (const double v : {-operatingRange.velocity, operatingRange.velocity}) {
                     const auto at = [&](double current, double velocity, Eigen::Index memory) -> Eigen::VectorXd {
                         y_.setZero();
-                        y_.head(3) << current, 0.25 * k * extent.displacement, velocity;
+                        y_.head(3) << current, 0.25 * k * operatingRange.displacement, velocity;
                         y_[3] = C_.row(3).head(3) * y_.head(3);
                         y_[4] = C_.row(4).head(3) * y_.head(3);
                         if (memory >= 0)
@@ -257,7 +257,7 @@ double ExponentialStep::fastestLaw()
                         ask(0.0, N_[0].data());
                         return N_[0];
                     };
-                    const double di = 1e-6 * extent.current, dv = 1e-6 * extent.velocity;
+                    const double di = 1e-6 * operatingRange.current, dv = 1e-6 * operatingRange.velocity;
                     const Eigen::VectorXd here = at(i, v, -1);
                     Eigen::MatrixXd J(laws, laws);
                     J.col(0) = (at(i + di, v, -1) - here) / di;

@@ -13,14 +13,14 @@ bool isLaw(const Component& component) { return !component.effect->linear(); }
 
 MemoryStart atRest(const Component& law)
 {
-    const auto size = static_cast<Eigen::Index>(law.effect->memorySize(law.extent));
+    const auto size = static_cast<Eigen::Index>(law.effect->memorySize(law.operatingRange));
     return {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(law.parameters.size()))};
 }
 
 /// Where the memory of a law that is not slow stands a quarter of a period before the window.
 MemoryStart startOf(const Component& law, const Section& section, const ShownMotion& motion, double sampleRate)
 {
-    if (law.effect->memorySize(law.extent) == 0 || forgetsInAQuarter(law, motion, sampleRate))
+    if (law.effect->memorySize(law.operatingRange) == 0 || forgetsInAQuarter(law, motion, sampleRate))
         return atRest(law);
     return settledMemory(law, everySample(motion), section.window - section.window / 4, sampleRate);
 }

@@ -6,6 +6,7 @@
 #include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
@@ -128,8 +129,8 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
     place(theta);
     if (!summary.usable())
         return summary;
-    summary.costPerResidual = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
-    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.costPerResidual));
+    summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
+    const auto covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
                                              static_cast<Eigen::Index>(all.size()));
     for (Eigen::Index r = 0; r < P; ++r) {
@@ -208,14 +209,14 @@ void adapt(Record& record, const Model& model)
     record.leadIn = settlingTime(model, record);
 }
 
-Extent visitedExtent(const Model& model, const Record& record, int degree)
+OperatingRange visitedRange(const Model& model, const Record& record, int degree)
 {
-    Extent extent;
-    extent.degree = degree;
-    extent.lowFrequency = record.bandLow;
-    extent.highFrequency = record.bandHigh;
+    OperatingRange operatingRange;
+    operatingRange.degree = degree;
+    operatingRange.lowFrequency = record.bandLow;
+    operatingRange.highFrequency = record.bandHigh;
     if (!record.sections.empty() && record.sections.back().end > 0.0)
-        extent.duration = record.sections.back().end;
+        operatingRange.duration = record.sections.back().end;
     double x = 0.0, v = 0.0, i = 0.0;
     for (const auto& section : record.sections)
         for (std::size_t c = 0; c < record.channels.size(); ++c) {
@@ -250,10 +251,10 @@ Extent visitedExtent(const Model& model, const Record& record, int degree)
         if (peak > 0.0)
             to = 1.02 * peak;
     };
-    keep(x, extent.displacement);
-    keep(v, extent.velocity);
-    keep(i, extent.current);
-    return extent;
+    keep(x, operatingRange.displacement);
+    keep(v, operatingRange.velocity);
+    keep(i, operatingRange.current);
+    return operatingRange;
 }
 
 FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options,

@@ -29,13 +29,13 @@ struct FitOptions {
 
 struct FitSummary : SearchSummary {
     int substeps = 0;
-    double costPerResidual = 0.0;  ///< 1 when nothing but noise is left
-    bool onlyNoise = false;        ///< no channel's error stands above its noise
+    double chiSquaredPerValue = 0.0;  ///< 1 when nothing but noise is left
+    bool onlyNoise = false;           ///< no channel's error stands above its noise
 };
 
 /// What the take visits: the peaks of displacement, velocity and current, measured where a channel tells them, else
 /// simulated by the model, and the band that was excited.
-Extent visitedExtent(const Model&, const Record&, int degree = 6);
+OperatingRange visitedRange(const Model&, const Record&, int degree = 6);
 
 /// Output-error fit of all free parameters,
 ///     min sum_{sections, channels, lines} |Y_model - Y_measured|^2 / sigma^2,

@@ -51,7 +51,7 @@ double responseErrorDb(const Model&, const ResponseTarget&);
 double responseErrorDb(const Model&, const std::vector<ResponseTarget>&);
 
 /// Fits the free parameters of the model's linear components; positive ones move on a logarithmic scale. Priors count
-/// against the misfit at the start. Leaves standard errors and the covariance in the model, scaled by the misfit that
+/// against the error at the start. Leaves standard errors and the covariance in the model, scaled by the error that
 /// is left.
 SearchSummary fitResponse(Model&, const std::vector<ResponseTarget>&, const LeastSquaresOptions& = {});
 

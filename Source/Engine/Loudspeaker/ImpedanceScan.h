@@ -9,12 +9,12 @@ namespace excursion {
 
 /// What an impedance shows at first sight.
 struct ImpedanceShape {
-    double Re = 0.0;         ///< ohm
-    double Le = 0.0;         ///< H, of the inductance that does best without a semi-inductance
-    double height = 0.0;     ///< Bl^2/Rms, ohm
-    double resonance = 0.0;  ///< Hz
-    double quality = 0.0;    ///< mechanical, sqrt(K m)/Rms
-    double misfit = 1.0;     ///< relative rms error of the shape with the semi-inductance
+    double Re = 0.0;             ///< ohm
+    double Le = 0.0;             ///< H, of the inductance that does best without a semi-inductance
+    double height = 0.0;         ///< Bl^2/Rms, ohm
+    double resonance = 0.0;      ///< Hz
+    double quality = 0.0;        ///< mechanical, sqrt(K m)/Rms
+    double relativeError = 1.0;  ///< relative rms error of the shape with the semi-inductance
 };
 
 /// Fits

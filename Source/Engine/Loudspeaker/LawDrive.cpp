@@ -33,7 +33,7 @@ public:
     Balance<T> ask(double place, const T* memory, T* rate) const
     {
         Balance<T> sum;
-        law_.effect->contribute(law_.extent, coefficients_.data(), at(place), memory, rate, sum);
+        law_.effect->contribute(law_.operatingRange, coefficients_.data(), at(place), memory, rate, sum);
         return sum;
     }
 
@@ -45,8 +45,8 @@ public:
         if (!law_.effect->emits())
             return;
         Emission<T> emission;
-        law_.effect->emit(law_.extent, coefficients_.data(), at(static_cast<double>(n)), T(motion_.a[n]), memory, rate,
-                          emission);
+        law_.effect->emit(law_.operatingRange, coefficients_.data(), at(static_cast<double>(n)), T(motion_.a[n]),
+                          memory, rate, emission);
         answers.lateness.push_back(emission.lateness);
     }
 
@@ -74,7 +74,7 @@ struct Pace {
 
 Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
 {
-    const auto size = static_cast<std::size_t>(law.effect->memorySize(law.extent));
+    const auto size = static_cast<std::size_t>(law.effect->memorySize(law.operatingRange));
     if (size == 0)
         return {};
     const auto coefficients = coefficientsOf(law, valuesOf(law));
@@ -86,7 +86,7 @@ Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
     for (std::size_t n = 0; n < motion.i.size(); n += apart, asked += 1.0) {
         const auto rates = [&](std::vector<double>& out) {
             Balance<double> unused;
-            law.effect->contribute(law.extent, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]},
+            law.effect->contribute(law.operatingRange, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]},
                                    memory.data(), out.data(), unused);
         };
         rates(rest);

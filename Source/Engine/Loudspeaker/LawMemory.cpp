@@ -48,12 +48,12 @@ template <class T>
 Affine<T> meanRate(const Component& component, const std::vector<T>& coefficients, const PeriodicMotion& motion)
 {
     Affine<T> result;
-    result.size = static_cast<std::size_t>(component.effect->memorySize(component.extent));
+    result.size = static_cast<std::size_t>(component.effect->memorySize(component.operatingRange));
     const auto mean = [&](const std::vector<T>& memory) {
         std::vector<T> sum(result.size, T(0.0)), rate(result.size);
         for (std::size_t n = 0; n < motion.i.size(); ++n) {
             Balance<T> unused;
-            component.effect->contribute(component.extent, coefficients.data(),
+            component.effect->contribute(component.operatingRange, coefficients.data(),
                                          {T(motion.i[n]), T(motion.x[n]), T(motion.v[n])}, memory.data(), rate.data(),
                                          unused);
             for (std::size_t k = 0; k < result.size; ++k)
@@ -86,7 +86,7 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return record.sections[a].begin < record.sections[b].begin; });
     std::vector<std::vector<T>> starts(order.size());
-    std::vector<T> m(static_cast<std::size_t>(component.effect->memorySize(component.extent)), T(0.0));
+    std::vector<T> m(static_cast<std::size_t>(component.effect->memorySize(component.operatingRange)), T(0.0));
     for (const auto n : order) {
         const auto& section = record.sections[n];
         const auto mean = meanRate(component, coefficients, motions[n]);
@@ -111,7 +111,7 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
 MemoryStart settledMemory(const Component& component, const PeriodicMotion& motion, std::size_t begin,
                           double sampleRate)
 {
-    const auto size = static_cast<std::size_t>(component.effect->memorySize(component.extent));
+    const auto size = static_cast<std::size_t>(component.effect->memorySize(component.operatingRange));
     const auto coefficients = coefficientsOf(component, valuesOf(component));
     constexpr int parts = 2;  // steps a sample
     const double h = 1.0 / (parts * sampleRate);
@@ -122,8 +122,8 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
         const std::size_t from = (begin + n) % N, to = (from + 1) % N;
         const auto at = [&](const std::vector<double>& q) { return q[from] + s * (q[to] - q[from]); };
         Balance<double> unused;
-        component.effect->contribute(component.extent, coefficients.data(), {at(motion.i), at(motion.x), at(motion.v)},
-                                     memory.data(), out.data(), unused);
+        component.effect->contribute(component.operatingRange, coefficients.data(),
+                                     {at(motion.i), at(motion.x), at(motion.v)}, memory.data(), out.data(), unused);
     };
     std::vector<double> once;  // after the first period
     for (std::size_t n = 0; n < 2 * N; ++n) {
@@ -154,7 +154,7 @@ std::vector<MemoryStart> historyOf(const Component& component, const Record& rec
                                    const std::vector<PeriodicMotion>& motions, const std::vector<double>& run,
                                    bool withGradient)
 {
-    const auto size = static_cast<Eigen::Index>(component.effect->memorySize(component.extent));
+    const auto size = static_cast<Eigen::Index>(component.effect->memorySize(component.operatingRange));
     const auto count = static_cast<Eigen::Index>(component.parameters.size());
     std::vector<MemoryStart> starts(record.sections.size(),
                                     {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, count)});

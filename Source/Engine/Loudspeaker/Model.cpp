@@ -27,7 +27,7 @@ std::vector<Pointer> collect(ModelType& model)
 /// Value of a component's law at q, the base parameter not included.
 double lawValue(const Component& component, const std::vector<double>& values, double q)
 {
-    return component.effect->lawAt(component.extent, values.data(), q);
+    return component.effect->lawAt(component.operatingRange, values.data(), q);
 }
 
 }  // namespace
@@ -78,10 +78,10 @@ Model makeModel(std::string_view baseId)
     Model model;
     Component base;
     base.effect = &baseNamed(baseId);
-    base.parameters = base.effect->parameters(base.extent);
+    base.parameters = base.effect->parameters(base.operatingRange);
     model.components.push_back(base);
     model.path.effect = &radiation();
-    model.path.parameters = radiation().parameters(model.path.extent);
+    model.path.parameters = radiation().parameters(model.path.operatingRange);
     return model;
 }
 
@@ -101,13 +101,13 @@ bool movable(const Model& model, const Parameter& p)
     return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model));
 }
 
-Model withEffect(Model model, const Effect& effect, const Extent& visited, std::size_t start)
+Model withEffect(Model model, const Effect& effect, const OperatingRange& visited, std::size_t start)
 {
-    Extent extent = visited;
+    OperatingRange operatingRange = visited;
     if (const auto base = effect.sizedBy(); !base.empty())
-        extent.scale = model.baseParameter(base).value;
-    Component component {&effect, extent, effect.parameters(extent)};
-    const auto starts = effect.starts(extent);
+        operatingRange.scale = model.baseParameter(base).value;
+    Component component {&effect, operatingRange, effect.parameters(operatingRange)};
+    const auto starts = effect.starts(operatingRange);
     const auto& values = starts.at(start);
     for (std::size_t k = 0; k < values.size(); ++k)
         component.parameters[k].value = values[k];
@@ -123,8 +123,8 @@ void followOthers(Model& model)
     const bool yields = relaxes(model);
     for (auto& component : model.components) {
         if (const auto base = component.effect->sizedBy(); !base.empty())
-            component.extent.scale = model.baseParameter(base).value;
-        component.extent.relaxed = yields;
+            component.operatingRange.scale = model.baseParameter(base).value;
+        component.operatingRange.relaxed = yields;
         for (auto& p : component.parameters)
             if (p.relaxed) {
                 p.free = yields;
@@ -163,8 +163,8 @@ Model withDegree(Model model, std::size_t component, int degree)
 {
     auto& c = model.components.at(component);
     const auto before = std::move(c.parameters);
-    c.extent.degree = degree;
-    c.parameters = c.effect->parameters(c.extent);
+    c.operatingRange.degree = degree;
+    c.parameters = c.effect->parameters(c.operatingRange);
     for (auto& p : c.parameters)
         for (const auto& old : before)
             if (old.name == p.name)
@@ -207,7 +207,7 @@ std::vector<LawCurve> laws(const Model& model, int points)
             const auto values = valuesOf(component);
             const auto& baseParameters = model.base().parameters;
             const auto* base = &parameterNamed(baseParameters, info->base);
-            const auto& e = component.extent;
+            const auto& e = component.operatingRange;
             const double range = info->argument == "x"   ? e.displacement
                                  : info->argument == "v" ? e.velocity
                                                          : e.current;

@@ -14,7 +14,7 @@ namespace excursion {
 /// A base or an effect at work in a model.
 struct Component {
     const Effect* effect = nullptr;
-    Extent extent;
+    OperatingRange operatingRange;
     std::vector<Parameter> parameters;
 };
 
@@ -38,8 +38,8 @@ Component scaled(Component, double factor);
 template <class T>
 std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& parameters)
 {
-    std::vector<T> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.extent)));
-    component.effect->prepare(component.extent, parameters.data(), coefficients.data());
+    std::vector<T> coefficients(static_cast<std::size_t>(component.effect->coefficientCount(component.operatingRange)));
+    component.effect->prepare(component.operatingRange, parameters.data(), coefficients.data());
     return coefficients;
 }
 
@@ -74,9 +74,9 @@ Model makeModel(std::string_view baseId);
 /// nothing listens.
 bool movable(const Model&, const Parameter&);
 /// The model with that effect at zero strength (its first start unless another is given).
-Model withEffect(Model, const Effect&, const Extent&, std::size_t start = 0);
-/// Every component as the others are now: Extent::scale of an effect as its base parameter is, and parameters that mean
-/// something beside other effects only are free, or zero, as these are there or not.
+Model withEffect(Model, const Effect&, const OperatingRange&, std::size_t start = 0);
+/// Every component as the others are now: OperatingRange::scale of an effect as its base parameter is, and parameters
+/// that mean something beside other effects only are free, or zero, as these are there or not.
 void followOthers(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.

@@ -30,7 +30,7 @@ Json parametersJson(const std::vector<Parameter>& parameters)
     return list;
 }
 
-Json extentJson(const Extent& e)
+Json operatingRangeJson(const OperatingRange& e)
 {
     return {{"displacement", e.displacement},
             {"velocity", e.velocity},
@@ -71,12 +71,12 @@ Json lawsJson(const Model& model)
     return list;
 }
 
-Extent extentFrom(const JsonField& field)
+OperatingRange operatingRangeFrom(const JsonField& field)
 {
     // Sizes may be in any unit, as a circuit may stand for a driver; their squares and products are still numbers. The
     // bounds of the frequencies keep a file from asking for a ladder of a million cells.
     constexpr double least = 1e-60, most = 1e60;
-    Extent e;
+    OperatingRange e;
     e.displacement = field.at("displacement").numberWithin(least, most);
     e.velocity = field.at("velocity").numberWithin(least, most);
     e.current = field.at("current").numberWithin(least, most);
@@ -123,11 +123,12 @@ std::vector<Parameter> parametersFrom(const JsonField& field, std::vector<Parame
     return known;
 }
 
-Component componentFrom(const JsonField& field, const Effect& effect, const Extent& extent)
+Component componentFrom(const JsonField& field, const Effect& effect, const OperatingRange& operatingRange)
 {
-    Component component {&effect, extent, parametersFrom(field.at("parameters"), effect.parameters(extent))};
-    component.extent.relaxed = std::any_of(component.parameters.begin(), component.parameters.end(),
-                                           [](const Parameter& p) { return p.relaxed && p.value != 0.0; });
+    Component component {&effect, operatingRange,
+                         parametersFrom(field.at("parameters"), effect.parameters(operatingRange))};
+    component.operatingRange.relaxed = std::any_of(component.parameters.begin(), component.parameters.end(),
+                                                   [](const Parameter& p) { return p.relaxed && p.value != 0.0; });
     return component;
 }
 
@@ -177,8 +178,9 @@ Json toJson(const Model& model)
     document["effects"] = Json::array();
     for (std::size_t k = 1; k < model.components.size(); ++k) {
         const auto& c = model.components[k];
-        document["effects"].push_back(
-            {{"id", c.effect->id()}, {"extent", extentJson(c.extent)}, {"parameters", parametersJson(c.parameters)}});
+        document["effects"].push_back({{"id", c.effect->id()},
+                                       {"operatingRange", operatingRangeJson(c.operatingRange)},
+                                       {"parameters", parametersJson(c.parameters)}});
     }
     document["path"] = {{"parameters", parametersJson(model.path.parameters)},
                         {"microphoneDistance", model.microphoneDistance}};
@@ -199,7 +201,8 @@ Model modelFromJson(const JsonField& field)
             base.at("parameters").items()[k].at("value").refuse("a mass above 0 kg");
     for (const auto& item : field.at("effects").items()) {
         const auto& effect = effectFrom(item.at("id"), model);
-        model.components.push_back(componentFrom(item, effect, extentFrom(item.at("extent"))));
+        model.components.push_back(
+            componentFrom(item, effect, operatingRangeFrom(item.at("operatingRange", "extent"))));
     }
     const auto path = field.at("path");
     model.path.parameters = parametersFrom(path.at("parameters"), model.path.parameters);

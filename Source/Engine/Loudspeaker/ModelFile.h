@@ -17,7 +17,7 @@ namespace excursion {
 nlohmann::ordered_json toJson(const Model&);
 
 /// Throws Error (input): the file, the field, what was found and what is expected. What a model cannot be is refused: a
-/// mass that is not positive, an extent of nothing, an effect that is not in the catalogue.
+/// mass that is not positive, an operating range of nothing, an effect that is not in the catalogue.
 /// @param where  the file, for the sentence
 Model modelFromJson(const nlohmann::json&, const std::string& where);
 Model modelFromJson(const JsonField&);

@@ -46,7 +46,7 @@ Network networkOf(const Model& model)
         }
         const auto coefficients = coefficientsOf(component, valuesOf(component));
         NetworkDrawing drawing(network, component.effect->id());
-        parts->draw(component.extent, coefficients.data(), drawing);
+        parts->draw(component.operatingRange, coefficients.data(), drawing);
     }
     return network;
 }

@@ -62,7 +62,7 @@ public:
     virtual ~NetworkParts() = default;
 
     /// @param coefficients  as Effect::prepare() makes them
-    virtual void draw(const Extent&, const double* coefficients, NetworkDrawing&) const = 0;
+    virtual void draw(const OperatingRange&, const double* coefficients, NetworkDrawing&) const = 0;
 
     /// Belongs to the box and not to the driver in it: a datasheet of the driver leaves it out.
     virtual bool ofEnclosure() const { return false; }

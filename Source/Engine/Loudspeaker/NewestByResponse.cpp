@@ -25,7 +25,7 @@ bool better(const Way& a, const Way& b)
 {
     const auto plausible = [](const Model& model) {
         const auto& newest = model.components.back();
-        return newest.effect->plausible(newest.extent, newest.parameters, model.base().parameters);
+        return newest.effect->plausible(newest.operatingRange, newest.parameters, model.base().parameters);
     };
     const bool first = plausible(a.model), second = plausible(b.model);
     return first != second ? first : a.cost < b.cost;
@@ -122,7 +122,7 @@ SearchSummary fitParts(Model& model, const std::vector<Part>& parts, const std::
     const auto enough = thinned(targets, enoughPoints);
     auto best = model;
     auto& component = best.components.back();
-    component.parameters = component.effect->parameters(component.extent);
+    component.parameters = component.effect->parameters(component.operatingRange);
     std::vector<bool> free;
     for (auto& p : component.parameters) {
         free.push_back(movable(best, p));
@@ -157,10 +157,10 @@ SearchSummary fitParts(Model& model, const std::vector<Part>& parts, const std::
 
 SearchSummary addByResponse(Model& model, const Effect& effect, const std::vector<ResponseTarget>& targets)
 {
-    Extent extent;
-    extent.lowFrequency = targets.front().frequency.front();
-    extent.highFrequency = targets.front().frequency.back();
-    Model best = withEffect(model, effect, extent);
+    OperatingRange operatingRange;
+    operatingRange.lowFrequency = targets.front().frequency.front();
+    operatingRange.highFrequency = targets.front().frequency.back();
+    Model best = withEffect(model, effect, operatingRange);
     const auto summary = fitNewestByResponse(best, targets);
     if (summary.usable())
         model = std::move(best);
@@ -170,7 +170,7 @@ SearchSummary addByResponse(Model& model, const Effect& effect, const std::vecto
 SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {
     const auto& newest = model.components.back();
-    if (const auto parts = newest.effect->parts(newest.extent); !parts.empty())
+    if (const auto parts = newest.effect->parts(newest.operatingRange); !parts.empty())
         return fitParts(model, parts, targets);
     std::vector<Way> ways;
     const auto from = [&](Model trial, const std::vector<ResponseTarget>& at, const LeastSquaresOptions& search) {
@@ -182,11 +182,11 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
     constexpr int fewPoints = 10, enoughPoints = 16;  // an octave
     constexpr std::size_t most = 3;
     const auto few = thinned(targets, fewPoints), enough = thinned(targets, enoughPoints);
-    for (const auto& start : newest.effect->starts(newest.extent)) {
+    for (const auto& start : newest.effect->starts(newest.operatingRange)) {
         auto trial = model;
         for (std::size_t k = 0; k < start.size(); ++k)
             trial.components.back().parameters[k].value = start[k];
-        for (const double resonance : newest.effect->restarts(newest.extent, start))
+        for (const double resonance : newest.effect->restarts(newest.operatingRange, start))
             from(withResonance(trial, resonance), few, {10, 1e-3});
         from(std::move(trial), few, {10, 1e-3});
     }
@@ -212,8 +212,8 @@ SearchSummary fitNewestByResponse(Model& model, const Record& record)
 {
     constexpr int usual = 12, fine = 48;  // points an octave
     const auto& newest = model.components.back();
-    return fitNewestByResponse(model,
-                               linearResponsesOf(record, newest.effect->parts(newest.extent).empty() ? usual : fine));
+    return fitNewestByResponse(
+        model, linearResponsesOf(record, newest.effect->parts(newest.operatingRange).empty() ? usual : fine));
 }
 
 namespace {
@@ -248,7 +248,7 @@ SearchSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& 
     auto summary = fitResponse(model, targets, thoroughly);
     for (std::size_t k = 1; k + 1 < model.components.size(); ++k) {
         const auto& older = model.components[k];
-        if (!older.effect->linear() || older.effect->parts(older.extent).empty())
+        if (!older.effect->linear() || older.effect->parts(older.operatingRange).empty())
             continue;
         auto trial = model;
         if (!fitByResponse(trial, k, targets).usable())
@@ -267,7 +267,7 @@ bool isItself(const Model& model, std::size_t component)
 {
     constexpr double atBound = 0.002;  // of the range
     const auto& own = model.components[component];
-    return own.effect->plausible(own.extent, own.parameters, model.base().parameters)
+    return own.effect->plausible(own.operatingRange, own.parameters, model.base().parameters)
            && std::none_of(own.parameters.begin(), own.parameters.end(), [](const Parameter& p) {
                   const double range = p.upper - p.lower;
                   return !p.strength && std::isfinite(range)

@@ -19,7 +19,7 @@ using Spectrum = std::vector<std::complex<double>>;
 bool remembersWay(const Component& component)
 {
     const auto& effect = *component.effect;
-    return !effect.linear() && !effect.slow() && effect.memorySize(component.extent) > 0
+    return !effect.linear() && !effect.slow() && effect.memorySize(component.operatingRange) > 0
            && std::any_of(component.parameters.begin(), component.parameters.end(),
                           [](const Parameter& p) { return p.strength && p.value != 0.0; });
 }

@@ -14,7 +14,8 @@ Plausible::Plausible(const Model& model)
     for (const auto& component : model.components) {
         if (&component == &model.base())
             continue;  // it was measured nowhere in particular
-        const Eigen::Array3d reach(component.extent.current, component.extent.displacement, component.extent.velocity);
+        const Eigen::Array3d reach(component.operatingRange.current, component.operatingRange.displacement,
+                                   component.operatingRange.velocity);
         visited = visited.max(reach);
         if (!component.effect->linear())
             byLaws = byLaws.max(reach);

@@ -10,42 +10,39 @@ namespace {
 /// The cone's acceleration over its area Sd, heard a time of flight tau later.
 class Radiation final : public EffectOf<Radiation> {
 public:
-    std::string id() const override { return "path"; }
-    std::string title() const override { return "Path to the microphone"; }
-    std::string physics() const override
+    Radiation()
+        : EffectOf({.id = "path",
+                    .title = "Path to the microphone",
+                    .physics = "The cone's acceleration makes the pressure in front of it, a time of flight later.",
+                    .symptoms = "A pressure like the acceleration, with a phase that falls with frequency.",
+                    .remedy = "None is needed.",
+                    .electrical = false,
+                    .linear = true})
     {
-        return "The cone's acceleration makes the pressure in front of it, a time of flight later.";
     }
-    std::string symptoms() const override
-    {
-        return "A pressure like the acceleration, with a phase that falls with frequency.";
-    }
-    std::string remedy() const override { return "None is needed."; }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     bool felt() const override { return false; }
 
     /// Both are held until a channel of pressure is there to see them.
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         return {{.name = "Sd", .unit = "m^2", .value = 0.01, .free = false},
                 {.name = "tau", .unit = "s", .free = false}};
     }
-    int coefficientCount(const Extent&) const override { return 2; }
+    int coefficientCount(const OperatingRange&) const override { return 2; }
 
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         std::copy(p, p + 2, c);
     }
 
     template <class T>
-    void addTo(const Extent&, const T*, const Motion<T>&, const T*, T*, Balance<T>&) const
+    void addTo(const OperatingRange&, const T*, const Motion<T>&, const T*, T*, Balance<T>&) const
     {
     }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>&, const T& acceleration, const T*, const T*,
+    void radiate(const OperatingRange&, const T* c, const Motion<T>&, const T& acceleration, const T*, const T*,
                  Emission<T>& sum) const
     {
         sum.area += c[0];

@@ -17,13 +17,13 @@ Radiator::Radiator(const Model& model, std::span<const Eigen::Index> active) : m
         if (component.effect->emits())
             emitting.push_back({&component, parameter, order_});
         parameter += static_cast<Eigen::Index>(component.parameters.size());
-        order_ += component.effect->memorySize(component.extent);
+        order_ += component.effect->memorySize(component.operatingRange);
     }
     emitting.insert(emitting.begin(), {&model_.path, parameter, 0});
 
     for (const auto& [component, firstParameter, memory] : emitting) {
         const auto& effect = *component->effect;
-        const auto memories = static_cast<std::size_t>(effect.memorySize(component->extent));
+        const auto memories = static_cast<std::size_t>(effect.memorySize(component->operatingRange));
         parts_.push_back({component, static_cast<std::size_t>(memory), coefficientsOf(*component, valuesOf(*component)),
                           std::vector<double>(memories)});
         if (active.empty())
@@ -81,11 +81,13 @@ Emission<double> Radiator::sum(const double* z, double acceleration)
     const Motion<double> motion {z[0], z[1], z[2]};
     Emission<double> sum;
     for (auto& part : parts_) {
-        const auto& [effect, extent, parameters] = *part.component;
+        const auto& [effect, operatingRange, parameters] = *part.component;
         Balance<double> unused;
         if (!part.rates.empty())
-            effect->contribute(extent, part.coefficients.data(), motion, z + part.memory, part.rates.data(), unused);
-        effect->emit(extent, part.coefficients.data(), motion, acceleration, z + part.memory, part.rates.data(), sum);
+            effect->contribute(operatingRange, part.coefficients.data(), motion, z + part.memory, part.rates.data(),
+                               unused);
+        effect->emit(operatingRange, part.coefficients.data(), motion, acceleration, z + part.memory, part.rates.data(),
+                     sum);
     }
     return sum;
 }
@@ -99,7 +101,7 @@ void Radiator::differentiate(const double* z, double acceleration, const Eigen::
     std::size_t counted = parts_.size();  // the part whose values have been added last
     for (auto& chunk : chunks_) {
         const auto& part = parts_[chunk.part];
-        const auto& [effect, extent, parameters] = *part.component;
+        const auto& [effect, operatingRange, parameters] = *part.component;
         Jet motion[3] {Jet(z[0]), Jet(z[1]), Jet(z[2])}, a(acceleration);
         for (std::size_t k = 0; k < chunk.memory.size(); ++k)
             chunk.memory[k] = Jet(z[part.memory + k]);
@@ -112,9 +114,10 @@ void Radiator::differentiate(const double* z, double acceleration, const Eigen::
         const Motion<Jet> at {motion[0], motion[1], motion[2]};
         Balance<Jet> unused;
         if (!chunk.rates.empty())
-            effect->contribute(extent, chunk.coefficients.data(), at, chunk.memory.data(), chunk.rates.data(), unused);
+            effect->contribute(operatingRange, chunk.coefficients.data(), at, chunk.memory.data(), chunk.rates.data(),
+                               unused);
         Emission<Jet> sum;
-        effect->emit(extent, chunk.coefficients.data(), at, a, chunk.memory.data(), chunk.rates.data(), sum);
+        effect->emit(operatingRange, chunk.coefficients.data(), at, a, chunk.memory.data(), chunk.rates.data(), sum);
         if (counted != chunk.part) {
             area += sum.area.a;
             driven += sum.acceleration.a;

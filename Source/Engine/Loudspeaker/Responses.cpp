@@ -140,7 +140,7 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
             if (section.validation || (level >= 0 && section.level >= 0 && section.level != level))
                 continue;
             const auto U = fft(std::span(section.input).last(section.window));
-            const auto take = [&](std::size_t k) {
+            const auto add = [&](std::size_t k) {
                 const double f = record.frequency(section, k);
                 if (f < low || f > record.bandHigh * 1.01)
                     return;
@@ -155,10 +155,10 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
             };
             if (!section.excited.empty())
                 for (const int k : section.excited)
-                    take(static_cast<std::size_t>(k));
+                    add(static_cast<std::size_t>(k));
             else
                 for (std::size_t k = 1; k < section.window / 2; ++k)
-                    take(k);
+                    add(k);
         }
         ResponseTarget target;
         target.quantity = record.channels[c];

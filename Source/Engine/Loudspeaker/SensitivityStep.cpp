@@ -132,10 +132,11 @@ void SensitivityStep::addLinear(const Model& model, const std::vector<std::vecto
             auto parameters = valuesOf<Jet>(component);
             parameters[own].v[0] = 1.0;
             const auto coefficients = coefficientsOf(component, parameters);
-            std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.extent)), Jet(0.0)),
+            std::vector<Jet> memory(static_cast<std::size_t>(component.effect->memorySize(component.operatingRange)),
+                                    Jet(0.0)),
                 unused(memory);
             Balance<Jet> atRest;
-            component.effect->contribute(component.extent, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)},
+            component.effect->contribute(component.operatingRange, coefficients.data(), {Jet(0.0), Jet(0.0), Jet(0.0)},
                                          memory.data(), unused.data(), atRest);
             dInductance_[c] = atRest.inductance.v[0];
             dMass_[c] = atRest.mass.v[0];
@@ -146,7 +147,7 @@ void SensitivityStep::addLinear(const Model& model, const std::vector<std::vecto
 void SensitivityStep::addLaw(std::size_t law, const std::vector<Eigen::Index>& columns)
 {
     const auto& component = *motion_.laws_[law].component;
-    const int memories = component.effect->memorySize(component.extent);
+    const int memories = component.effect->memorySize(component.operatingRange);
     struct Direction {
         int output = none;
         std::size_t own = 0;  // parameter of the law
@@ -199,7 +200,7 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
                 (q < 3 ? motion[q] : chunk.memory[static_cast<std::size_t>(q - ExponentialStep::motions - law.memory)])
                     .v[static_cast<Eigen::Index>(lane)] = 1.0;
         chunk.sum = {};
-        law.component->effect->contribute(law.component->extent, chunk.coefficients.data(),
+        law.component->effect->contribute(law.component->operatingRange, chunk.coefficients.data(),
                                           {motion[0], motion[1], motion[2]}, chunk.memory.data(), chunk.rate.data(),
                                           chunk.sum);
         if (counted != chunk.law) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Progress.h"
 #include "Engine/Take/Measurement.h"
 

@@ -122,7 +122,7 @@ LinearAmongAll linearAmongAll(const Model& model)
     LinearAmongAll places;
     for (const auto& component : model.components) {
         const bool linear = component.effect->linear();
-        for (int k = component.effect->memorySize(component.extent); k > 0; --k, ++places.order)
+        for (int k = component.effect->memorySize(component.operatingRange); k > 0; --k, ++places.order)
             if (linear)
                 places.states.push_back(places.order);
         for (std::size_t k = 0; k < component.parameters.size(); ++k, ++places.count)

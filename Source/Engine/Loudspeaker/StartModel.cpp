@@ -174,7 +174,7 @@ void considerPeak(Contest& contest, Model model, const Sight& sight)
 {
     const auto shape = scanImpedance(*sight.current);
     constexpr double recognized = 0.7;
-    if (!shape || shape->misfit > recognized)
+    if (!shape || shape->relativeError > recognized)
         return;
     const double omega = 2.0 * std::numbers::pi * shape->resonance;
     const double mass = model.baseParameter("m").value;

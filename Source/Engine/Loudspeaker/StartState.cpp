@@ -78,7 +78,7 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
                       / record.sampleRate);
     Eigen::Index place = 3, parameter = 0;
     for (const auto& component : model.components) {
-        const Eigen::Index size = component.effect->memorySize(component.extent);
+        const Eigen::Index size = component.effect->memorySize(component.operatingRange);
         const auto count = static_cast<Eigen::Index>(component.parameters.size());
         if (size > 0 && !component.effect->linear()) {
             std::vector<MemoryStart> histories;
@@ -112,7 +112,7 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
     std::vector<StartState> states(sections.size());
     bool remembers = false, slow = false;  // a law
     for (const auto& component : model.components)
-        if (!component.effect->linear() && component.effect->memorySize(component.extent) > 0) {
+        if (!component.effect->linear() && component.effect->memorySize(component.operatingRange) > 0) {
             remembers = true;
             slow = slow || component.effect->slow();
         }

@@ -10,7 +10,7 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
 {
     const auto& c = model.components.at(component);
     const auto values = valuesOf(c);
-    auto figures = c.effect->summary(c.extent, values.data());
+    auto figures = c.effect->summary(c.operatingRange, values.data());
     if (figures.empty() || model.covariance.size() == 0)
         return figures;
     Eigen::Index first = 0;
@@ -27,7 +27,7 @@ std::vector<Figure> figuresOf(const Model& model, std::size_t component)
         const auto moved = [&](double by) {
             auto at = values;
             at[k] += by;
-            return c.effect->summary(c.extent, at.data());
+            return c.effect->summary(c.operatingRange, at.data());
         };
         const auto above = moved(step), below = moved(-step);
         if (above.size() != figures.size() || below.size() != figures.size())

@@ -22,14 +22,6 @@ Complex DiffusiveLadder::power(Complex s) const
     return sum;
 }
 
-Complex DiffusiveLadder::integral(Complex s) const
-{
-    Complex sum = inductance + resistance / s;
-    for (Eigen::Index k = 0; k < cells(); ++k)
-        sum += resistances[k] / (s + rates[k]);
-    return sum;
-}
-
 bool DiffusiveLadderOptions::isValid(std::string* reason) const
 {
     const bool valid = lowFrequency > 0.0 && highFrequency > lowFrequency && std::isfinite(highFrequency)

@@ -25,9 +25,8 @@ struct DiffusiveLadder {
 
     Eigen::Index cells() const { return rates.size(); }
 
-    /// The approximation of s^a, and of s^(a-1).
+    /// The approximation of s^a; over s that of s^(a-1).
     std::complex<double> power(std::complex<double> s) const;
-    std::complex<double> integral(std::complex<double> s) const;
 };
 
 /// With n cells a decade the largest relative error on the band is below (tested for 0.05 <= a <= 0.95)

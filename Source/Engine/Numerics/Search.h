@@ -49,10 +49,8 @@ struct Damping {
     /// cut off either, steps go straight and no singular values are computed
     bool ofLargest = true;
 
-    /// Falls a thousandfold: for errors of simulations, see search().
-    static Damping bold() { return {}; }
-
-    /// Falls fivefold, rises sixfold: for poles, whose valleys are short.
+    /// Falls fivefold, rises sixfold, where the default falls a thousandfold (for errors of simulations, see search()):
+    /// for poles, whose valleys are short.
     static Damping steady() { return {5e-3, 5.0, 6.0, 1e-14, std::numeric_limits<double>::infinity(), 12, false}; }
 };
 

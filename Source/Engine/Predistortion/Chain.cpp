@@ -135,9 +135,9 @@ void Chain::process(const double* in, double* out, std::size_t n)
     engine_->publish();
 }
 
-Chain::Meters Chain::take()
+Chain::Meters Chain::collectMeters()
 {
-    auto meters = engine_->take();
+    auto meters = engine_->collectMeters();
     meters.faults += faults_.load(std::memory_order_relaxed);
     return meters;
 }

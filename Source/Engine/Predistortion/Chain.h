@@ -40,7 +40,7 @@ public:
     void process(const double* in, double* out, std::size_t n);
 
     using Meters = ChainEngine::Meters;  ///< faults: also samples that were not finite
-    Meters take();                       ///< from any one thread
+    Meters collectMeters();              ///< from any one thread
 
 private:
     double delayed(double sample, double& scale);

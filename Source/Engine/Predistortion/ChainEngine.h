@@ -34,7 +34,7 @@ public:
     /// @param played  how much of what comes out is the loudspeaker's; is stepped once a sample
     virtual void process(double* volts, std::size_t n, Fade& played) = 0;
 
-    virtual void publish() = 0;  ///< lets take() see what has come out
+    virtual void publish() = 0;  ///< lets collectMeters() see what has come out
 
     struct Meters {
         Predistorter::Meters predistorter;
@@ -42,7 +42,7 @@ public:
         double region = 0.0;  ///< of a model without physics: how far out it went, 1 as far as its fit has been
         int faults = 0;       ///< since construction
     };
-    virtual Meters take() = 0;  ///< from any one thread
+    virtual Meters collectMeters() = 0;  ///< from any one thread
 };
 
 }  // namespace excursion

@@ -58,7 +58,7 @@ public:
     {
         while (n > 0) {
             if (left_ == 0 && !old_)
-                if (auto* parcel = handover_.take()) {
+                if (auto* parcel = handover_.accept()) {
                     old_ = now_;
                     now_ = parcel;
                     unheard_ = warm_ + std::max(parcel->warm, 0);

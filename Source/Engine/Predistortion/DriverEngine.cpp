@@ -65,11 +65,13 @@ void DriverEngine::publish()
     bend_.publish();
 }
 
-ChainEngine::Meters DriverEngine::take()
+ChainEngine::Meters DriverEngine::collectMeters()
 {
-    const auto bend = bend_.take();
-    return {
-        bend, {displacement_.take(), current_.take(), 0}, 0.0, bend.faults + faults_.load(std::memory_order_relaxed)};
+    const auto bend = bend_.collectMeters();
+    return {bend,
+            {displacement_.readAndReset(), current_.readAndReset(), 0},
+            0.0,
+            bend.faults + faults_.load(std::memory_order_relaxed)};
 }
 
 }  // namespace excursion

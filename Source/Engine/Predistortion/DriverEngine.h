@@ -26,7 +26,7 @@ public:
     void setLinearShareRemoved(double share) override { cone_.setLinearShareRemoved(share); }
     void process(double* volts, std::size_t n, Fade& played) override;
     void publish() override;
-    Meters take() override;
+    Meters collectMeters() override;
 
 private:
     void play(std::size_t n, Fade& played);

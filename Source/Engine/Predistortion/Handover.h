@@ -10,8 +10,8 @@ namespace excursion {
 /// Hands a new engine (a Predistorter, a Speaker, or anything) to the audio thread and takes the old one back, without
 /// a lock:
 ///  - offer() and collect() are for other threads: they allocate and free;
-///  - take() and retire() are for the audio thread, one at a time: two atomic exchanges, nothing else.
-/// An engine that was offered and not yet taken is replaced by the next one.
+///  - accept() and retire() are for the audio thread, one at a time: two atomic exchanges, nothing else.
+/// An engine that was offered and not yet accepted is replaced by the next one.
 template <class Engine>
 class Handover {
 public:
@@ -47,7 +47,7 @@ public:
     }
 
     /// The latest offer, or nullptr; the caller owns it until retire().
-    Parcel* take()
+    Parcel* accept()
     {
         // A plain look first: an exchange at every block would fetch the cache line from the other thread each time.
         return offered_.load(std::memory_order_relaxed) ? offered_.exchange(nullptr, std::memory_order_acquire)

@@ -42,19 +42,20 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
     for (const auto& component : model.components) {
         const auto& effect = *component.effect;
         std::vector<double> parameters,
-            coefficients(static_cast<std::size_t>(effect.coefficientCount(component.extent)));
+            coefficients(static_cast<std::size_t>(effect.coefficientCount(component.operatingRange)));
         for (const auto& parameter : component.parameters)
             parameters.push_back(parameter.value);
-        effect.prepare(component.extent, parameters.data(), coefficients.data());
+        effect.prepare(component.operatingRange, parameters.data(), coefficients.data());
         if (&component != &model.base())
-            visited = std::max(visited, component.extent.current);
+            visited = std::max(visited, component.operatingRange.current);
 
         std::vector<Tangent> constants(coefficients.begin(), coefficients.end());
-        std::vector<Tangent> silent(static_cast<std::size_t>(effect.memorySize(component.extent)), Tangent(0.0)),
+        std::vector<Tangent> silent(static_cast<std::size_t>(effect.memorySize(component.operatingRange)),
+                                    Tangent(0.0)),
             unused = silent;
         const Motion<Tangent> rest {carrying(0.0, 0.0, 1.0), Tangent(0.0), Tangent(0.0)};
-        effect.contribute(component.extent, constants.data(), rest, silent.data(), unused.data(), atRest);
-        const auto form = linearForm(effect, component.extent, coefficients.data());
+        effect.contribute(component.operatingRange, constants.data(), rest, silent.data(), unused.data(), atRest);
+        const auto form = linearForm(effect, component.operatingRange, coefficients.data());
         if (form) {
             linear_.inductance += form->inductance;
             linear_.mass += form->mass;
@@ -66,11 +67,11 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
             forceByCurrent_ += form->force[0];
         } else {
             curved_.push_back(
-                {&effect, component.extent, std::move(constants), std::nullopt, std::nullopt, silent, unused});
+                {&effect, component.operatingRange, std::move(constants), std::nullopt, std::nullopt, silent, unused});
         }
         if (silent.empty())
             continue;
-        const auto rates = linearRates(effect, component.extent, coefficients.data());
+        const auto rates = linearRates(effect, component.operatingRange, coefficients.data());
         auto block = !rates ? std::nullopt
                      : form ? LinearMemory::summed(*rates, form->dropByMemory, form->forceByMemory, sampleRate)
                             : LinearMemory::readable(*rates, sampleRate);
@@ -80,7 +81,7 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
             blocks.push_back(std::move(*block));
             continue;
         }
-        Memory memory(effect, component.extent, coefficients, sampleRate);
+        Memory memory(effect, component.operatingRange, coefficients, sampleRate);
         if (form) {
             dropByCurrent_ += sumOf(form->dropByMemory, memory.byCurrent());
             forceByCurrent_ += sumOf(form->forceByMemory, memory.byCurrent());
@@ -181,7 +182,8 @@ double Inverse::solve(const MotionPoint& to, double guess)
             for (std::size_t k = 0; k < memory.size(); ++k)
                 part.state[k] = carrying(memory.value()[k], rate[k], memory.byCurrent()[k]);
         }
-        part.effect->contribute(part.extent, part.coefficients.data(), at, part.state.data(), part.rate.data(), sum);
+        part.effect->contribute(part.operatingRange, part.coefficients.data(), at, part.state.data(), part.rate.data(),
+                                sum);
     }
     const double missing = sum.mass.a * to.a - sum.force.a;  // N
     if (!electrical_)

@@ -54,7 +54,7 @@ private:
     /// An effect that is asked at every sample.
     struct Curved {
         const Effect* effect;
-        Extent extent;
+        OperatingRange operatingRange;
         std::vector<Tangent> coefficients;
         std::optional<std::size_t> block;  ///< of together_, where its memory is
         std::optional<Memory> memory;      ///< or by itself

@@ -5,14 +5,15 @@
 
 namespace excursion {
 
-std::optional<LinearForm> linearForm(const Effect& effect, const Extent& extent, const double* coefficients)
+std::optional<LinearForm> linearForm(const Effect& effect, const OperatingRange& operatingRange,
+                                     const double* coefficients)
 {
-    const auto n = static_cast<std::size_t>(effect.memorySize(extent));
-    const std::array<double, 3> visited {extent.current, extent.displacement, extent.velocity};
+    const auto n = static_cast<std::size_t>(effect.memorySize(operatingRange));
+    const std::array<double, 3> visited {operatingRange.current, operatingRange.displacement, operatingRange.velocity};
     std::vector<double> memory(n, 0.0), unused(n, 0.0);
     const auto ask = [&](const std::array<double, 3>& q) {
         Balance<double> sum;
-        effect.contribute(extent, coefficients, {q[0], q[1], q[2]}, memory.data(), unused.data(), sum);
+        effect.contribute(operatingRange, coefficients, {q[0], q[1], q[2]}, memory.data(), unused.data(), sum);
         return sum;
     };
     const auto rest = ask({});
@@ -65,14 +66,15 @@ std::optional<LinearForm> linearForm(const Effect& effect, const Extent& extent,
     return form;
 }
 
-std::optional<LinearRates> linearRates(const Effect& effect, const Extent& extent, const double* coefficients)
+std::optional<LinearRates> linearRates(const Effect& effect, const OperatingRange& operatingRange,
+                                       const double* coefficients)
 {
-    const auto n = static_cast<Eigen::Index>(effect.memorySize(extent));
-    const Eigen::Vector3d visited(extent.current, extent.displacement, extent.velocity);
+    const auto n = static_cast<Eigen::Index>(effect.memorySize(operatingRange));
+    const Eigen::Vector3d visited(operatingRange.current, operatingRange.displacement, operatingRange.velocity);
     Eigen::VectorXd m = Eigen::VectorXd::Zero(n), r(n);
     const auto ask = [&](const Eigen::Vector3d& q) -> const Eigen::VectorXd& {
         Balance<double> unused;
-        effect.contribute(extent, coefficients, {q[0], q[1], q[2]}, m.data(), r.data(), unused);
+        effect.contribute(operatingRange, coefficients, {q[0], q[1], q[2]}, m.data(), r.data(), unused);
         return r;
     };
     LinearRates rates {Eigen::MatrixXd(n, n), Eigen::MatrixX3d(n, 3)};

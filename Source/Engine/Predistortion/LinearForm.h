@@ -23,7 +23,7 @@ struct LinearForm {
 
 /// The linear form, or nothing when what the effect adds elsewhere does not agree with it.
 /// @param coefficients  of the effect, prepared
-std::optional<LinearForm> linearForm(const Effect&, const Extent&, const double* coefficients);
+std::optional<LinearForm> linearForm(const Effect&, const OperatingRange&, const double* coefficients);
 
 /// The rates of an effect's memory where they are linear, dm/dt = A m + b (i, x, v).
 struct LinearRates {
@@ -33,6 +33,6 @@ struct LinearRates {
 
 /// The linear rates, or nothing when the rates elsewhere do not agree with them.
 /// @param coefficients  of the effect, prepared
-std::optional<LinearRates> linearRates(const Effect&, const Extent&, const double* coefficients);
+std::optional<LinearRates> linearRates(const Effect&, const OperatingRange&, const double* coefficients);
 
 }  // namespace excursion

@@ -9,18 +9,19 @@
 
 namespace excursion {
 
-Memory::Memory(const Effect& effect, const Extent& extent, std::vector<double> coefficients, double sampleRate)
+Memory::Memory(const Effect& effect, const OperatingRange& operatingRange, std::vector<double> coefficients,
+               double sampleRate)
     : effect_(&effect),
-      extent_(extent),
+      operatingRange_(operatingRange),
       coefficients_(std::move(coefficients)),
       period_(1.0 / sampleRate),
-      size_(static_cast<std::size_t>(effect.memorySize(extent)))
+      size_(static_cast<std::size_t>(effect.memorySize(operatingRange)))
 {
     for (auto* place : {&value_, &rate_, &byCurrent_, &next_, &before_})
         place->assign(size_, 0.0);
     for (auto& stage : stages_)
         stage.assign(size_, 0.0);
-    if (const auto linear = linearRates(effect, extent, coefficients_.data()))
+    if (const auto linear = linearRates(effect, operatingRange, coefficients_.data()))
         prepareLinear(*linear, sampleRate);
     else if (findDriven(sampleRate))
         kind_ = Kind::driven;
@@ -29,7 +30,7 @@ Memory::Memory(const Effect& effect, const Extent& extent, std::vector<double> c
 void Memory::rates(double i, double x, double v, const double* m, double* out) const
 {
     Balance<double> unused;
-    effect_->contribute(extent_, coefficients_.data(), {i, x, v}, m, out, unused);
+    effect_->contribute(operatingRange_, coefficients_.data(), {i, x, v}, m, out, unused);
 }
 
 void Memory::prepareLinear(const LinearRates& linear, double sampleRate)
@@ -63,8 +64,8 @@ bool Memory::findDriven(double sampleRate)
         return false;
     for (int trial = 1; trial <= 4; ++trial) {
         const auto visited = [trial](double most, double phase) { return most * std::sin(1.0 + 2.3 * trial + phase); };
-        const double i = visited(extent_.current, 0.0), x = visited(extent_.displacement, 1.7),
-                     v = visited(extent_.velocity, 3.4);
+        const double i = visited(operatingRange_.current, 0.0), x = visited(operatingRange_.displacement, 1.7),
+                     v = visited(operatingRange_.velocity, 3.4);
         Eigen::VectorXd forgotten(n);
         m.setZero();
         rates(i, x, v, m.data(), forgotten.data());

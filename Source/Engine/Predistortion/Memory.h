@@ -22,7 +22,7 @@ namespace excursion {
 class Memory {
 public:
     /// @param coefficients  of the effect, prepared
-    Memory(const Effect&, const Extent&, std::vector<double> coefficients, double sampleRate);
+    Memory(const Effect&, const OperatingRange&, std::vector<double> coefficients, double sampleRate);
 
     std::size_t size() const { return size_; }
     void reset();
@@ -51,7 +51,7 @@ private:
     void stepAny(const MotionCubic&);
 
     const Effect* effect_;
-    Extent extent_;
+    OperatingRange operatingRange_;
     std::vector<double> coefficients_;
     double period_;
     std::size_t size_;

@@ -13,7 +13,7 @@ public:
         if (value > peak_.load(std::memory_order_relaxed))
             peak_.store(value, std::memory_order_relaxed);
     }
-    double take() { return peak_.exchange(0.0, std::memory_order_relaxed); }
+    double readAndReset() { return peak_.exchange(0.0, std::memory_order_relaxed); }
 
 private:
     static_assert(std::atomic<double>::is_always_lock_free);

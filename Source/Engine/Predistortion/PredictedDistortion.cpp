@@ -56,7 +56,7 @@ PredictedDistortion predictDistortion(const Model& model, const PredistortionCon
     const auto before = settled(plain, nullptr, period, periods), after = settled(played, &bend, period, periods);
 
     PredictedDistortion result;
-    result.displacement = plain.take().displacement;
+    result.displacement = plain.collectMeters().displacement;
     const double resolution = options.sampleRate / tones.period;
     constexpr double fewest = 8.0;  // lines in a band: of fewer, all might be excited or all even
     double signalSum = 0.0, bentSum = 0.0, beforeSum = 0.0, afterSum = 0.0;

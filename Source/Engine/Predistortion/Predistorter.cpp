@@ -171,14 +171,10 @@ void Predistorter::publish()
     peak_ = {};
 }
 
-Predistorter::Meters Predistorter::take()
+Predistorter::Meters Predistorter::collectMeters()
 {
-    return {displacement_.take(),
-            voltage_.take(),
-            power_.take(),
-            displacementReduction_.take(),
-            voltageReduction_.take(),
-            powerReduction_.take(),
+    return {displacement_.readAndReset(),           voltage_.readAndReset(),          power_.readAndReset(),
+            displacementReduction_.readAndReset(),  voltageReduction_.readAndReset(), powerReduction_.readAndReset(),
             faults_.load(std::memory_order_relaxed)};
 }
 

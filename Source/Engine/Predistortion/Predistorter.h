@@ -57,9 +57,9 @@ public:
     double* between() { return between_.data(); }  ///< as many times n as the oversampling says
     void finish(double* out, std::size_t n);
     std::size_t room() const { return protection_.left(); }  ///< 1 to longestPart samples
-    void publish();                                          ///< lets take() see what has come out
+    void publish();                                          ///< lets collectMeters() see what has come out
 
-    /// Since the last call of take(); may be read from another thread.
+    /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
         double displacement = 0.0;  ///< peak of a cone that was given the output, m
         double voltage = 0.0;       ///< peak that came out, V
@@ -69,7 +69,7 @@ public:
         double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;
         int faults = 0;  ///< since construction
     };
-    Meters take();
+    Meters collectMeters();
 
 private:
     bool bends() const { return on_ || amount_.value() > 0.0; }

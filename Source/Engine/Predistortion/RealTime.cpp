@@ -55,7 +55,7 @@ double measuredDisplacement(const Model& model)
     double range = 0.0;
     for (const auto& component : model.components)
         if (const auto law = component.effect->law(); law && law->argument == "x")
-            range = std::max(range, component.extent.displacement);
+            range = std::max(range, component.operatingRange.displacement);
     return range > 0.0 ? range : std::numeric_limits<double>::infinity();
 }
 

@@ -190,10 +190,4 @@ Recipe recipeFromJson(const JsonField& field)
     return recipe;
 }
 
-Recipe readRecipe(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return recipeFromJson(JsonField(document, "", path.string()));
-}
-
 }  // namespace excursion

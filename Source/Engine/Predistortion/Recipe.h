@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,6 +72,5 @@ PredistortionControls controlsOf(const Recipe&, const Model&);
 nlohmann::ordered_json toJson(const Recipe&);
 /// Throws Error (input): the file, the field, what was found and what is expected.
 Recipe recipeFromJson(const JsonField&);
-Recipe readRecipe(const std::filesystem::path&);
 
 }  // namespace excursion

@@ -61,9 +61,9 @@ void Speaker::process(const double* in, double* out, std::size_t n)
     peak_ = {};
 }
 
-Speaker::Meters Speaker::take()
+Speaker::Meters Speaker::collectMeters()
 {
-    return {displacement_.take(), current_.take(), faults_.load(std::memory_order_relaxed)};
+    return {displacement_.readAndReset(), current_.readAndReset(), faults_.load(std::memory_order_relaxed)};
 }
 
 double plateau(const Model& model)

@@ -35,13 +35,13 @@ public:
     /// @param out  m/s^2; may be the same place
     void process(const double* in, double* out, std::size_t n);
 
-    /// Since the last call of take(); may be read from another thread.
+    /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
         double displacement = 0.0;  ///< peak, m
         double current = 0.0;       ///< peak, A
         int faults = 0;             ///< since construction
     };
-    Meters take();
+    Meters collectMeters();
 
 private:
     Oversampling oversampling_;

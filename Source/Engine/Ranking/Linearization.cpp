@@ -86,7 +86,7 @@ RankedLinearization ofDriver(const JsonField& document, const std::string& outpu
     RankedLinearization told;
     const auto model = modelFromJson(document);
     if (output == "current") {
-        told.trouble = "A driver is turned around for its motion, and then its current is less linear than before: "
+        told.trouble = "A driver is inverted for its motion, and then its current is less linear than before: "
                        "rank a displacement, a velocity, an acceleration or a pressure.";
         return told;
     }
@@ -142,8 +142,8 @@ RankedLinearization linearizationOf(const RankedModel& model, const std::string&
                  unexplained = std::max(powerOf(error) - noise, belowNoise * noise);
     told.leftDb = decibelsOf(powerOf(told.modelDb) + unexplained);
     if (!(told.beforeDb - told.leftDb >= worthTelling))
-        told.trouble = "Of its distortion of " + plainText(told.beforeDb, 1) + " dB " + plainText(told.leftDb, 1)
-                       + " dB would be left on the take, of which the model explains too little.";
+        told.trouble = "Its distortion is " + plainText(told.beforeDb, 1) + " dB, and " + plainText(told.leftDb, 1)
+                       + " dB would be left on the take, because the model explains too little of it.";
     return told;
 }
 

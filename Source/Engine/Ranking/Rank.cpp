@@ -2,10 +2,9 @@
 #include "Engine/Ranking/Rank.h"
 
 #include "Engine/BlackBox/Stimulus.h"
+#include "Engine/Check/TakeResponse.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
-#include "Engine/Estimate/Bla.h"
-#include "Engine/Estimate/Welch.h"
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Ranking/Linearization.h"
 #include "Engine/Ranking/ModelClasses.h"
@@ -108,10 +107,10 @@ void tellStraightest(Ranking& ranking)
     }
     const auto& told = chosen->linearization;
     ranking.straightest = chosen->name;
-    ranking.straightSentence = "\"" + chosen->name + "\" linearizes best: of a distortion of "
-                               + plainText(told.beforeDb, 1) + " dB " + plainText(told.leftDb, 1) + " dB are left, for "
-                               + plainText(100.0 * told.load, 2) + " % of a core a channel, "
-                               + plainText(1e3 * told.latency, 1) + " ms late.";
+    ranking.straightSentence = "\"" + chosen->name + "\" linearizes best: it brings the distortion from "
+                               + plainText(told.beforeDb, 1) + " to " + plainText(told.leftDb, 1) + " dB, with "
+                               + plainText(100.0 * told.load, 2) + " % of a core a channel and a latency of "
+                               + plainText(1e3 * told.latency, 1) + " ms.";
 }
 
 }  // namespace
@@ -157,8 +156,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
         throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
 
     progress.at(0.0, "the linear model");
-    const auto response = frequencyDataOf(periodic ? bla(take, output->quantity, level).frf
-                                                   : welch(take, output->quantity).frf);
+    const auto response = frequencyDataOf(responseOf(given, {std::string(name(output->quantity)), {}, level}).frf);
     OrderSweepOptions sweeping;
     sweeping.orders = {2, 3, 4, 5, 6, 8};
     sweeping.identify.sampleRate = take.sampleRate;
@@ -201,7 +199,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
                               : "No stable model explains the take best.";
     for (auto& model : ranking.models)
         if (model.trouble.empty()) {
-            progress.at(0.95, "turning " + model.name + " around");
+            progress.at(0.95, "inverting " + model.name);
             model.linearization = linearizationOf(model, std::string(name(ranking.output)), take.sampleRate,
                                                   ranking.noiseDb, progress.part(0.95, 0.95));
         }

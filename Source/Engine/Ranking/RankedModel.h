@@ -7,7 +7,7 @@
 
 namespace excursion {
 
-/// What it is worth to turn a class around, see linearizationOf(). Distortion is the power of what is not the linear
+/// What it is worth to invert a class, see linearizationOf(). Distortion is the power of what is not the linear
 /// part's output, over that.
 struct RankedLinearization {
     double beforeDb = 0.0;  ///< as the model was fitted
@@ -15,7 +15,7 @@ struct RankedLinearization {
     double leftDb = 0.0;    ///< left of it on the take, with what the model does not explain
     double load = 0.0;  ///< share of a core that predistorting one channel takes, in blocks of 64, at the take's rate
     double latency = 0.0;  ///< s
-    std::string trouble;   ///< why it is not turned around, one sentence; the figures then mean nothing
+    std::string trouble;   ///< why it is not inverted, one sentence; the figures then mean nothing
     double gainDb() const { return beforeDb - leftDb; }
 };
 

@@ -50,8 +50,8 @@ Eigen::Vector3d visited(const Model& model)
 {
     Eigen::Vector3d range = Eigen::Vector3d::Zero();
     for (const auto& component : model.components)
-        range = range.cwiseMax(
-            Eigen::Vector3d(component.extent.current, component.extent.displacement, component.extent.velocity));
+        range = range.cwiseMax(Eigen::Vector3d(component.operatingRange.current, component.operatingRange.displacement,
+                                               component.operatingRange.velocity));
     return range;
 }
 

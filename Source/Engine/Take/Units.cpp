@@ -15,7 +15,7 @@ struct UnitEntry {
 };
 
 using enum Quantity;
-constexpr UnitEntry entries[] {
+constexpr UnitEntry unitEntries[] {
     {voltage, "V", "V", 1, true},
     {voltage, "mV", "V", 1e-3, true},
     {current, "A", "A", 1, true},
@@ -63,7 +63,7 @@ bool sameButForCase(std::string_view a, std::string_view b)
 std::optional<UnitScale> unitNamed(Quantity quantity, std::string_view text)
 {
     for (const bool exact : {true, false})
-        for (const auto& entry : entries)
+        for (const auto& entry : unitEntries)
             if (entry.quantity == quantity && (exact ? entry.written == text : sameButForCase(entry.written, text)))
                 return UnitScale {std::string(entry.unit), entry.factor};
     return std::nullopt;
@@ -72,7 +72,7 @@ std::optional<UnitScale> unitNamed(Quantity quantity, std::string_view text)
 std::string acceptedUnits(Quantity quantity)
 {
     std::vector<std::string> units;
-    for (const auto& entry : entries)
+    for (const auto& entry : unitEntries)
         if (entry.quantity == quantity && entry.listed)
             units.emplace_back(entry.written);
     std::string text = units.front();

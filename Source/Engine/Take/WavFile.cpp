@@ -119,7 +119,7 @@ std::uint64_t bytesOfSample(int format)
 enum class Container { wav, sound };
 
 // of all channels of a compressed file, which may claim any number
-constexpr std::uint64_t mostSamples = std::uint64_t(1) << 31;
+constexpr std::uint64_t mostSamplesOfFile = std::uint64_t(1) << 31;
 
 /// @param allowed  wav: nothing but that; sound: AIFF, CAF and FLAC, too
 Wav readSamples(const fs::path& path, Container allowed)
@@ -152,7 +152,7 @@ Wav readSamples(const fs::path& path, Container allowed)
         refuse(path, "holds no samples.");
     const auto frames = static_cast<std::uint64_t>(info.frames), channels = static_cast<std::uint64_t>(info.channels);
     const bool unknown = flac && info.frames == SF_COUNT_MAX;  // a stream that was not told its length
-    if (!unknown && frames > (flac ? mostSamples : size / sampleBytes) / channels)
+    if (!unknown && frames > (flac ? mostSamplesOfFile : size / sampleBytes) / channels)
         refuse(path, "is damaged: its header claims " + std::to_string(frames)
                          + " samples a channel, more than the file can hold.");
 
@@ -173,7 +173,7 @@ Wav readSamples(const fs::path& path, Container allowed)
                              + " samples a channel can be read; copy it again.");
         const auto count = unknown ? static_cast<std::size_t>(read)
                                    : std::min(static_cast<std::size_t>(read), static_cast<std::size_t>(frames) - done);
-        if ((done + count) * channels > mostSamples && flac)
+        if ((done + count) * channels > mostSamplesOfFile && flac)
             refuse(path, "holds more than two thousand million samples; cut it into shorter recordings.");
         for (std::size_t c = 0; c < channels; ++c)
             for (std::size_t n = 0; n < count; ++n)

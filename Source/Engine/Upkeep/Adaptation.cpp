@@ -42,7 +42,7 @@ Adaptation adaptTo(const Model& model, const PreparedTake& take, const std::vect
     adapt(record, model);
     result.before = compare(model, record, {0, false}, progress.part(0.0, 0.1));
     result.drift = followDrift(model, record, names, {}, progress.part(0.1, 0.9));
-    result.beyond = visitedExtent(model, record).displacement > farther * measuredDisplacement(model);
+    result.beyond = visitedRange(model, record).displacement > farther * measuredDisplacement(model);
     result.after = compare(result.drift.model, record, {result.drift.search.substeps, false}, progress.part(0.9, 1.0));
     return result;
 }
@@ -52,13 +52,14 @@ std::string sentenceOn(const Adaptation& adapted)
     const auto &before = adapted.before, &after = adapted.after;
     if (!after.noiseKnown)
         return {};
-    if (after.chi <= explained)
-        return before.chi <= explained ? "The model was right before: nothing has drifted that this take can see."
-                                       : "That is all that has changed: what is left is the noise.";
+    if (after.chiSquaredPerValue <= explained)
+        return before.chiSquaredPerValue <= explained
+                   ? "The model was right before: nothing has drifted that this take can see."
+                   : "That is all that has changed: what is left is the noise.";
     if (adapted.beyond)
         return "In this take the cone goes farther than the laws of the model were measured: play it softer, or fit "
                "the model anew.";
-    return after.chi < 0.5 * before.chi
+    return after.chiSquaredPerValue < 0.5 * before.chiSquaredPerValue
                ? "Something is left that these parameters do not explain: compare the new model with the take."
                : "These parameters are not what has changed: the error hardly fell. Compare the model with the take, "
                  "or diagnose it.";

@@ -4,6 +4,7 @@
 #include "Engine/Polynomial/Block/BlockModelFile.h"
 #include "Engine/Polynomial/Block/BlockModelFit.h"
 #include "Engine/Polynomial/InputOutputRecord.h"
+#include "DocumentFile.h"
 #include "Linear/Problem.h"
 #include "Polynomial/LinearStart.h"
 #include "Polynomial/Silverbox.h"
@@ -292,28 +293,20 @@ TEST_CASE("A linear system needs no branch, and an unstable or useless linear pa
 
 TEST_CASE("A block model is kept and read again, bit for bit, and what does not fit is refused")
 {
-    const Scratch scratch;
     Normal normal(8);
     const BlockModel model {
         Resonator(normal).model(), {}, Eigen::Vector3d(0.3, 0.05, -0.04), Eigen::Vector2d(0.1, 0.2), 0.5};
-    writeBlockModel({"box", "voltage", "displacement", model}, scratch / "model.json");
-    const auto named = readBlockModel(scratch / "model.json");
+    const DocumentFile file(toJson(Named<BlockModel> {"box", "voltage", "displacement", model}), blockModelFromJson);
+    const auto named = file.read();
     CHECK(named.output == "displacement");
     CHECK(named.model.linear.A == model.linear.A);
     CHECK(named.model.hammerstein.size() == 0);
     CHECK(named.model.wiener == model.wiener);
     CHECK(named.model.feedback == model.feedback);
     CHECK(named.model.offset == 0.5);
-    const auto document = nlohmann::json::parse(bytesOf(scratch / "model.json"));
-    const auto refuses = [&](const char* what, auto edit) {
-        auto broken = document;
-        edit(broken);
-        const auto file = scratch.file("broken.json", broken.dump());
-        refused(Error::Kind::input, what, [&] { readBlockModel(file); });
-    };
-    refuses("wiener[1]", [](auto& d) { d["wiener"][1] = "x"; });
-    refuses("feedback", [](auto& d) { d.erase("feedback"); });
-    refuses("linear", [](auto& d) { d["linear"]["sampleRate"] = 0; });
-    refuses("offset", [](auto& d) { d["offset"] = nullptr; });
-    refuses("degree 20", [](auto& d) { d["wiener"] = std::vector<double>(30, 1.0); });
+    file.refuses("wiener[1]", [](auto& d) { d["wiener"][1] = "x"; });
+    file.refuses("feedback", [](auto& d) { d.erase("feedback"); });
+    file.refuses("linear", [](auto& d) { d["linear"]["sampleRate"] = 0; });
+    file.refuses("offset", [](auto& d) { d["offset"] = nullptr; });
+    file.refuses("degree 20", [](auto& d) { d["wiener"] = std::vector<double>(30, 1.0); });
 }

@@ -6,6 +6,7 @@
 #include "Engine/Polynomial/InputOutputRecord.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Signal/Multisine.h"
+#include "DocumentFile.h"
 #include "Linear/Problem.h"
 
 #include <nlohmann/json.hpp>
@@ -338,24 +339,17 @@ TEST_CASE("Records that no parallel Hammerstein model can be fitted to are refus
 
 TEST_CASE("A parallel Hammerstein model is kept and read again, bit for bit, and what does not fit is refused")
 {
-    const Scratch scratch;
     ParallelHammerstein model {48000.0, Eigen::MatrixXd::Random(5, 3), 0.1};
-    writeParallelHammerstein({"box", "voltage", "current", model}, scratch / "model.json");
-    const auto read = readParallelHammerstein(scratch / "model.json");
+    const DocumentFile file(toJson(Named<ParallelHammerstein> {"box", "voltage", "current", model}),
+                            parallelHammersteinFromJson);
+    const auto read = file.read();
     CHECK(read.input == "voltage");
     CHECK(read.model.sampleRate == 48000.0);
     CHECK(read.model.offset == 0.1);
     CHECK((read.model.filters.array() == model.filters.array()).all());
-    const auto document = nlohmann::json::parse(bytesOf(scratch / "model.json"));
-    const auto refuses = [&](const char* named, auto edit) {
-        auto broken = document;
-        edit(broken);
-        const auto file = scratch.file("broken.json", broken.dump());
-        refused(Error::Kind::input, named, [&] { readParallelHammerstein(file); });
-    };
-    refuses("branches[1]", [](auto& d) { d["branches"][1].erase(0); });
-    refuses("branches", [](auto& d) { d["branches"] = nlohmann::json::array(); });
-    refuses("sampleRate", [](auto& d) { d["sampleRate"] = 0; });
-    refuses("offset", [](auto& d) { d["offset"] = "none"; });
-    refuses("format", [](auto& d) { d["format"] = "excursion-pnlss"; });
+    file.refuses("branches[1]", [](auto& d) { d["branches"][1].erase(0); });
+    file.refuses("branches", [](auto& d) { d["branches"] = nlohmann::json::array(); });
+    file.refuses("sampleRate", [](auto& d) { d["sampleRate"] = 0; });
+    file.refuses("offset", [](auto& d) { d["offset"] = "none"; });
+    file.refuses("format", [](auto& d) { d["format"] = "excursion-pnlss"; });
 }

@@ -5,6 +5,7 @@
 #include "Engine/Polynomial/Narx/NarxFit.h"
 #include "Engine/Polynomial/Narx/NarxRecursion.h"
 #include "Engine/Polynomial/InputOutputRecord.h"
+#include "DocumentFile.h"
 #include "Linear/Problem.h"
 #include "Polynomial/Silverbox.h"
 
@@ -206,24 +207,16 @@ TEST_CASE("Records and options that no NARX model can be fitted to are refused")
 
 TEST_CASE("A NARX model is kept and read again, bit for bit, and what does not fit is refused")
 {
-    const Scratch scratch;
     const auto model = example();
-    writeNarx({"box", "voltage", "displacement", model}, scratch / "model.json");
-    const auto read = readNarx(scratch / "model.json").model;
+    const DocumentFile file(toJson(Named<Narx> {"box", "voltage", "displacement", model}), narxFromJson);
+    const auto read = file.read().model;
     CHECK(read.exponents == model.exponents);
     CHECK((read.coefficients.array() == model.coefficients.array()).all());
     CHECK(read.outputLags == 2);
     CHECK(read.inputLags == 1);
-    const auto document = nlohmann::json::parse(bytesOf(scratch / "model.json"));
-    const auto refuses = [&](const char* named, auto edit) {
-        auto broken = document;
-        edit(broken);
-        const auto file = scratch.file("broken.json", broken.dump());
-        refused(Error::Kind::input, named, [&] { readNarx(file); });
-    };
-    refuses("terms[1].exponents", [](auto& d) { d["terms"][1]["exponents"].erase(0); });
-    refuses("terms[2].exponents[0]", [](auto& d) { d["terms"][2]["exponents"][0] = -1; });
-    refuses("terms[0].coefficient", [](auto& d) { d["terms"][0]["coefficient"] = nullptr; });
-    refuses("outputLags", [](auto& d) { d["outputLags"] = 2.5; });
-    refuses("sampleRate", [](auto& d) { d["sampleRate"] = -1; });
+    file.refuses("terms[1].exponents", [](auto& d) { d["terms"][1]["exponents"].erase(0); });
+    file.refuses("terms[2].exponents[0]", [](auto& d) { d["terms"][2]["exponents"][0] = -1; });
+    file.refuses("terms[0].coefficient", [](auto& d) { d["terms"][0]["coefficient"] = nullptr; });
+    file.refuses("outputLags", [](auto& d) { d["outputLags"] = 2.5; });
+    file.refuses("sampleRate", [](auto& d) { d["sampleRate"] = -1; });
 }

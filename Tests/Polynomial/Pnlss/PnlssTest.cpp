@@ -2,6 +2,7 @@
 // Monomials, models, their recursion and its derivatives, against definitions and finite differences.
 #include "Engine/Polynomial/Pnlss/PnlssFile.h"
 #include "Engine/Polynomial/Pnlss/Recursion.h"
+#include "DocumentFile.h"
 #include "Linear/Problem.h"
 
 #include <nlohmann/json.hpp>
@@ -337,27 +338,18 @@ TEST_CASE("A change of states changes nothing that can be measured")
 
 TEST_CASE("A PNLSS model is kept and read again, bit for bit, and what does not fit is refused")
 {
-    const Scratch scratch;
     const auto model = drawn(3, 1, 1, 3, TermMask::diagonal, true);
-    writePnlss({"box", {"voltage"}, {"current"}, model}, scratch / "model.json");
-    const auto read = readPnlss(scratch / "model.json").model;
+    const DocumentFile file(toJson(NamedPnlss {"box", {"voltage"}, {"current"}, model}), pnlssFromJson);
+    const auto read = file.read().model;
     CHECK(read.exponents == model.exponents);
     CHECK((read.E.array() == model.E.array()).all());
     CHECK((read.F.array() == model.F.array()).all());
     CHECK((read.free == model.free).all());
     const auto u = noise(100, 1);
     CHECK((simulate(read, u).array() == simulate(model, u).array()).all());
-
-    auto document = nlohmann::json::parse(bytesOf(scratch / "model.json"));
-    const auto refuses = [&](const char* named, auto edit) {
-        auto broken = document;
-        edit(broken);
-        const auto file = scratch.file("broken.json", broken.dump());
-        refused(Error::Kind::input, named, [&] { readPnlss(file); });
-    };
-    refuses("terms[1].E", [](auto& d) { d["terms"][1]["E"].erase(0); });
-    refuses("terms[0].exponents", [](auto& d) { d["terms"][0]["exponents"] = {0, 1, 0, 0}; });
-    refuses("terms[2].free", [](auto& d) { d["terms"][2]["free"].push_back(true); });
-    refuses("sampleRate", [](auto& d) { d["linear"]["sampleRate"] = 0; });
-    refuses("linear.A", [](auto& d) { d["linear"]["A"].erase(0); });
+    file.refuses("terms[1].E", [](auto& d) { d["terms"][1]["E"].erase(0); });
+    file.refuses("terms[0].exponents", [](auto& d) { d["terms"][0]["exponents"] = {0, 1, 0, 0}; });
+    file.refuses("terms[2].free", [](auto& d) { d["terms"][2]["free"].push_back(true); });
+    file.refuses("sampleRate", [](auto& d) { d["linear"]["sampleRate"] = 0; });
+    file.refuses("linear.A", [](auto& d) { d["linear"]["A"].erase(0); });
 }

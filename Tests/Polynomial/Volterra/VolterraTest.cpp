@@ -2,6 +2,7 @@
 // Volterra kernels against closed forms, and against what simulations of two small tones hold.
 #include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 #include "Engine/Signal/Fft.h"
+#include "DocumentFile.h"
 #include "Linear/Problem.h"
 
 #include <nlohmann/json.hpp>
@@ -259,25 +260,18 @@ TEST_CASE("Models without Volterra kernels are told")
 
 TEST_CASE("A Volterra series is kept and read again, bit for bit, and what does not fit is refused")
 {
-    const Scratch scratch;
     const auto series = volterraSeries(drawnResonance(3, true), 12, 6, 4);
-    writeVolterraSeries({"box", "voltage", "displacement", series}, scratch / "model.json");
-    const auto read = readVolterraSeries(scratch / "model.json").model;
+    const DocumentFile file(toJson(Named<VolterraSeries> {"box", "voltage", "displacement", series}),
+                            volterraSeriesFromJson);
+    const auto read = file.read().model;
     CHECK(read.first == series.first);
     CHECK(read.second == series.second);
     REQUIRE(read.third.size() == 4);
     CHECK(read.third[3] == series.third[3]);
     CHECK(read.offset == series.offset);
-    const auto document = nlohmann::json::parse(bytesOf(scratch / "model.json"));
-    const auto refuses = [&](const char* named, auto edit) {
-        auto broken = document;
-        edit(broken);
-        const auto file = scratch.file("broken.json", broken.dump());
-        refused(Error::Kind::input, named, [&] { readVolterraSeries(file); });
-    };
-    refuses("first[2]", [](auto& d) { d["first"][2] = "x"; });
-    refuses("second[1]", [](auto& d) { d["second"][1].erase(0); });
-    refuses("third[0]", [](auto& d) { d["third"].erase(0); });
-    refuses("symmetric", [](auto& d) { d["second"][0][1] = 17.0; });
-    refuses("offset", [](auto& d) { d.erase("offset"); });
+    file.refuses("first[2]", [](auto& d) { d["first"][2] = "x"; });
+    file.refuses("second[1]", [](auto& d) { d["second"][1].erase(0); });
+    file.refuses("third[0]", [](auto& d) { d["third"].erase(0); });
+    file.refuses("symmetric", [](auto& d) { d["second"][0][1] = 17.0; });
+    file.refuses("offset", [](auto& d) { d.erase("offset"); });
 }

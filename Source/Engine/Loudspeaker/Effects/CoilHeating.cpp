@@ -16,24 +16,21 @@ namespace {
 /// steady rise.
 class CoilHeating final : public EffectOf<CoilHeating> {
 public:
-    std::string id() const override { return "coil-heating"; }
-    std::string title() const override { return "Coil heating Re(T)"; }
-    std::string physics() const override { return "The coil turns power into heat, and hot copper resists more."; }
-    std::string symptoms() const override
+    CoilHeating()
+        : EffectOf({.id = "coil-heating",
+                    .title = "Coil heating Re(T)",
+                    .physics = "The coil turns power into heat, and hot copper resists more.",
+                    .symptoms = "residual voltage in step with the current that grows with the level and in the course "
+                                "of the take, without harmonics",
+                    .remedy = "A larger coil, a closer gap, ferrofluid or a vented pole piece carry the heat away.",
+                    .electrical = true,
+                    .linear = false})
     {
-        return "residual voltage in step with the current that grows with the level and in the course of the take, "
-               "without harmonics";
     }
-    std::string remedy() const override
-    {
-        return "A larger coil, a closer gap, ferrofluid or a vented pole piece carry the heat away.";
-    }
-    bool electrical() const override { return true; }
-    bool linear() const override { return false; }
     bool slow() const override { return true; }
     std::string sizedBy() const override { return "Re"; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         constexpr double plausibleRise = 10.0;  // Re doubles at a current of a third of the visited peak
         const auto time = [&e](const char* name, double likely, double least, double most) -> Parameter {
@@ -53,12 +50,12 @@ public:
                 time("slow", 4.0, 0.5, 100.0)};
     }
 
-    int memorySize(const Extent&) const override { return 2; }
-    int coefficientCount(const Extent&) const override { return 4; }
+    int memorySize(const OperatingRange&) const override { return 2; }
+    int coefficientCount(const OperatingRange&) const override { return 4; }
 
     /// Coefficients: the rise of both stages, ohm/W, and their rates, 1/s.
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         using std::exp;
         c[0] = p[0];
@@ -68,7 +65,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         const T rise = c[0] * memory[0] + c[1] * memory[1];
         const T power = (rise + e.scale) * at.i * at.i;

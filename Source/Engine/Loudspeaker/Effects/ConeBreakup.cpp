@@ -15,24 +15,18 @@ namespace {
 /// over the upper three octaves of the band, so that what is plausible beforehand holds for each.
 class ConeBreakup final : public EffectOf<ConeBreakup> {
 public:
-    std::string id() const override { return "cone-breakup"; }
-    std::string title() const override { return "Cone breakup"; }
-    std::string physics() const override
+    ConeBreakup()
+        : EffectOf({.id = "cone-breakup",
+                    .title = "Cone breakup",
+                    .physics = "Above some frequency the cone bends: parts of it move by themselves and radiate.",
+                    .symptoms = "linear residual pressure in narrow peaks and dips at the top of the band, the same at "
+                                "every level, with no trace of it in the current",
+                    .remedy = "More damping in the cone or its surround, another shape of the cone, or a crossover "
+                              "below the first mode.",
+                    .electrical = false,
+                    .linear = true})
     {
-        return "Above some frequency the cone bends: parts of it move by themselves and radiate.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual pressure in narrow peaks and dips at the top of the band, the same at every level, "
-               "with no trace of it in the current";
-    }
-    std::string remedy() const override
-    {
-        return "More damping in the cone or its surround, another shape of the cone, or a crossover below the first "
-               "mode.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     bool felt() const override { return false; }
     /// The displacement falls with the square of the frequency: where modes are, a laser that tells it sees its noise.
     bool shownBy(Quantity quantity) const override
@@ -40,7 +34,7 @@ public:
         return quantity == Quantity::pressure || quantity == Quantity::velocity || quantity == Quantity::acceleration;
     }
 
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         std::vector<Parameter> result;
         for (int k = 1; k <= modes; ++k) {
@@ -62,7 +56,7 @@ public:
     }
     /// Broader and narrower modes are found from one of this quality, which is too narrow to stand for two at once.
     /// They lie so close that the next one is always within the width of a mode.
-    std::vector<Part> parts(const Extent&) const override
+    std::vector<Part> parts(const OperatingRange&) const override
     {
         constexpr double quality = 12.0, step = 0.75 / quality, aboveBand = 0.1;  // octaves
         std::vector<Part> parts;
@@ -76,7 +70,7 @@ public:
     }
 
     /// A mode rings, above the band in which the cone moves as one piece, and what swings is a part of the cone.
-    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+    bool plausible(const OperatingRange& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, mostGain = plausibleGain, lowest = 1.5;
@@ -93,12 +87,12 @@ public:
         return true;
     }
 
-    int memorySize(const Extent&) const override { return 2 * modes; }
-    int coefficientCount(const Extent&) const override { return each * modes; }
+    int memorySize(const OperatingRange&) const override { return 2 * modes; }
+    int coefficientCount(const OperatingRange&) const override { return each * modes; }
 
     /// Coefficients of a mode: w^2, w/Q, g and h.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::exp;
         for (int k = 0; k < modes; ++k, p += each, c += each) {
@@ -112,7 +106,7 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>&) const
+    void addTo(const OperatingRange&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>&) const
     {
         for (int k = 0; k < modes; ++k, c += each, memory += 2, rate += 2) {
             rate[0] = memory[1];
@@ -121,8 +115,8 @@ public:
     }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>& at, const T& acceleration, const T* memory, const T* rate,
-                 Emission<T>& sum) const
+    void radiate(const OperatingRange&, const T* c, const Motion<T>& at, const T& acceleration, const T* memory,
+                 const T* rate, Emission<T>& sum) const
     {
         for (int k = 0; k < modes; ++k, c += each, memory += 2, rate += 2) {
             sum.acceleration += c[2] * (rate[1] - acceleration);

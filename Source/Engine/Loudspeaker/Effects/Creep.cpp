@@ -22,22 +22,21 @@ namespace {
 /// f_k and K_k depart as far as the data asks (RelaxationSpectrum.h).
 class Creep final : public EffectOf<Creep>, public NetworkParts {
 public:
-    std::string id() const override { return "creep"; }
-    std::string title() const override { return "Suspension creep"; }
-    std::string physics() const override
+    Creep()
+        : EffectOf(
+            {.id = "creep",
+             .title = "Suspension creep",
+             .physics = "The rubber and cloth of the suspension yield slowly: the compliance grows as frequency falls.",
+             .symptoms =
+                 "linear residual force below and around resonance, a stiffness that rises slowly with frequency",
+             .remedy = "A surround and spider of less lossy material creep less.",
+             .electrical = false,
+             .linear = true})
     {
-        return "The rubber and cloth of the suspension yield slowly: the compliance grows as frequency falls.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual force below and around resonance, a stiffness that rises slowly with frequency";
-    }
-    std::string remedy() const override { return "A surround and spider of less lossy material creep less."; }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     bool relaxes() const override { return true; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         Parameter strength, centre, width, tilt;
         strength.name = "S";
@@ -62,7 +61,7 @@ public:
             result.push_back(std::move(p));
         return result;
     }
-    std::vector<std::vector<double>> starts(const Extent& e) const override
+    std::vector<std::vector<double>> starts(const OperatingRange& e) const override
     {
         const double low = std::log10(e.lowFrequency);
         std::vector<std::vector<double>> result {
@@ -73,14 +72,15 @@ public:
     }
 
     /// No suspension relaxes to a third of its stiffness: air that leaks out of a closed box does.
-    bool plausible(const Extent&, const std::vector<Parameter>& own, const std::vector<Parameter>& base) const override
+    bool plausible(const OperatingRange&, const std::vector<Parameter>& own,
+                   const std::vector<Parameter>& base) const override
     {
         constexpr double most = 2.0;
         return own[0].value < most * parameterNamed(base, "K").value;
     }
 
     /// By how much the stiffness rises over the lowest decade of the band: the rate of creep.
-    std::vector<Figure> summary(const Extent& e, const double* parameters) const override
+    std::vector<Figure> summary(const OperatingRange& e, const double* parameters) const override
     {
         std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
         prepareFor(e, parameters, c.data());
@@ -94,12 +94,12 @@ public:
         return {{"creep rate", "N/m per decade", stiffness(10.0 * e.lowFrequency) - stiffness(e.lowFrequency)}};
     }
 
-    int memorySize(const Extent&) const override { return cells; }
-    int coefficientCount(const Extent&) const override { return 2 * cells; }
+    int memorySize(const OperatingRange&) const override { return cells; }
+    int coefficientCount(const OperatingRange&) const override { return 2 * cells; }
 
     /// Coefficients: the stiffness and the relaxation rate of each cell.
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         using std::exp;
         T sum = T(0.0);
@@ -117,7 +117,7 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
     {
         T force = T(0.0);
         for (int k = 0; k < cells; ++k) {
@@ -129,7 +129,7 @@ public:
     }
 
     /// Each cell a spring in series with a damper, K_k and K_k/(2 pi f_k).
-    void draw(const Extent&, const double* c, NetworkDrawing& into) const override
+    void draw(const OperatingRange&, const double* c, NetworkDrawing& into) const override
     {
         for (int k = 0; k < cells; ++k) {
             const auto between = "creep" + std::to_string(k + 1);

@@ -16,24 +16,20 @@ namespace {
 /// proportion to |v|.
 class DampingVelocity final : public EffectOf<DampingVelocity> {
 public:
-    std::string id() const override { return "damping-velocity"; }
-    std::string title() const override { return "Mechanical resistance Rms(v)"; }
-    std::string physics() const override
+    DampingVelocity()
+        : EffectOf(
+            {.id = "damping-velocity",
+             .title = "Mechanical resistance Rms(v)",
+             .physics =
+                 "Air pumped through narrow vents and the spider resists more than in proportion to the velocity.",
+             .symptoms = "residual force that is a curve of v alone, strongest around resonance, no residual voltage",
+             .remedy = "Larger or rounder vents under the dust cap and spider make Rms(v) constant.",
+             .electrical = false,
+             .linear = false})
     {
-        return "Air pumped through narrow vents and the spider resists more than in proportion to the velocity.";
     }
-    std::string symptoms() const override
-    {
-        return "residual force that is a curve of v alone, strongest around resonance, no residual voltage";
-    }
-    std::string remedy() const override
-    {
-        return "Larger or rounder vents under the dust cap and spider make Rms(v) constant.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         std::vector<Parameter> result;
         result = curve::parameters(e, "N s/m");
@@ -53,16 +49,16 @@ public:
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"Rms(v)", "N s/m", "v", "m/s", "Rms"}; }
-    double lawAt(const Extent& e, const double* p, double v) const override
+    double lawAt(const OperatingRange& e, const double* p, double v) const override
     {
         std::array<double, curve::maximumDegree + 5> c {};
         prepareFor(e, p, c.data());
         return at(e, c.data(), v);
     }
-    int coefficientCount(const Extent& e) const override { return e.degree + 5; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 5; }
 
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::sqrt;
         // Powers of s: with y = 2 s - 1 Horner's rule is applied to whole polynomials, p <- p (2 s - 1) + b_j.
@@ -84,7 +80,7 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& motion, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& motion, const T*, T*, Balance<T>& sum) const
     {
         sum.force -= at(e, c, motion.v) * motion.v;
     }
@@ -93,7 +89,7 @@ private:
     static constexpr double rounding = 0.02;
 
     template <class T>
-    [[gnu::always_inline]] static T at(const Extent& e, const T* c, const T& v)
+    [[gnu::always_inline]] static T at(const OperatingRange& e, const T* c, const T& v)
     {
         using std::sqrt;
         T w = v * (1.0 / e.velocity);

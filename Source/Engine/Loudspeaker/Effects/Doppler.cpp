@@ -9,48 +9,42 @@ namespace {
 /// is taken for granted; in air it is 2.9 ms/m.
 class Doppler final : public EffectOf<Doppler> {
 public:
-    std::string id() const override { return "doppler"; }
-    std::string title() const override { return "Doppler shift of the sound"; }
-    std::string physics() const override
+    Doppler()
+        : EffectOf({.id = "doppler",
+                    .title = "Doppler shift of the sound",
+                    .physics = "The cone carries the source of its sound to and fro, so high tones are phase-modulated "
+                               "by the excursion of low ones.",
+                    .symptoms = "residual pressure around high tones at distances of low ones, growing with frequency "
+                                "and excursion, with no trace of it in current or displacement",
+                    .remedy = "Less excursion where treble is played: a crossover, or more area. No voltage removes it "
+                              "for every tone at once.",
+                    .electrical = false,
+                    .linear = false})
     {
-        return "The cone carries the source of its sound to and fro, so high tones are phase-modulated by the "
-               "excursion of low ones.";
     }
-    std::string symptoms() const override
-    {
-        return "residual pressure around high tones at distances of low ones, growing with frequency and excursion, "
-               "with no trace of it in "
-               "current or displacement";
-    }
-    std::string remedy() const override
-    {
-        return "Less excursion where treble is played: a crossover, or more area. No voltage removes it for every tone "
-               "at once.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
     bool felt() const override { return false; }
     bool shownBy(Quantity quantity) const override { return quantity == Quantity::pressure; }
 
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         return {{.name = "1/c", .unit = "s/m", .lower = 0.0, .strength = true}};
     }
-    int coefficientCount(const Extent&) const override { return 1; }
+    int coefficientCount(const OperatingRange&) const override { return 1; }
 
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         c[0] = p[0];
     }
 
     template <class T>
-    void addTo(const Extent&, const T*, const Motion<T>&, const T*, T*, Balance<T>&) const
+    void addTo(const OperatingRange&, const T*, const Motion<T>&, const T*, T*, Balance<T>&) const
     {
     }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>& at, const T&, const T*, const T*, Emission<T>& sum) const
+    void radiate(const OperatingRange&, const T* c, const Motion<T>& at, const T&, const T*, const T*,
+                 Emission<T>& sum) const
     {
         sum.lateness -= c[0] * at.x;
     }

@@ -24,23 +24,20 @@ namespace {
 /// is the current j_k through its inductor: dj_k/dt = p_k (i - j_k), voltage R_k (i - j_k).
 class EddyCurrents final : public EffectOf<EddyCurrents>, public NetworkParts {
 public:
-    std::string id() const override { return "eddy-currents"; }
-    std::string title() const override { return "Eddy currents (semi-inductance)"; }
-    std::string physics() const override
+    EddyCurrents()
+        : EffectOf({.id = "eddy-currents",
+                    .title = "Eddy currents (semi-inductance)",
+                    .physics = "Currents induced in the iron make the coil's impedance rise about like a fractional "
+                               "power of frequency, K s^a.",
+                    .symptoms = "linear residual voltage well above resonance, with a steady slope of the magnitude "
+                                "and a phase that stays below 90 degrees",
+                    .remedy = "It is no fault; a copper ring lowers it and makes it more linear.",
+                    .electrical = true,
+                    .linear = true})
     {
-        return "Currents induced in the iron make the coil's impedance rise about like a fractional power of "
-               "frequency, K s^a.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual voltage well above resonance, with a steady slope of the magnitude and a phase that "
-               "stays below 90 degrees";
-    }
-    std::string remedy() const override { return "It is no fault; a copper ring lowers it and makes it more linear."; }
-    bool electrical() const override { return true; }
-    bool linear() const override { return true; }
 
-    std::vector<Parameter> parameters(const Extent&) const override
+    std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         Parameter K, a;
         K.name = "Ks";
@@ -57,7 +54,7 @@ public:
             result.push_back(std::move(p));
         return result;
     }
-    std::vector<std::vector<double>> starts(const Extent&) const override
+    std::vector<std::vector<double>> starts(const OperatingRange&) const override
     {
         std::vector<std::vector<double>> result;
         for (const double a : {0.5, 0.65, 0.8}) {
@@ -68,7 +65,7 @@ public:
     }
 
     /// K and a of the straight line through log|Z| over log w in the band, and how far |Z| lies from it (rms).
-    std::vector<Figure> summary(const Extent& e, const double* parameters) const override
+    std::vector<Figure> summary(const OperatingRange& e, const double* parameters) const override
     {
         if (!(parameters[0] > 0.0))
             return {{"K", "ohm s^a", 0.0}, {"a", "1", parameters[1]}, {"departure", "%", 0.0}};
@@ -94,12 +91,12 @@ public:
                 {"departure", "%", 100.0 * std::sqrt(rest)}};
     }
 
-    int memorySize(const Extent& e) const override { return innerCells(e) + 2; }
-    int coefficientCount(const Extent& e) const override { return 2 + 2 * memorySize(e); }
+    int memorySize(const OperatingRange& e) const override { return innerCells(e) + 2; }
+    int coefficientCount(const OperatingRange& e) const override { return 2 + 2 * memorySize(e); }
 
     /// Coefficients: series resistance, series inductance, then per cell its rate p_k and resistance R_k.
     template <class T>
-    void prepareFor(const Extent& e, const T* parameters, T* c) const
+    void prepareFor(const OperatingRange& e, const T* parameters, T* c) const
     {
         const T &K = parameters[0], &a = parameters[1];
         const int inner = innerCells(e), first = inner - spectrum::cells;
@@ -125,7 +122,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         sum.inductance += c[1];
         T voltage = c[0] * at.i;
@@ -138,7 +136,7 @@ public:
         sum.drop += voltage;
     }
 
-    void draw(const Extent& e, const double* c, NetworkDrawing& into) const override
+    void draw(const OperatingRange& e, const double* c, NetworkDrawing& into) const override
     {
         into.resistor(c[0]);
         into.inductor(c[1]);
@@ -147,7 +145,7 @@ public:
     }
 
 private:
-    std::complex<double> impedance(const Extent& e, const double* c, std::complex<double> s) const
+    std::complex<double> impedance(const OperatingRange& e, const double* c, std::complex<double> s) const
     {
         std::complex<double> sum = c[0] + s * c[1];
         for (int k = 0; k < memorySize(e); ++k)
@@ -155,11 +153,11 @@ private:
         return sum;
     }
 
-    static double lowRate(const Extent& e) { return 2.0 * std::numbers::pi * e.lowFrequency * 0.15; }
-    static double highRate(const Extent& e) { return 2.0 * std::numbers::pi * e.highFrequency * 2.5; }
+    static double lowRate(const OperatingRange& e) { return 2.0 * std::numbers::pi * e.lowFrequency * 0.15; }
+    static double highRate(const OperatingRange& e) { return 2.0 * std::numbers::pi * e.highFrequency * 2.5; }
     /// ln q of 1 and the margins of the two rates each leave an error below 3.5e-4; wider margins would make the
     /// fastest cell stiff.
-    static int innerCells(const Extent& e)
+    static int innerCells(const OperatingRange& e)
     {
         return std::max(spectrum::cells, static_cast<int>(std::ceil(std::log(highRate(e) / lowRate(e)))));
     }

@@ -9,33 +9,29 @@ namespace {
 /// the motor converts without loss.
 class ForceFactor final : public CurveLaw<ForceFactor> {
 public:
-    std::string id() const override { return "force-factor"; }
-    std::string title() const override { return "Force factor Bl(x)"; }
-    std::string physics() const override
+    ForceFactor()
+        : CurveLaw(
+            {.id = "force-factor",
+             .title = "Force factor Bl(x)",
+             .physics =
+                 "The coil leaves the gap: force per ampere and motion voltage per m/s change with its position.",
+             .symptoms = "residual force in step with the current and residual voltage in step with the velocity, both "
+                         "scaled by the same curve of x",
+             .remedy = "A longer coil or gap, or a centred rest position, flattens Bl(x); its offset shows how far to "
+                       "shift the coil.",
+             .electrical = true,
+             .linear = false})
     {
-        return "The coil leaves the gap: force per ampere and motion voltage per m/s change with its position.";
     }
-    std::string symptoms() const override
-    {
-        return "residual force in step with the current and residual voltage in step with the velocity, both "
-               "scaled by the same curve of x";
-    }
-    std::string remedy() const override
-    {
-        return "A longer coil or gap, or a centred rest position, flattens Bl(x); its offset shows how far to shift "
-               "the coil.";
-    }
-    bool electrical() const override { return true; }
-    bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Bl(x)", "N/A", "x", "m", "Bl"}; }
-    double lawAt(const Extent& e, const double* p, double x) const override
+    double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
         const T difference = curve::at(e.degree, c, at.x, e.displacement).value;
         sum.force += difference * at.i;

@@ -22,31 +22,25 @@ namespace {
 /// where it has two continuous derivatives and vanishes at rest, so that a cone that stands still forgets nothing.
 class Friction final : public EffectOf<Friction> {
 public:
-    std::string id() const override { return "friction"; }
-    std::string title() const override { return "Suspension hysteresis (friction)"; }
-    std::string physics() const override
+    Friction()
+        : EffectOf(
+            {.id = "friction",
+             .title = "Suspension hysteresis (friction)",
+             .physics = "Fibres of the spider and surround rub and slip: after every turn of the cone a force builds "
+                        "up against it and then holds.",
+             .symptoms = "residual force that follows the sign of the velocity, as large at low as at high frequencies "
+                         "and the same at all levels: stiffer and more damped where the cone moves little",
+             .remedy = "Impregnation of the spider, glue joints and lead-out wires rub; a smoother weave or less "
+                       "doping lowers the loss.",
+             .electrical = false,
+             .linear = false})
     {
-        return "Fibres of the spider and surround rub and slip: after every turn of the cone a force builds up against "
-               "it and then holds.";
     }
-    std::string symptoms() const override
-    {
-        return "residual force that follows the sign of the velocity, as large at low as at high frequencies and the "
-               "same at all levels: "
-               "stiffer and more damped where the cone moves little";
-    }
-    std::string remedy() const override
-    {
-        return "Impregnation of the spider, glue joints and lead-out wires rub; a smoother weave or less doping lowers "
-               "the loss.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
     /// To undo what hysteresis holds the voltage would have to hold it in silence, too.
     bool undone() const override { return false; }
     std::string sizedBy() const override { return "K"; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         const double springForce = e.scale * e.displacement, X = e.displacement;
         // its sign says nothing: a search that passes through the single element at 0 must not hit a wall
@@ -58,12 +52,12 @@ public:
                 {.name = "turn", .unit = "1", .lower = 0.0, .upper = 0.5, .prior = 0.25}};
     }
 
-    int memorySize(const Extent&) const override { return elements; }
-    int coefficientCount(const Extent&) const override { return 3 + elements; }
+    int memorySize(const OperatingRange&) const override { return elements; }
+    int coefficientCount(const OperatingRange&) const override { return 3 + elements; }
 
     /// Coefficients: the limit of one element, knee, turn, then 1/r_k.
     template <class T>
-    void prepareFor(const Extent&, const T* p, T* c) const
+    void prepareFor(const OperatingRange&, const T* p, T* c) const
     {
         using std::exp;
         c[0] = p[0] * (1.0 / elements);
@@ -74,7 +68,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         const T speed = (1.0 - c[2]) * size(at.v, rounding * e.velocity), straight = c[2] * at.v;
         T carried = T(0.0);

@@ -20,53 +20,47 @@ namespace {
 /// a force, dg/dx int_0^i c j dj. Beyond the visited range the flux goes on with the slope that it has at the end.
 class InductanceCurrent final : public EffectOf<InductanceCurrent> {
 public:
-    std::string id() const override { return "inductance-current"; }
-    std::string title() const override { return "Flux modulation Le(i)"; }
-    std::string physics() const override
+    InductanceCurrent()
+        : EffectOf({.id = "inductance-current",
+                    .title = "Flux modulation Le(i)",
+                    .physics = "The coil's own field drives the iron in and out of saturation, so the inductance "
+                               "changes with the current.",
+                    .symptoms = "residual voltage that grows with frequency and is scaled by a curve of the current, "
+                                "wherever the cone is; hardly any residual force",
+                    .remedy = "Shorting rings hold the flux still; iron that is saturated by the magnet alone has "
+                              "little left to change.",
+                    .electrical = true,
+                    .linear = false})
     {
-        return "The coil's own field drives the iron in and out of saturation, so the inductance changes with the "
-               "current.";
     }
-    std::string symptoms() const override
-    {
-        return "residual voltage that grows with frequency and is scaled by a curve of the current, wherever the cone "
-               "is; hardly any residual force";
-    }
-    std::string remedy() const override
-    {
-        return "Shorting rings hold the flux still; iron that is saturated by the magnet alone has little left to "
-               "change.";
-    }
-    bool electrical() const override { return true; }
-    bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(i)", "H", "i", "A", "Le"}; }
-    double lawAt(const Extent& e, const double* p, double i) const override
+    double lawAt(const OperatingRange& e, const double* p, double i) const override
     {
         std::array<double, curve::maximumDegree + 1> b {};
         curve::prepare(e.degree, p, b.data());
         return i == 0.0 ? 0.0 : fluxAt(e, b.data(), i).flux / i;
     }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         auto result = curve::parameters(e, "H");
         for (int n = 1; n <= places; ++n)
             result.push_back({.name = "p" + std::to_string(n), .unit = "1", .prior = plausiblePlace});
         return result;
     }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1 + places; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + places; }
 
     /// The curve's, then p_n.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         curve::prepare(e.degree, p, c);
         std::copy_n(p + e.degree, places, c + e.degree + 1);
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
         const T* p = c + e.degree + 1;
         T s = at.x * (1.0 / e.displacement);
@@ -90,7 +84,7 @@ private:
         T flux, slope, coenergy;  ///< c i, c + i dc/di, int_0^i c j dj
     };
     template <class T>
-    static Flux<T> fluxAt(const Extent& e, const T* c, const T& i)
+    static Flux<T> fluxAt(const OperatingRange& e, const T* c, const T& i)
     {
         T s = i * (1.0 / e.current), beyond = T(0.0);
         if (s > T(1.0) || s < T(-1.0)) {

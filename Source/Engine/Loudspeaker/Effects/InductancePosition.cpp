@@ -27,28 +27,26 @@ namespace {
 /// A chain of loops that follows K s^0.4 is met to -82 dB of the current with four, to -75 with three.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
-    std::string id() const override { return "inductance-position"; }
-    std::string title() const override { return "Inductance Le(x) with reluctance force"; }
-    std::string physics() const override
+    InductancePosition()
+        : EffectOf({.id = "inductance-position",
+                    .title = "Inductance Le(x) with reluctance force",
+                    .physics = "The coil sees more iron inward than outward, so its inductance falls with x and the "
+                               "iron pulls it in.",
+                    .symptoms = "residual voltage that grows with frequency and is scaled by a curve of x; a small "
+                                "residual force like the current squared",
+                    .remedy = "Shorting rings or a copper cap near the gap flatten Le(x).",
+                    .electrical = true,
+                    .linear = false})
     {
-        return "The coil sees more iron inward than outward, so its inductance falls with x and the iron pulls it in.";
     }
-    std::string symptoms() const override
-    {
-        return "residual voltage that grows with frequency and is scaled by a curve of x; a small residual force like "
-               "the current squared";
-    }
-    std::string remedy() const override { return "Shorting rings or a copper cap near the gap flatten Le(x)."; }
-    bool electrical() const override { return true; }
-    bool linear() const override { return false; }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
-    double lawAt(const Extent& e, const double* p, double x) const override
+    double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
     }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         auto result = curve::parameters(e, "H");
         for (int n = 1; n <= loops; ++n)
@@ -58,12 +56,12 @@ public:
         result.push_back({.name = "way", .unit = "1", .lower = -1.0, .upper = 1.0, .prior = 0.5});
         return result;
     }
-    int memorySize(const Extent&) const override { return 2 * loops; }
-    int coefficientCount(const Extent& e) const override { return e.degree + 1 + 2 * loops + 2; }
+    int memorySize(const OperatingRange&) const override { return 2 * loops; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + 2 * loops + 2; }
 
     /// The curve's, then each loop's rate and inductance, d = exp(depth)/g_0 and w.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         using std::exp;
         curve::prepare(e.degree, p, c);
@@ -78,7 +76,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         using std::sqrt;
         const auto [value, slope] = curve::at(e.degree, c, at.x, e.displacement);

@@ -19,27 +19,23 @@ namespace {
 /// not is a second loudspeaker's worth of mass, that of a port above all.
 class SideResonance final : public EffectOf<SideResonance>, public NetworkParts {
 public:
-    std::string id() const override { return "side-resonance"; }
-    std::string title() const override { return "Side resonances (surround, dust cap, air behind the cone)"; }
-    std::string physics() const override
+    SideResonance()
+        : EffectOf(
+            {.id = "side-resonance",
+             .title = "Side resonances (surround, dust cap, air behind the cone)",
+             .physics = "A surround, a dust cap or the air behind the cone swings by itself near its own resonance and "
+                        "pulls at the coil.",
+             .symptoms = "linear residual current in a few narrow bands, each a small step or loop of the impedance, "
+                         "the same at every level",
+             .remedy =
+                 "More damping where it swings: another surround or glue, stuffing in the box or behind the dome.",
+             .electrical = false,
+             .linear = true})
     {
-        return "A surround, a dust cap or the air behind the cone swings by itself near its own resonance and pulls at "
-               "the coil.";
     }
-    std::string symptoms() const override
-    {
-        return "linear residual current in a few narrow bands, each a small step or loop of the impedance, the same at "
-               "every level";
-    }
-    std::string remedy() const override
-    {
-        return "More damping where it swings: another surround or glue, stuffing in the box or behind the dome.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
     std::string sizedBy() const override { return "m"; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         std::vector<Parameter> result;
         for (int k = 1; k <= resonators; ++k) {
@@ -53,7 +49,7 @@ public:
         return result;
     }
     /// Anywhere in the nine octaves that end at the top of the band.
-    std::vector<Part> parts(const Extent& e) const override
+    std::vector<Part> parts(const OperatingRange& e) const override
     {
         constexpr double quality = 6.0, step = 1.12;
         std::vector<Part> parts;
@@ -67,7 +63,7 @@ public:
     }
     /// What is heavy enough to count rings at a frequency that was measured, and not far below the cone's own
     /// resonance, where a suspension creeps and a box has its port.
-    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+    bool plausible(const OperatingRange& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 0.7, lowest = 0.5;
@@ -81,7 +77,7 @@ public:
     }
 
     /// Of the parts that there are: where they ring, and their masses.
-    std::vector<Figure> summary(const Extent& e, const double* parameters) const override
+    std::vector<Figure> summary(const OperatingRange& e, const double* parameters) const override
     {
         std::vector<Figure> figures;
         for (int k = 1; k <= resonators; ++k, parameters += each)
@@ -92,13 +88,13 @@ public:
         return figures;
     }
 
-    int memorySize(const Extent&) const override { return 2 * resonators; }
-    int coefficientCount(const Extent&) const override { return each * resonators; }
+    int memorySize(const OperatingRange&) const override { return 2 * resonators; }
+    int coefficientCount(const OperatingRange&) const override { return each * resonators; }
 
     /// Coefficients of a resonator: mu, w^2, w/Q. Frequency and loss stay at the end of what can be simulated where a
     /// search that finds nothing runs away with them.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         const double highest = 1.25 * e.highFrequency;
         constexpr double mostLoss = 2.0;
@@ -112,7 +108,7 @@ public:
 
     /// Memory of a resonator: y' and y.
     template <class T>
-    void addTo(const Extent&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange&, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
     {
         for (int k = 0; k < resonators; ++k, c += each, memory += 2, rate += 2) {
             rate[0] = c[2] * (at.v - memory[0]) + c[1] * (at.x - memory[1]);
@@ -121,7 +117,7 @@ public:
         }
     }
 
-    void draw(const Extent&, const double* c, NetworkDrawing& into) const override
+    void draw(const OperatingRange&, const double* c, NetworkDrawing& into) const override
     {
         for (int k = 0; k < resonators; ++k, c += each) {
             if (c[0] == 0.0)

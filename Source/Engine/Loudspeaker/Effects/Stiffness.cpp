@@ -19,25 +19,22 @@ namespace {
 /// the visited range.
 class Stiffness final : public EffectOf<Stiffness> {
 public:
-    std::string id() const override { return "stiffness"; }
-    std::string title() const override { return "Stiffness K(x)"; }
-    std::string physics() const override
+    Stiffness()
+        : EffectOf(
+            {.id = "stiffness",
+             .title = "Stiffness K(x)",
+             .physics =
+                 "The suspension hardens, or yields, as it is stretched, and need not do so alike on both sides.",
+             .symptoms =
+                 "residual force that is a curve of x alone, strongest at and below resonance, no residual voltage",
+             .remedy = "A wider surround roll or a softer, symmetric spider straightens K(x); an even part asks for a "
+                       "shifted rest position.",
+             .electrical = false,
+             .linear = false})
     {
-        return "The suspension hardens, or yields, as it is stretched, and need not do so alike on both sides.";
     }
-    std::string symptoms() const override
-    {
-        return "residual force that is a curve of x alone, strongest at and below resonance, no residual voltage";
-    }
-    std::string remedy() const override
-    {
-        return "A wider surround roll or a softer, symmetric spider straightens K(x); an even part asks for a shifted "
-               "rest position.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return false; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         auto result = curve::parameters(e, "N/m");
         for (int k = 1; k <= yields; ++k)
@@ -50,17 +47,17 @@ public:
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"K(x)", "N/m", "x", "m", "K"}; }
-    double lawAt(const Extent& e, const double* p, double x) const override
+    double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
         return curve::valueAt(e.degree, p, x, e.displacement)
                + curve::beyond(p[0], e.degree > 1 ? p[1] : 0.0, x, e.displacement);
     }
-    int memorySize(const Extent& e) const override { return e.relaxed ? 2 * yields : 0; }
-    int coefficientCount(const Extent& e) const override { return e.degree + 3 + 2 * yields; }
+    int memorySize(const OperatingRange& e) const override { return e.relaxed ? 2 * yields : 0; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 3 + 2 * yields; }
 
     /// The curve's, its two ends', then each yield's rate and weight.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         curve::prepare(e.degree, p, c);
         c[e.degree + 1] = p[0];
@@ -74,7 +71,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         const int n = memorySize(e) / 2;
         const T* yield = c + e.degree + 3;

@@ -28,27 +28,23 @@ namespace {
 /// is left below its tuning is the suspension alone.
 class VentedBox final : public EffectOf<VentedBox>, public NetworkParts {
 public:
-    std::string id() const override { return "vented-box"; }
-    std::string title() const override { return "Box with a port, a passive radiator or a leak"; }
-    std::string physics() const override
+    VentedBox()
+        : EffectOf(
+            {.id = "vented-box",
+             .title = "Box with a port, a passive radiator or a leak",
+             .physics =
+                 "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a "
+                 "second resonance. Through a leak a closed box loses its spring at the lowest frequencies.",
+             .symptoms = "two humps in the impedance with a dip between them, where the cone stands nearly still and "
+                         "the port moves; of a leak, motion that grows far below the resonance",
+             .remedy = "It is no fault; box volume and port length set where the dip is, a leak or stuffing lowers the "
+                       "humps. Where the box should be closed, seal it.",
+             .electrical = false,
+             .linear = true})
     {
-        return "The air in the box is a spring between the cone and the air in the port, or a passive radiator: a "
-               "second resonance. Through a leak a closed box loses its spring at the lowest frequencies.";
     }
-    std::string symptoms() const override
-    {
-        return "two humps in the impedance with a dip between them, where the cone stands nearly still and the port "
-               "moves; of a leak, motion that grows far below the resonance";
-    }
-    std::string remedy() const override
-    {
-        return "It is no fault; box volume and port length set where the dip is, a leak or stuffing lowers the humps. "
-               "Where the box should be closed, seal it.";
-    }
-    bool electrical() const override { return false; }
-    bool linear() const override { return true; }
 
-    std::vector<Parameter> parameters(const Extent& e) const override
+    std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
         auto stiffness = positiveParameter("Kb", "N/m", 0.0),
              tuning = positiveParameter("fB", "Hz", 4.0 * e.lowFrequency),
@@ -62,7 +58,7 @@ public:
         radiator.heard = share.heard = true;
         return {stiffness, tuning, port, leak, absorption, radiator, share};
     }
-    std::vector<std::vector<double>> starts(const Extent& e) const override
+    std::vector<std::vector<double>> starts(const OperatingRange& e) const override
     {
         std::vector<std::vector<double>> starts;
         for (const double octaves : {0.5, 1.5})  // a leak
@@ -75,7 +71,7 @@ public:
     }
     /// Without a port the cone would resonate at the tuning or above, where a fit of one hump to two does not look;
     /// without the air of a closed box well above its leak.
-    std::vector<double> restarts(const Extent&, const std::vector<double>& start) const override
+    std::vector<double> restarts(const OperatingRange&, const std::vector<double>& start) const override
     {
         if (start[2] > someLoss)
             return {2.0 * start[1], 6.0 * start[1]};
@@ -87,7 +83,7 @@ public:
     /// that swings by itself. A leak does not ring, far below the resonance of cone and box, whose air is stiffer than
     /// the suspension, but does not leave it without a part: a weaker relaxation is rather one of the suspension, a
     /// total one of a liquid in the gap.
-    bool plausible(const Extent& e, const std::vector<Parameter>& own,
+    bool plausible(const OperatingRange& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
         constexpr double leastQuality = 2.0, leastStiffness = 0.1, leastMass = 0.08, highestTuning = 4.0;
@@ -107,13 +103,13 @@ public:
                && own[0].value > leastLeakStiffness * K && own[0].value < mostLeakStiffness * K;
     }
 
-    int memorySize(const Extent&) const override { return 3; }
-    int coefficientCount(const Extent&) const override { return 8; }
+    int memorySize(const OperatingRange&) const override { return 3; }
+    int coefficientCount(const OperatingRange&) const override { return 8; }
 
     /// Coefficients: Ka, Kb r, wB^2/(1 + r), wB dP, wB^2 r/(1 + r), wB dL, dA/wB, share heard. The tuning stays at the
     /// end of what was measured where a search that finds nothing runs away with it.
     template <class T>
-    void prepareFor(const Extent& e, const T* p, T* c) const
+    void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         const T w = 2.0 * std::numbers::pi * atMost(e.highFrequency, p[1]), &r = p[5];
         c[0] = p[0] * (1.0 + r);
@@ -127,7 +123,8 @@ public:
     }
 
     template <class T>
-    void addTo(const Extent& e, const T* c, const Motion<T>& at, const T* memory, T* rate, Balance<T>& sum) const
+    void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
+               Balance<T>& sum) const
     {
         const T &w = memory[0], &vy = memory[1], &y = memory[2];
         rate[0] = (at.v + vy - c[5] * w) / (1.0 + c[5] * c[6]);  // dw/dt = v + dy/dt + dl/dt, solved
@@ -139,7 +136,7 @@ public:
 
     /// The air spring, with its absorption, between the cone and what leaks, from there to the port, which moves inward
     /// as the cone moves outward; the port's mass, losses and, of a radiator, its spring with what it yields.
-    void draw(const Extent& e, const double* c, NetworkDrawing& into) const override
+    void draw(const OperatingRange& e, const double* c, NetworkDrawing& into) const override
     {
         const double Ka = c[0];
         if (Ka == 0.0)
@@ -161,7 +158,8 @@ public:
     bool ofEnclosure() const override { return true; }
 
     template <class T>
-    void radiate(const Extent&, const T* c, const Motion<T>&, const T&, const T*, const T* rate, Emission<T>& sum) const
+    void radiate(const OperatingRange&, const T* c, const Motion<T>&, const T&, const T*, const T* rate,
+                 Emission<T>& sum) const
     {
         sum.acceleration += c[7] * rate[1];
     }

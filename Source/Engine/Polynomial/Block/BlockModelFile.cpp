@@ -39,15 +39,4 @@ Named<BlockModel> blockModelFromJson(const JsonField& field)
     return named;
 }
 
-Named<BlockModel> readBlockModel(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return blockModelFromJson(JsonField(document, "", path.string()));
-}
-
-void writeBlockModel(const Named<BlockModel>& named, const std::filesystem::path& path)
-{
-    writeJson(toJson(named), path);
-}
-
 }  // namespace excursion

@@ -4,8 +4,6 @@
 #include "Engine/Polynomial/Block/BlockModel.h"
 #include "Engine/Polynomial/Named.h"
 
-#include <filesystem>
-
 namespace excursion {
 
 /// The document "excursion-block-model" 1, which keeps G as a state space with the names of input and output.
@@ -14,8 +12,5 @@ nlohmann::ordered_json toJson(const Named<BlockModel>&);
 /// Throws Error (input) naming the field when the document is none of these, or its linear part not of discrete time
 /// with one input and output.
 Named<BlockModel> blockModelFromJson(const JsonField&);
-
-Named<BlockModel> readBlockModel(const std::filesystem::path&);
-void writeBlockModel(const Named<BlockModel>&, const std::filesystem::path&);
 
 }  // namespace excursion

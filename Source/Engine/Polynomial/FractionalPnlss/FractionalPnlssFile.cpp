@@ -59,15 +59,4 @@ NamedFractionalPnlss fractionalPnlssFromJson(const JsonField& field)
     return named;
 }
 
-NamedFractionalPnlss readFractionalPnlss(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return fractionalPnlssFromJson(JsonField(document, "", path.string()));
-}
-
-void writeFractionalPnlss(const NamedFractionalPnlss& named, const std::filesystem::path& path)
-{
-    writeJson(toJson(named), path);
-}
-
 }  // namespace excursion

@@ -6,8 +6,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <filesystem>
-
 namespace excursion {
 
 /// A fractional PNLSS model with the names of what it connects, and the grid that it was fitted on: the document
@@ -23,8 +21,5 @@ nlohmann::ordered_json toJson(const NamedFractionalPnlss&);
 
 /// Throws Error (input) naming the field when the document is none of these, or its shapes do not fit.
 NamedFractionalPnlss fractionalPnlssFromJson(const JsonField&);
-
-NamedFractionalPnlss readFractionalPnlss(const std::filesystem::path&);
-void writeFractionalPnlss(const NamedFractionalPnlss&, const std::filesystem::path&);
 
 }  // namespace excursion

@@ -200,7 +200,7 @@ bool FractionalRecursion::run(const FractionalPnlss& model, const MatrixXd& inpu
 }
 
 void FractionalRecursion::differentiate(const FractionalPnlss& model, const MatrixXd& input, const Trajectory& run,
-                                        const Recursion::Taker& take) const
+                                        const Recursion::Consumer& consume) const
 {
     const auto cut = integratorsOf(fractional_, model.alpha, grid_);
     FractionalIntegrator slope;
@@ -261,7 +261,7 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
             if (++filled == kernels::stretch || t + grid_.substeps >= N) {
                 for (auto& target : block)
                     target.conservativeResize(filled, P);
-                take(first, block);
+                consume(first, block);
                 first += filled;
                 filled = 0;
                 for (auto& target : block)

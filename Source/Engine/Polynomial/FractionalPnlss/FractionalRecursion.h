@@ -32,10 +32,10 @@ public:
     /// @return false where the states leave `bound`, or a step has no solution
     bool run(const FractionalPnlss&, const Eigen::MatrixXd& input, double bound, Trajectory&) const;
 
-    /// The exact Jacobian along a run, at samples, block by block in ascending time; as Recursion::Taker without
+    /// The exact Jacobian along a run, at samples, block by block in ascending time; as Recursion::Consumer without
     /// initial states.
     void differentiate(const FractionalPnlss&, const Eigen::MatrixXd& input, const Trajectory&,
-                       const Recursion::Taker&) const;
+                       const Recursion::Consumer&) const;
 
 private:
     FractionalGrid grid_;

@@ -28,15 +28,4 @@ Named<ParallelHammerstein> parallelHammersteinFromJson(const JsonField& field)
     return named;
 }
 
-Named<ParallelHammerstein> readParallelHammerstein(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return parallelHammersteinFromJson(JsonField(document, "", path.string()));
-}
-
-void writeParallelHammerstein(const Named<ParallelHammerstein>& named, const std::filesystem::path& path)
-{
-    writeJson(toJson(named), path);
-}
-
 }  // namespace excursion

@@ -4,8 +4,6 @@
 #include "Engine/Polynomial/Hammerstein/ParallelHammerstein.h"
 #include "Engine/Polynomial/Named.h"
 
-#include <filesystem>
-
 namespace excursion {
 
 /// The document "excursion-parallel-hammerstein" 1.
@@ -13,8 +11,5 @@ nlohmann::ordered_json toJson(const Named<ParallelHammerstein>&);
 
 /// Throws Error (input) naming the field when the document is none of these, or its branches are not of one length.
 Named<ParallelHammerstein> parallelHammersteinFromJson(const JsonField&);
-
-Named<ParallelHammerstein> readParallelHammerstein(const std::filesystem::path&);
-void writeParallelHammerstein(const Named<ParallelHammerstein>&, const std::filesystem::path&);
 
 }  // namespace excursion

@@ -42,12 +42,4 @@ Named<Narx> narxFromJson(const JsonField& field)
     return named;
 }
 
-Named<Narx> readNarx(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return narxFromJson(JsonField(document, "", path.string()));
-}
-
-void writeNarx(const Named<Narx>& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
-
 }  // namespace excursion

@@ -4,8 +4,6 @@
 #include "Engine/Polynomial/Named.h"
 #include "Engine/Polynomial/Narx/Narx.h"
 
-#include <filesystem>
-
 namespace excursion {
 
 /// The document "excursion-narx" 1.
@@ -13,8 +11,5 @@ nlohmann::ordered_json toJson(const Named<Narx>&);
 
 /// Throws Error (input) naming the field when the document is none of these, or a term has not one exponent a lag.
 Named<Narx> narxFromJson(const JsonField&);
-
-Named<Narx> readNarx(const std::filesystem::path&);
-void writeNarx(const Named<Narx>&, const std::filesystem::path&);
 
 }  // namespace excursion

@@ -67,7 +67,7 @@ MatrixXd NarxRecursion::regressors(const VectorXd& input, const VectorXd& output
 }
 
 void NarxRecursion::differentiate(const VectorXd& coefficients, const VectorXd& input, const VectorXd& output,
-                                  const Taker& take) const
+                                  const Consumer& consume) const
 {
     constexpr Index stretch = 256;
     MatrixXd S = MatrixXd::Zero(terms_, na_ + stretch);  // the last na derivatives, then those of the stretch
@@ -85,7 +85,7 @@ void NarxRecursion::differentiate(const VectorXd& coefficients, const VectorXd& 
             for (Index i = 1; i <= na_; ++i)
                 s += slopes[i - 1] * S.col(na_ + t - i);
         }
-        take(first, S.middleCols(na_, T).transpose());
+        consume(first, S.middleCols(na_, T).transpose());
         S.leftCols(na_) = S.middleCols(T, na_).eval();
     }
 }

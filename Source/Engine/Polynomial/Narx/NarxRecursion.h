@@ -26,9 +26,9 @@ public:
                                Eigen::Index rows) const;
 
     /// Takes dy/dc of a stretch of T samples along a run, T x K, in ascending time.
-    using Taker = std::function<void(Eigen::Index first, const Eigen::MatrixXd& derivatives)>;
+    using Consumer = std::function<void(Eigen::Index first, const Eigen::MatrixXd& derivatives)>;
     void differentiate(const Eigen::VectorXd& coefficients, const Eigen::VectorXd& input, const Eigen::VectorXd& output,
-                       const Taker&) const;
+                       const Consumer&) const;
 
 private:
     /// The nodes of time t from the past of input and output.

@@ -98,12 +98,4 @@ NamedPnlss pnlssFromJson(const JsonField& field)
     return named;
 }
 
-NamedPnlss readPnlss(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return pnlssFromJson(JsonField(document, "", path.string()));
-}
-
-void writePnlss(const NamedPnlss& named, const std::filesystem::path& path) { writeJson(toJson(named), path); }
-
 }  // namespace excursion

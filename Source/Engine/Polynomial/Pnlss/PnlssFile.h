@@ -6,8 +6,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <filesystem>
-
 namespace excursion {
 
 /// A PNLSS model with the names of what it connects, as the document "excursion-pnlss" 1 keeps it.
@@ -26,8 +24,5 @@ nlohmann::ordered_json toJson(const NamedPnlss&);
 
 /// Throws Error (input) naming the field when the document is none of these, or its shapes do not fit.
 NamedPnlss pnlssFromJson(const JsonField&);
-
-NamedPnlss readPnlss(const std::filesystem::path&);
-void writePnlss(const NamedPnlss&, const std::filesystem::path&);
 
 }  // namespace excursion

@@ -102,7 +102,7 @@ public:
         way.atNoise = isAtNoise(way.fit);
         if (!way.atNoise) {
             PnlssFit end = way.fit;
-            take(end, way.values);
+            keep(end, way.values);
             if (end.estimationDb >= way.fit.estimationDb || end.validationDb > 0.0 || !isAtNoise(end))
                 return false;
             way.atNoise = true;
@@ -183,7 +183,7 @@ private:
         auto& fit = way.fit;
         fit.history.push_back(decibelsOf(cost));
         auto here = fit;
-        take(here, values);
+        keep(here, values);
         const double judgedDb = validation_.empty() ? decibelsOf(cost) : here.validationDb;
         if (judgedDb < way.judgedDb) {
             way.judgedDb = judgedDb;
@@ -192,7 +192,7 @@ private:
     }
 
     /// The model at these values, and its errors.
-    void take(PnlssFit& fit, const VectorXd& values) const
+    void keep(PnlssFit& fit, const VectorXd& values) const
     {
         fit.model = problem_.modelAt(values);
         fit.initialStates = problem_.initialStates(values);

@@ -150,8 +150,8 @@ void Recursion::follow(const Pnlss& model, const MatrixXd& input, const MatrixXd
                                        along.MG.col((n_ + o) * n_ + j).data(), T);
 }
 
-void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const MatrixXd& states, const Taker& take,
-                              const Guide* guide) const
+void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const MatrixXd& states,
+                              const Consumer& consume, const Guide* guide) const
 {
     const auto N = input.rows(), P = parameters();
     auto along = room();
@@ -222,7 +222,7 @@ void Recursion::differentiate(const Pnlss& model, const MatrixXd& input, const M
                                        J.col(o * lanesInAll + place[g] + c / abreast).data(),
                                        std::min(abreast, groups[g].count - c), T);
         }
-        take(first, derivatives);
+        consume(first, derivatives);
     }
 }
 

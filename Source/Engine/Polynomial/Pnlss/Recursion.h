@@ -48,10 +48,10 @@ public:
 
     /// Takes the derivatives of a stretch of T outputs: one matrix an output, T x (parameters + n), the last n columns
     /// those by the initial state.
-    using Taker = std::function<void(Eigen::Index first, std::vector<Eigen::MatrixXd>& derivatives)>;
+    using Consumer = std::function<void(Eigen::Index first, std::vector<Eigen::MatrixXd>& derivatives)>;
 
     /// The exact Jacobian along a run, block by block in ascending time; memory does not grow with the record.
-    void differentiate(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states, const Taker&,
+    void differentiate(const Pnlss&, const Eigen::MatrixXd& input, const Eigen::MatrixXd& states, const Consumer&,
                        const Guide* guide = nullptr) const;
 
     /// J^T w along a run, one number a parameter and then one a state of the beginning, by the adjoint recursion

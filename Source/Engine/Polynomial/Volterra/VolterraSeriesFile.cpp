@@ -40,15 +40,4 @@ Named<VolterraSeries> volterraSeriesFromJson(const JsonField& field)
     return named;
 }
 
-Named<VolterraSeries> readVolterraSeries(const std::filesystem::path& path)
-{
-    const auto document = readJson(path);
-    return volterraSeriesFromJson(JsonField(document, "", path.string()));
-}
-
-void writeVolterraSeries(const Named<VolterraSeries>& named, const std::filesystem::path& path)
-{
-    writeJson(toJson(named), path);
-}
-
 }  // namespace excursion

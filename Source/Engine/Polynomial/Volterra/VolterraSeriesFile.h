@@ -4,8 +4,6 @@
 #include "Engine/Polynomial/Named.h"
 #include "Engine/Polynomial/Volterra/VolterraSeries.h"
 
-#include <filesystem>
-
 namespace excursion {
 
 /// The document "excursion-volterra-series" 1.
@@ -14,8 +12,5 @@ nlohmann::ordered_json toJson(const Named<VolterraSeries>&);
 /// Throws Error (input) naming the field when the document is none of these, or its kernels are not square, cubic and
 /// symmetric.
 Named<VolterraSeries> volterraSeriesFromJson(const JsonField&);
-
-Named<VolterraSeries> readVolterraSeries(const std::filesystem::path&);
-void writeVolterraSeries(const Named<VolterraSeries>&, const std::filesystem::path&);
 
 }  // namespace excursion
