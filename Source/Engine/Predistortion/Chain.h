@@ -14,24 +14,24 @@
 
 namespace excursion {
 
-/// What a chain can be told while it runs; everything is followed smoothly.
+/// The controls of a chain while it runs. Every change is followed smoothly.
 struct ChainControls {
     Mode mode = Mode::bypass;
     double fullScale = 10.0;  ///< V for a sample of 1.0
-    /// factor; of the wish when it is linearized for a loudspeaker, else of what is heard; none in bypass
+    /// factor: on the input when the signal is linearized for a loudspeaker, else on the output; not used in bypass
     double trim = 1.0;
     PredistortionControls linearization;
 };
 
-/// One channel of the plugin: sample -> V -> predistorter (-> loudspeaker) -> sample, with either of the two switched
-/// in as the mode says; which they are says the ChainEngine. The latency is the same whatever the mode. In bypass the
-/// samples come out as they are, bit by bit. A sample that is not a finite number is silence in every mode. Audio
-/// thread and blocks: as Predistorter.
+/// One channel of the plugin: sample -> V -> predistorter (-> loudspeaker) -> sample. The mode switches either of the
+/// two in. The ChainEngine says what they are. The latency is the same in all modes. In bypass the samples pass
+/// bit-exact. In every mode, a sample that is not finite is played as silence. Audio thread and blocks: as
+/// Predistorter.
 class Chain {
 public:
-    /// Of a driver. Throws Error, see requireRunnable.
+    /// For a driver. Throws Error, see requireRunnable.
     Chain(const Model&, const RealTimeOptions&, const ChainControls&);
-    /// @param sampleRate  Hz, at which the engine was made to run
+    /// @param sampleRate  Hz, that the engine was made for
     Chain(std::unique_ptr<ChainEngine>, double sampleRate, const ChainControls&);
 
     int latency() const { return engine_->latency(); }  ///< samples; fixed
@@ -39,17 +39,18 @@ public:
     void set(const ChainControls&);
     void process(const double* in, double* out, std::size_t n);
 
-    using Meters = ChainEngine::Meters;  ///< faults: also samples that were not finite
+    using Meters = ChainEngine::Meters;  ///< faults: includes samples that were not finite
     Meters collectMeters();              ///< from any one thread
 
 private:
     double delayed(double sample, double& scale);
 
     std::unique_ptr<ChainEngine> engine_;
-    Fade wet_, played_;  ///< what is made of the signal; of that, the loudspeaker's part
-    /// before_, after_: where the trim is; plainGain_: keeps the plain signal to the limit while it fades
+    Fade wet_, played_;  ///< weight of the processed signal; within it, weight of the loudspeaker
+    /// before_, after_: the two places of the trim; plainGain_: keeps the unprocessed signal within the limit while it
+    /// fades
     Glide fullScale_, before_, after_, plainGain_;
-    double limit_ = 0.0, loudest_ = 0.0;  ///< V; of the plain signal since something was switched in
+    double limit_ = 0.0, loudest_ = 0.0;  ///< V; loudest_: of the unprocessed signal since something was switched in
     int since_ = 0;                       ///< samples since then
     struct Passing {
         double sample = 0.0, fullScale = 1.0;

@@ -12,11 +12,11 @@
 
 namespace excursion {
 
-/// The driver with its effects, sample by sample: from the voltage to the acceleration that is heard, which is that of
-/// the cone and of whatever else an effect makes sound (Emission), less a share of what a linear driver's would be
-/// (Reference). With a share of 1 only the distortion is left. All is heard at once: a lateness that changes is not
-/// played. The steps are as many as the laws ask for and do not adapt; between samples the input is a cubic through the
-/// latest four (ExponentialAdams).
+/// The driver with its effects, sample by sample: from the voltage to the acceleration that is heard. This is the
+/// acceleration of the cone and of everything else that an effect makes radiate (Emission), minus a share of that of a
+/// linear driver (Reference). With a share of 1 only the distortion is left. All parts are heard without delay: a delay
+/// that varies is not played. The laws set the number of steps, which does not adapt. Between samples the input is a
+/// cubic through the latest four (ExponentialAdams).
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class Cone {
@@ -24,11 +24,11 @@ public:
     /// @param sampleRate  Hz, of step()
     Cone(const Model&, double sampleRate);
 
-    int substeps() const { return substeps_; }  ///< steps a sample
+    int substeps() const { return substeps_; }  ///< steps per sample
     void rest();                                ///< at rest from now on
-    void reset();                               ///< and the share is at its target
+    void reset();                               ///< at rest, and the share at its target
 
-    /// @param share  how much of the linear driver's output is taken away, 0 to 1; followed smoothly
+    /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly
     void setLinearShareRemoved(double share);
 
     /// @param sample  V (or N); becomes m/s^2
@@ -40,14 +40,14 @@ public:
     double current() const { return motion_.current(); }            ///< A
 
 private:
-    bool corrected_;  ///< the laws are so fast that they are asked twice a step; see ExponentialAdams
+    bool corrected_;  ///< the laws are so fast that they are evaluated twice per step; see ExponentialAdams
     int substeps_;
     ExponentialAdams motion_;
     Plausible plausible_;
     Reference reference_;
     Radiator radiator_;
-    double area_;             ///< m^2 that the sound is referred to
-    Eigen::VectorXd linear_;  ///< what of the reference's state is heard, m/s^2
+    double area_;             ///< m^2, reference area of the sound
+    Eigen::VectorXd linear_;  ///< the part of the reference's state that is heard, m/s^2
     double linearInput_;      ///< and of the input
     Glide share_;
     std::array<double, 3> past_ {};  ///< u(n-1), u(n-2), u(n-3)

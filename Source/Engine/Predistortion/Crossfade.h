@@ -10,15 +10,15 @@
 
 namespace excursion {
 
-/// Plays the engine that was handed over last: when a new one comes, both run, the new one unheard at first, until what
-/// it has to remember of the signal is there, and then the old one fades into the new. A third that is offered
-/// meanwhile waits. Until the first one comes the signal goes through as it is. Engines have process(const double* in,
-/// double* out, std::size_t n); where their latencies differ, the signal fades from one time to the other.
+/// Plays the engine that was handed over last. When a new one comes, both run. The new one is silent at first, until
+/// its memory of the signal is filled. Then the old one fades into the new. A third one that is offered meanwhile
+/// waits. Before the first engine comes, the signal passes unchanged. Engines have process(const double* in, double*
+/// out, std::size_t n). If their latencies differ, the signal fades from one delay to the other.
 template <class Engine>
 class Crossfade {
 public:
     /// @param fade  samples
-    /// @param warm  samples before it, in which a new engine runs unheard
+    /// @param warm  samples before the fade, in which a new engine runs unheard
     explicit Crossfade(int fade, int warm = 0) : fade_(fade), length_(std::max(fade, 1)), warm_(std::max(warm, 0)) {}
     Crossfade(const Crossfade&) = delete;
     Crossfade& operator=(const Crossfade&) = delete;
@@ -28,13 +28,13 @@ public:
         delete now_;
     }
 
-    /// From any other thread: an engine that is built and warm.
-    /// @param longer  samples that this one runs unheard beyond those of all
+    /// From any other thread: offers a complete engine.
+    /// @param longer  additional samples that this engine runs unheard
     void offer(std::unique_ptr<Engine> engine, int longer = 0) { handover_.offer(std::move(engine), longer); }
-    /// From any other thread, now and then: frees the engines that are done.
+    /// From any other thread, now and then: frees the retired engines.
     int collect() { return handover_.collect(); }
 
-    /// Starts with this one, before any audio runs.
+    /// Sets the first engine, before any audio runs.
     void start(std::unique_ptr<Engine> engine)
     {
         delete std::exchange(old_, nullptr);
@@ -44,7 +44,7 @@ public:
 
     Engine* current() { return now_ ? now_->engine.get() : nullptr; }  ///< on the audio thread
 
-    /// On the audio thread: work(engine) for every engine that runs, so that all hear of new controls.
+    /// On the audio thread: calls work(engine) for every running engine, so that all get new controls.
     template <class Work>
     void each(const Work& work)
     {

@@ -5,7 +5,7 @@
 
 namespace excursion {
 
-/// A cubic on a step, q(s) = c_0 + c_1 s + c_2 s^2 + c_3 s^3, s = 0 at its start and 1 at its end.
+/// A cubic on one step, q(s) = c_0 + c_1 s + c_2 s^2 + c_3 s^3, with s = 0 at the start and 1 at the end of the step.
 struct Cubic {
     std::array<double, 4> c {};
 
@@ -24,13 +24,13 @@ struct Cubic {
                  slopeAtStart + slopeAtEnd - 2.0 * rise}};
     }
 
-    /// Through the sample before, with value and slope (per step) at the start, and the value at the end.
+    /// Through the previous sample, with value and slope (per step) at the start, and the value at the end.
     static Cubic past(double before, double start, double slopeAtStart, double end)
     {
         return {{start, slopeAtStart, 0.5 * (end + before) - start, 0.5 * (end - before) - slopeAtStart}};
     }
 
-    /// The same on the part of the step that starts at s and is that long, with a new s from 0 to 1.
+    /// The same cubic on the part of the step that starts at s and has this length, with a new s from 0 to 1.
     Cubic part(double s, double length) const
     {
         return {{at(s), length * (c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])), length * length * (c[2] + 3.0 * s * c[3]),

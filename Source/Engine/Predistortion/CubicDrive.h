@@ -7,14 +7,15 @@
 
 namespace excursion {
 
-/// What a linear system's state takes of an input that is a cubic on the step, sum_k c_k s^k: a column for each c_k.
-/// @param phi  Exponential::phi, of which column k belongs to an input of s^k/k!; four columns
+/// The contribution to a linear system's state of an input that is a cubic on the step, sum_k c_k s^k. One column per
+/// c_k.
+/// @param phi  Exponential::phi, whose column k belongs to the input s^k/k!; four columns
 inline Eigen::MatrixXd byCoefficients(const Eigen::MatrixXd& phi)
 {
     return phi * Eigen::Vector4d(1.0, 1.0, 2.0, 6.0).asDiagonal();
 }
 
-/// The same for the cubic through the latest four samples (Cubic::through): a column for each sample, the newest first.
+/// The same for the cubic through the latest four samples (Cubic::through). One column per sample, the newest first.
 inline Eigen::MatrixXd bySamples(const Eigen::MatrixXd& phi)
 {
     Eigen::Matrix4d coefficients;

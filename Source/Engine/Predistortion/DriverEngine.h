@@ -9,8 +9,8 @@
 
 namespace excursion {
 
-/// A physical driver in a chain: Predistorter, and between the halves of its oversampling the Cone. What the cone makes
-/// is heard at the level of a linear driver's plateau (see plateau()), so that it can be compared with the signal.
+/// A physical driver in a chain: the Predistorter, with the Cone between the two halves of its oversampling. The cone's
+/// output is divided by the plateau of a linear driver (see plateau()), so that it can be compared with the signal.
 class DriverEngine : public ChainEngine {
 public:
     /// Throws Error, see requireRunnable.

@@ -6,9 +6,9 @@
 
 namespace excursion {
 
-/// Of a driver's linear part; its uncertainty is the largest sum over the parameters of |d ln|X| / d ln p| where a
-/// voltage moves the cone far.
-/// @param sampleRate  Hz, of the inverse that tells what holds the cone
+/// The motion of a driver's linear part. Its uncertainty is the largest sum over the parameters of |d ln|X| / d ln p|,
+/// taken where a voltage moves the cone far.
+/// @param sampleRate  Hz, of the inverse that gives the power that holds the cone
 LinearMotion linearMotion(const Model&, double sampleRate);
 
 }  // namespace excursion

@@ -6,8 +6,8 @@
 namespace excursion {
 
 /// The weight of something that is switched in and out while a signal runs: from 0 to 1 and back along s^3 (10 - 15 s +
-/// 6 s^2), which starts and ends with two derivatives of zero. What is switched in may wait first, until its filters
-/// have run full.
+/// 6 s^2), whose first two derivatives are zero at both ends. Before it fades in, it may wait until its filters have
+/// filled.
 class Fade {
 public:
     /// @param length, wait  samples
@@ -25,7 +25,7 @@ public:
         waiting_ = 0;
     }
     bool on() const { return on_; }
-    bool runs() const { return on_ || place_ > 0; }  ///< what fades has to be computed
+    bool runs() const { return on_ || place_ > 0; }  ///< the fading signal must be computed
 
     double step()
     {

@@ -8,28 +8,28 @@
 
 namespace excursion {
 
-/// Where a linear cone will be, at times of a grid ahead: it coasts from its state, and is driven by an input that is
-/// constant on steps,
+/// The future positions of a linear cone, on a grid of times. It coasts from its state, and is driven by an input that
+/// is constant on each step,
 ///     x(t_i) = c exp(A t_i) z + sum_k h_ik p_k,   h_ik = the integral of c exp(A (t_i - s)) B over the part of step k
 ///         before t_i and after now.
 struct Foresight {
     Eigen::MatrixXd coasting;  ///< times x state of the Reference, m
     Eigen::MatrixXd driven;    ///< times x steps, m/V
 
-    /// @param reference  whose states are asked with
+    /// @param reference  defines the coordinates of the state
     /// @param times      s, ascending
-    /// @param steps      so many from now on
-    /// @param step       s, of each
-    /// @param since      s, by which the first of them began before now, less than a step
+    /// @param steps      number of steps from now on
+    /// @param step       s, length of each
+    /// @param since      s, how long before now the first step began; less than a step
     Foresight(const LinearMotion&, const Reference& reference, const Eigen::VectorXd& times, Eigen::Index steps,
               double step, double since);
 };
 
-/// The largest factors of three parts, the last ones first to be kept, with which |rest + sum_b factor_b part_b| stays
-/// within the limit at every time; the first part is given up before the second is touched.
-/// @param rest   m; zero where even silence does not keep the limit
+/// The largest factors of three parts with which |rest + sum_b factor_b part_b| stays within the limit at every time.
+/// The first part is turned down completely before the second is touched, and the last part is kept longest.
+/// @param rest   m; the factors are zero where even silence does not keep the limit
 /// @param parts  times x bands, m
-/// @param most   factors that are not to be passed
+/// @param most   upper limits of the factors
 Bands::Values largestWithin(const Eigen::VectorXd& rest, const Eigen::MatrixXd& parts, Bands::Values most,
                             double limit);
 

@@ -6,9 +6,9 @@
 
 namespace excursion {
 
-/// A number that is followed smoothly: four low-passes of first order in a row. After a step of its target it has three
-/// continuous derivatives, its second one is at most 0.13 of the step over tau^2, and 99 % of the step are gone after
-/// 10 tau. No allocation, no lock, no exception.
+/// A number that follows its target smoothly, through four first-order low-passes in series. After a step of the target
+/// it has three continuous derivatives. The second derivative is at most 0.13 of the step over tau^2, and 99 % of the
+/// step are done after 10 tau. No allocation, no lock, no exception.
 class Glide {
 public:
     /// @param tau   s, time constant of each low-pass

@@ -6,13 +6,13 @@
 
 namespace excursion {
 
-/// A linear-phase half-band filter between two rates, one twice the other, as a sinc under a Kaiser window
-/// (Kaiser & Schafer, IEEE Trans. ASSP 28, 1980):
+/// A linear-phase half-band filter between two rates, one twice the other, as a sinc under a Kaiser window (Kaiser &
+/// Schafer, IEEE Trans. ASSP 28, 1980):
 ///     h_0 = 1/2,   h_k = sin(pi k/2)/(pi k) w(k) = h_-k for odd k <= reach,   h_k = 0 for the other even k.
-/// With frequencies relative to the higher rate, it passes up to 1/4 - width/2 and stops from 1/4 + width/2 on, both
-/// with an error of 10^(-attenuation/20).
+/// With frequencies relative to the higher rate, the pass band ends at 1/4 - width/2 and the stop band begins at 1/4 +
+/// width/2, both with an error of 10^(-attenuation/20).
 struct HalfBandTaps {
-    /// @param width        of the transition, relative to the higher rate
+    /// @param width        width of the transition, relative to the higher rate
     /// @param attenuation  dB, more than 50
     HalfBandTaps(double width, double attenuation);
 
@@ -21,7 +21,7 @@ struct HalfBandTaps {
     std::vector<double> side;  ///< h_1, h_3, h_5, ...
 };
 
-/// One channel's way up: doubles the rate, with a delay of reach() samples of the higher rate.
+/// Doubles the rate of one channel, with a delay of reach() samples of the higher rate.
 class Doubler {
 public:
     Doubler(const HalfBandTaps&, std::size_t longestBlock);
@@ -32,11 +32,11 @@ public:
     void process(const double* in, std::size_t n, double* out);
 
 private:
-    std::vector<double> taps_;     ///< of the odd places, from the newest to the oldest, times 2
+    std::vector<double> taps_;     ///< the odd taps, from the newest to the oldest, times 2
     std::vector<double> history_;  ///< the latest taps_.size() - 1 inputs, then room for a block
 };
 
-/// One channel's way down: halves the rate, with a delay of reach() samples of the higher rate.
+/// Halves the rate of one channel, with a delay of reach() samples of the higher rate.
 class Halver {
 public:
     Halver(const HalfBandTaps&, std::size_t longestBlock);

@@ -19,7 +19,7 @@ public:
     struct Parcel {
         std::unique_ptr<Engine> engine;
         Parcel* next = nullptr;
-        int warm = 0;  ///< samples that it wants to run unheard at first
+        int warm = 0;  ///< samples that the engine needs to run unheard at first
     };
 
     Handover() = default;
@@ -36,7 +36,7 @@ public:
         delete offered_.exchange(new Parcel {std::move(engine), nullptr, warm}, std::memory_order_acq_rel);
     }
 
-    /// Frees what has been retired.
+    /// Frees the retired engines.
     /// @returns how many engines
     int collect()
     {
@@ -49,7 +49,7 @@ public:
     /// The latest offer, or nullptr; the caller owns it until retire().
     Parcel* accept()
     {
-        // A plain look first: an exchange at every block would fetch the cache line from the other thread each time.
+        // A plain load first: an exchange at every block would fetch the cache line from the other thread each time.
         return offered_.load(std::memory_order_relaxed) ? offered_.exchange(nullptr, std::memory_order_acquire)
                                                         : nullptr;
     }

@@ -9,12 +9,12 @@
 
 namespace excursion {
 
-/// Keeps out of the filters what no amplifier puts out and what is no number: such a sample is played as silence, and
-/// remembered.
+/// Keeps samples that no amplifier can deliver, or that are not finite, out of the filters. Such a sample is played as
+/// silence, and its place is remembered.
 struct InputGuard {
     double loudest;  ///< V (or N), see Plausible::input
 
-    std::array<bool, Oversampling::longestBlock> faultAt {};  ///< for the samples of the latest block
+    std::array<bool, Oversampling::longestBlock> faultAt {};  ///< one flag per sample of the latest block
 
     /// @param n  <= Oversampling::longestBlock samples
     void pass(const double* in, std::size_t n, double* out)

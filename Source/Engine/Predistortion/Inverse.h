@@ -14,21 +14,22 @@
 
 namespace excursion {
 
-/// The input with which a driver, with all its effects, moves as it is told: inversion by flatness (Fliess, Levine,
+/// The input with which a driver, with all its effects, follows a given motion: inversion by flatness (Fliess, Levine,
 /// Martin & Rouchon, Int. J. Control 61, 1995; for loudspeakers Schurer, Slump & Herrmann, 1998). Position is a flat
 /// output: from x, v, a and j follow the current, by the force balance, and the voltage, by the electrical loop,
 ///     F(i, x, v, m) = M a,
 ///     di/dt = (M j - F_t)/F_i,        F_t = F_x v + F_v a + F_m dm/dt,
 ///     u = drop + L di/dt + fluxSlope v.
-/// Every effect contributes through the lines that simulate it (Effect::contribute), run on numbers that carry the
-/// derivatives by time and by current, and its memory is carried along (LinearMemory.h, Memory.h). What is linear is
-/// asked once and summed up (LinearForm.h).
+/// Every effect contributes through the same code that simulates it (Effect::contribute), run on numbers that carry the
+/// derivatives with respect to time and current. Its memory is stepped along (LinearMemory.h, Memory.h). Linear
+/// contributions are evaluated once and summed (LinearForm.h).
 ///
-/// The current is extrapolated by its difference to the linear driver's, which is small and slow, to i_p, and
-/// one Newton step, i = i_p + (M a - F)/F_i, is exact but for the square of what the extrapolation missed (reluctance
-/// force alone is not linear in i); where that is much, as at an edge, a second one follows. F_i, at rest Bl, is kept
-/// from falling below a tenth of its value at rest, where a driver can no longer be made to follow; the current is
-/// bounded by ten times what its effects were measured at. A driver without a coil has u = M a - F.
+/// The difference to the linear driver's current is small and slow, so extrapolating it gives a prediction i_p. One
+/// Newton step, i = i_p + (M a - F)/F_i, is exact except for the square of the prediction's error, as only the
+/// reluctance force is not linear in i. If that error is large, as at an edge, a second step follows. F_i, which is Bl
+/// at rest, is kept above a tenth of its value at rest; below that, a driver can no longer be made to follow. The
+/// current is limited to ten times the value that its effects were measured at. A driver without a coil has u = M a -
+/// F.
 class Inverse {
 public:
     /// @param sampleRate  Hz, of step()
@@ -36,41 +37,42 @@ public:
 
     void reset();
 
-    /// The input (V, or N of a driver without a coil) at this point of the motion; call it for every sample of it.
+    /// The input (V, or N for a driver without a coil) at this point of the motion. Call it for every sample of the
+    /// motion.
     double step(const MotionPoint&);
 
-    /// The input at another end of the latest step, which is taken back.
+    /// Undoes the latest step and repeats it with another end point.
     double again(const MotionPoint&);
 
     double current() const { return now_.current; }  ///< A, at the latest point
-    /// By how much of the input the force at the latest point goes with the input that it takes at rest: Bl(0)/Bl(x),
-    /// and the like.
+    /// The input that a force takes at the latest point, over the input that it takes at rest: Bl(0)/Bl(x), and
+    /// similar.
     double ease() const { return ease_; }
 
 private:
     double solve(const MotionPoint&, double guess);  ///< one Newton step from this current, A
     void takeBack();
 
-    /// An effect that is asked at every sample.
+    /// An effect that is evaluated at every sample.
     struct Curved {
         const Effect* effect;
         OperatingRange operatingRange;
         std::vector<Tangent> coefficients;
-        std::optional<std::size_t> block;  ///< of together_, where its memory is
-        std::optional<Memory> memory;      ///< or by itself
+        std::optional<std::size_t> block;  ///< index of its memory in together_
+        std::optional<Memory> memory;      ///< or its own memory
         std::vector<Tangent> state, rate;
     };
-    /// The memory of a linear one that is not among together_.
+    /// The memory of a linear effect that is not in together_.
     struct Lagging {
         Memory memory;
-        std::vector<double> drop, force;  ///< what each state adds
+        std::vector<double> drop, force;  ///< contribution of each state
     };
 
     bool electrical_;
     double period_;
     double largestCurrent_ = std::numeric_limits<double>::infinity();  ///< A
-    LinearForm linear_;                                                ///< of all that is linear, without the memories
-    /// of all that is linear, with what the current does to the memories
+    LinearForm linear_;  ///< sum of all linear contributions, without the memories
+    /// of all linear contributions, including the current's effect on the memories
     double dropByCurrent_ = 0.0, forceByCurrent_ = 0.0;
     LinearMemory together_;
     std::vector<Lagging> lagging_;

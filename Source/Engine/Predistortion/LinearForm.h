@@ -11,17 +11,17 @@
 
 namespace excursion {
 
-/// What a base or an effect adds to the balance when that is linear in current, motion and memory,
+/// The contribution of a base or an effect to the balance, if it is linear in current, motion and memory,
 ///     drop = d . (i, x, v) + D . m,   force = f . (i, x, v) + F . m,
 ///         with constant inductance and mass and no flux slope.
-/// Asked of the effect itself, once, so that an audio thread need not ask it at every sample.
+/// It is taken from the effect itself, once, so that the audio thread need not evaluate the effect at every sample.
 struct LinearForm {
     double inductance = 0.0, mass = 0.0;
     std::array<double, 3> drop {}, force {};
     std::vector<double> dropByMemory, forceByMemory;
 };
 
-/// The linear form, or nothing when what the effect adds elsewhere does not agree with it.
+/// The linear form, or nothing if the effect's contribution elsewhere does not agree with it.
 /// @param coefficients  of the effect, prepared
 std::optional<LinearForm> linearForm(const Effect&, const OperatingRange&, const double* coefficients);
 
@@ -31,7 +31,7 @@ struct LinearRates {
     Eigen::Matrix<double, Eigen::Dynamic, 3> b;
 };
 
-/// The linear rates, or nothing when the rates elsewhere do not agree with them.
+/// The linear rates, or nothing if the rates elsewhere do not agree with them.
 /// @param coefficients  of the effect, prepared
 std::optional<LinearRates> linearRates(const Effect&, const OperatingRange&, const double* coefficients);
 

@@ -5,12 +5,12 @@
 
 namespace excursion {
 
-/// The real modes of dz/dt = A z: z = basis y, where y falls into pairs, dy/dt = [re im; -im re] y, first, and single
+/// The real modes of dz/dt = A z: z = basis y, where y consists of pairs, dy/dt = [re im; -im re] y, followed by single
 /// states.
 struct Modes {
     Eigen::MatrixXd basis, inverse;  ///< inverse: of the basis
     Eigen::Index pairs = 0;
-    bool apart = false;  ///< the change to them costs no more than six digits; else nothing of this is of use
+    bool apart = false;  ///< the change of basis costs no more than six digits; if false, do not use the modes
 };
 
 Modes modesOf(const Eigen::MatrixXd& A);

@@ -5,7 +5,7 @@
 
 namespace excursion {
 
-/// A peak that one thread raises and another takes: for meters. A peak that comes while it is taken may be lost.
+/// A peak for meters: one thread raises it and another reads it. A peak that comes while it is read may be lost.
 class Peak {
 public:
     void raise(double value)

@@ -29,7 +29,7 @@ public:
 
 private:
     int window_, at_ = 0;
-    std::array<double, 2> peaks_ {};  ///< of this window, of the one before
+    std::array<double, 2> peaks_ {};  ///< of this window and of the one before
 };
 
 }  // namespace excursion

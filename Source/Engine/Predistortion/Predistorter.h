@@ -18,17 +18,17 @@
 
 namespace excursion {
 
-/// Bends the voltage so that the driver moves as if it were linear, or as a target has it, and turns it down before
-/// that so that the driver comes to no harm:
+/// Predistorts the voltage so that the driver moves as if it were linear, or as a target asks. Before that, it turns
+/// the signal down to protect the driver:
 ///     u -> TargetFilter -> Protection (looks ahead) -> up -> Linearizer -> down
-/// The limits are of what the target asks for, as the protection comes behind it.
-/// As a protection that can be turned down is none, the amount goes to 1 where the excursion comes near its limit.
+/// The protection comes after the target, so the limits apply to what the target asks for. The amount goes to 1 where
+/// the excursion comes near its limit, so that a lower amount cannot weaken the protection.
 ///
-/// It is prepared by its construction, which allocates; everything else is for the audio thread: no allocation, no
-/// lock, no system call, no exception. Blocks may have any length, and the output does not depend on how a signal is
-/// cut into blocks. Around a sample that is not a finite number, or beyond any amplifier, there is silence. When
-/// anything inside is not finite, or beyond any loudspeaker, what comes out goes to silence within milliseconds, the
-/// driver is taken to be at rest and, once it is, the signal is faded in again. No subnormal number comes out.
+/// Its construction allocates. Everything else is for the audio thread: no allocation, no lock, no system call, no
+/// exception. Blocks may have any length, and the output does not depend on how a signal is cut into blocks. A sample
+/// that is not finite, or beyond any amplifier, makes a short silence around it. If any internal value is not finite,
+/// or beyond any loudspeaker, the output goes to silence within milliseconds and the driver is assumed to come to rest.
+/// Once it is at rest, the signal is faded in again. The output contains no subnormal numbers.
 class Predistorter {
 public:
     static constexpr std::size_t longestPart = Protection::tick;
@@ -38,14 +38,14 @@ public:
 
     int latency() const { return Protection::latency + oversampling_.latency(); }  ///< samples; fixed
 
-    /// As if new, but for the controls, which are at their targets at once.
+    /// As if new, but the controls jump to their targets.
     void reset();
 
-    /// Where the controls are to go, within some 50 ms. A control that is not valid is left as it was.
+    /// New targets of the controls, reached within some 50 ms. An invalid control keeps its value.
     void set(const PredistortionControls&);
 
-    /// Whether it does anything: switched off, the signal goes through as it is, within 0.45 of the sample rate.
-    /// Switched on, all that comes from then on is kept to the limits.
+    /// Switches the processing. Switched off, the signal passes unchanged up to 0.45 of the sample rate. Switched on,
+    /// everything from then on is kept within the limits.
     void turn(bool on);
 
     /// @param in, out  V (or N); n samples, may be the same place
@@ -54,18 +54,17 @@ public:
     /// The same in two halves, between which the signal is at the higher rate.
     /// @param n  at most room()
     void begin(const double* in, std::size_t n);
-    double* between() { return between_.data(); }  ///< as many times n as the oversampling says
+    double* between() { return between_.data(); }  ///< n times the oversampling factor
     void finish(double* out, std::size_t n);
     std::size_t room() const { return protection_.left(); }  ///< 1 to longestPart samples
-    void publish();                                          ///< lets collectMeters() see what has come out
+    void publish();                                          ///< makes the latest output visible to collectMeters()
 
     /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
-        double displacement = 0.0;  ///< peak of a cone that was given the output, m
-        double voltage = 0.0;       ///< peak that came out, V
+        double displacement = 0.0;  ///< peak of a cone driven by the output, m
+        double voltage = 0.0;       ///< peak of the output, V
         double power = 0.0;         ///< W, largest running mean of the coil's heat
-        /// dB by which each limit has turned down at most: the motion that was asked for, the voltage, the current; 0:
-        /// not at all
+        /// largest dB by which each limit turned down: the requested motion, the voltage, the current; 0: not at all
         double displacementReduction = 0.0, voltageReduction = 0.0, powerReduction = 0.0;
         int faults = 0;  ///< since construction
     };
@@ -85,11 +84,11 @@ private:
     double ohms_;
     bool on_ = true;
     PredistortionControls controls_;
-    /// near_: the excursion is near its limit; effort_: what the limit of power leaves of the amount
+    /// near_: the excursion is near its limit; effort_: factor of the power limit on the amount
     Glide amount_, near_, effort_;
     Protection::Outcome outcome_;
-    double heats_ = 0.0;  ///< of the tick, samples of the higher rate times W
-    /// V: the latest sample of the higher rate; what is left of the step that a fault makes
+    double heats_ = 0.0;  ///< sum over the tick, samples of the higher rate times W
+    /// V: last_: the latest sample of the higher rate; left_: the remainder of the step that a fault makes
     double last_ = 0.0, left_ = 0.0, decay_;
     std::array<double, longestPart> block_ {};
     std::array<double, 4 * longestPart> between_ {};

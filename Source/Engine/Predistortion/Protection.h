@@ -19,21 +19,22 @@
 
 namespace excursion {
 
-/// Turns a voltage down before it is linearized, so that excursion, voltage and power keep their limits together. It
-/// looks ahead: what it turns down left the input `latency` samples ago. Every `tick` samples it chooses one factor for
-/// each of three bands (Bands.h), and the gain of a band is these factors through a smooth window that is shorter than
-/// the look-ahead. The factors are, multiplied:
-///  - what keeps the motion of the wish within the limit of the excursion: the lowest band first. Judged is how far a
-///    cone would coast that were left alone at any instant; a factor is held for 0.1 s at least and released slowly, so
-///    a steady tone has a steady gain;
-///  - what keeps the peaks of the voltage, as they are after that, within the limit, with what linearizing has lately
-///    added to them;
-///  - what keeps the heat of the coil within a bound that falls to the limit as the running mean comes near it;
+/// Turns a voltage down before it is linearized, so that excursion, voltage and power all stay within their limits. It
+/// looks ahead: the sample that it turns down entered `latency` samples ago. Every `tick` samples it chooses one factor
+/// for each of three bands (Bands.h). The gain of a band is the sequence of factors, smoothed by a window that is
+/// shorter than the look-ahead. Each factor is a product of:
+///  - the factor that keeps the requested motion (the wish) within the excursion limit, the lowest band first. The
+///    criterion is how far a cone would coast if the input stopped at any instant. A factor is held for at least 0.1 s
+///    and released slowly, so a steady tone has a steady gain;
+///  - the factor that keeps the remaining voltage peaks within the limit, including the recent increase through
+///    linearization;
+///  - the factor that keeps the heat of the coil within a bound that falls to the limit as the running mean approaches
+///    it;
 ///  - silence around a sample that is not finite.
-/// The last word has a plan: from the state of a cone that was given what came out, under the inputs that are known,
-/// with these factors now and silence from the next tick on. If that cone would leave its limit, the factors are turned
-/// down until it does not. As silence is always a way on that was found to be safe a tick before, the limit holds; as
-/// nothing but turning down is ever done, no voltage is spent on braking.
+/// A plan makes the final decision. It starts from the state of a cone driven by the actual output, and assumes the
+/// known inputs, these factors now, and silence from the next tick on. If that cone would exceed its limit, the factors
+/// are lowered until it does not. Silence was found to be safe one tick before, so it is always a safe continuation,
+/// and the limit holds. The signal is only ever turned down, so no voltage is spent on braking.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class Protection {
@@ -42,50 +43,50 @@ public:
     static constexpr int tick = ticks::samples;
     static constexpr std::size_t bands = Bands::count;
 
-    /// @param delay  samples from the cone, as decide() is told of it, to the next input
+    /// @param delay  samples from the cone's state that decide() gets to the next input
     Protection(const LinearMotion&, const RealTimeOptions&, double delay);
 
     void reset();
 
-    /// From now on the limits are those of the controls, or there are none.
+    /// New limits from the controls, or none.
     void set(const PredistortionControls&, bool on);
 
     /// Whether the next sample begins a tick, before which decide() has to be called.
     bool due() const { return place_ == 0; }
     std::size_t left() const { return static_cast<std::size_t>(tick - place_); }  ///< samples of the tick
 
-    /// What came out in the tick before.
+    /// The output of the previous tick.
     struct Outcome {
-        double asked = 0.0, wanted = 0.0;  ///< peaks of what went into the linearizer and of what it asked for, V
+        double asked = 0.0, wanted = 0.0;  ///< peaks of the linearizer's input and of the voltage that it asked for, V
         double heat = 0.0;                 ///< mean of Re i^2, W
-        bool astray = false;               ///< the cone was not given all that was asked for
-        double offset = 0.0;               ///< m, where the cone is beside the linear motion, and stays for a while
-        double reserve = 0.0;              ///< m, by how far it may be from all of that
-        double most = 1.0;                 ///< factor that no band may pass, for other reasons
+        bool astray = false;               ///< the cone did not get everything that was asked for
+        double offset = 0.0;               ///< m, slow offset of the cone from the linear motion
+        double reserve = 0.0;              ///< m, possible further deviation from it
+        double most = 1.0;                 ///< upper limit of all factors, for other reasons
     };
     void decide(const Eigen::Map<const Eigen::VectorXd>& cone, const Outcome&);
 
-    /// @param sound  false: a sample that is not finite came here
+    /// @param sound  false: the sample was not finite
     double step(double u, bool sound);
 
-    double voltageLimit() const { return voltageNow_; }  ///< V, of what comes out at the moment
+    double voltageLimit() const { return voltageNow_; }  ///< V, of the output at the moment
     double heat() const { return cool_.mean(); }         ///< W, the running mean
-    /// what the limit of power leaves of the amount of linearization
+    /// factor of the power limit on the amount of linearization
     double effort() const { return cool_.effort(); }
-    /// How near to its limit the cone will come, by the latest plan; 0: there is no limit.
+    /// How close the cone will come to its limit, by the latest plan; 0: there is no limit.
     double share() const { return share_; }
-    /// By how much each limit turns down at the moment: the motion that is asked for, the voltage, the current.
+    /// The present factor of each limit: on the requested motion, the voltage, the current.
     struct Factors {
         double displacement = 1.0, voltage = 1.0, power = 1.0;
     };
     const Factors& factors() const { return factors_; }
-    /// Nothing that leaves now was turned down: it is what came in, but for rounding.
+    /// The present output was not turned down: it equals the input, except for rounding.
     bool untouched() const { return untouched_ > latency / tick + 1; }
 
 private:
     static constexpr int window = latency - tick + 1;  ///< samples over which a factor is smoothed
     static constexpr int pulse = window + tick - 1;    ///< samples over which one tick's factor acts
-    static constexpr int planStep = 4, wishStep = 8;   ///< samples: steps of plan and wish
+    static constexpr int planStep = 4, wishStep = 8;   ///< samples: step lengths of plan and wish
     using Values = Bands::Values;
     using Path = std::array<double, pulse>;
 
@@ -93,20 +94,20 @@ private:
     Values forWish();
 
     double rate_;
-    int committed_;  ///< samples on their way to the cone
-    int settled_;    ///< ticks after which a cone that is given all of the wish is where that was
+    int committed_;  ///< number of samples on their way to the cone
+    int settled_;    ///< ticks after which a cone that gets all of the wish follows it
     Bands split_;
-    std::array<Reference, bands> wish_;  ///< the motion of each band as it comes, undiminished
+    std::array<Reference, bands> wish_;  ///< the motion of each band, not turned down
     Foresight coast_, ahead_;
-    /// by how much the excursion can differ, relatively, per relative error of the parameters
+    /// relative change of the excursion per relative error of the parameters
     double uncertainty_;
 
     // What is known of the input.
     std::array<std::array<double, latency>, bands> delayed_ {};
     std::size_t oldest_ = 0;
-    std::vector<double> sent_;  ///< the latest outputs, as many as are committed, a ring
+    std::vector<double> sent_;  ///< the latest committed_ outputs, a ring
     std::size_t sentAt_ = 0;
-    Values sum_ {};  ///< of the step of the wish
+    Values sum_ {};  ///< over the step of the wish
     int summed_ = 0;
 
     // Gains: factors through the window.
@@ -116,7 +117,7 @@ private:
 
     // Limits and what they come to.
     bool on_ = false;
-    Glide displacement_, voltage_, power_;  ///< as reciprocals: 0: none
+    Glide displacement_, voltage_, power_;  ///< as reciprocals; 0: none
     struct Limits {
         double displacement = 0.0, voltage = 0.0;  ///< reciprocals
     };
@@ -125,8 +126,8 @@ private:
     double displacementNow_ = 0.0;  ///< reciprocal
     double voltageNow_ = std::numeric_limits<double>::infinity(), share_ = 0.0;
     std::array<PeakHold, bands> wishHold_;  ///< of 1 - factor
-    PeakHold reachHold_;                    ///< of how far the wish would coast, in limits
-    double reach_ = 0.0, farthest_ = 0.0;   ///< farthest_: m, how far it would coast with the limit kept
+    PeakHold reachHold_;                    ///< of how far the wish would coast, relative to the limit
+    double reach_ = 0.0, farthest_ = 0.0;   ///< farthest_: m, how far it would coast within the limit
     double offset_ = 0.0, reserve_ = 0.0;   ///< m, see Outcome
     std::array<Factor, bands> held_;        ///< for the excursion
     VoltageFactor loud_;

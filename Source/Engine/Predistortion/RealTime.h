@@ -8,36 +8,35 @@
 
 namespace excursion {
 
-/// What is fixed while a signal runs: a change of it is a new Predistorter or Speaker.
+/// Options that are fixed while a signal runs. A change needs a new Predistorter or Speaker.
 struct RealTimeOptions {
     double sampleRate = 48000.0;  ///< Hz
     int oversampling = 2;         ///< 1, 2 or 4
     bool isValid(std::string* reason) const;
 };
 
-/// Throws Error: (usage) for options that are not valid, (data) for a model that cannot be run: without a mass, without
-/// a force factor though it has a coil, or not stable at rest.
+/// Throws Error: (usage) for invalid options, (data) for a model that cannot run: without a mass, with a coil but
+/// without a force factor, or not stable at rest.
 void requireRunnable(const Model&, const RealTimeOptions&);
 
 /// The displacement up to which the model's laws were measured, m; infinite for a model without a law over x. Beyond it
-/// they are a guess, so it is the natural limit.
+/// the laws are a guess, so it is the natural limit.
 double measuredDisplacement(const Model&);
 
-/// What can be moved while a signal runs; it is followed smoothly.
+/// The controls that can change while a signal runs. Changes are followed smoothly.
 struct PredistortionControls {
-    double amount = 1.0;  ///< 0: the signal as it is but for the target, 1: fully linearized
+    double amount = 1.0;  ///< 0: only the target is applied, 1: fully linearized
     double displacementLimit = std::numeric_limits<double>::infinity();  ///< m, of the cone
-    double voltageLimit = std::numeric_limits<double>::infinity();       ///< V, or N of a driver without a coil
-    /// W, of the coil's heat, see averagingTime; a driver without a coil has none
+    double voltageLimit = std::numeric_limits<double>::infinity();       ///< V, or N for a driver without a coil
+    /// W, of the coil's heat, see averagingTime; not used for a driver without a coil
     double powerLimit = std::numeric_limits<double>::infinity();
     /// the limits hold for every driver whose parameters differ by no more than this share from the model's; 0 to 0.3
     double margin = 0.0;
-    /// ohm, of the coil of a model without physics, without which there is no limit of the power; 0: not known. A
-    /// driver knows its own.
+    /// ohm, coil resistance for a model without physics; 0: not known, and no power limit. A driver model has its own.
     double coilResistance = 0.0;
-    Target target = {};  ///< what the cone is to move like, with any amount
+    Target target = {};  ///< how the cone is to move, with any amount
     bool isValid(std::string* reason) const;
-    /// The same for the audio thread, which has no use for a reason.
+    /// The same without a reason, for the audio thread.
     bool areSound() const
     {
         return amount >= 0.0 && amount <= 1.0 && displacementLimit > 0.0 && voltageLimit > 0.0 && powerLimit > 0.0

@@ -6,8 +6,8 @@
 
 namespace excursion {
 
-/// The weight of a computation that has had to be reset: 0 from the fault on for a while, until what is left of the
-/// time before has run through every filter, then smoothly up to 1.
+/// The weight of a computation that had to be reset. After the fault it is 0 until the old signal has left every
+/// filter, then it rises smoothly to 1.
 class Recovery {
 public:
     /// @param hold, rise  samples

@@ -21,27 +21,27 @@ struct MotionPoint {
     double i = 0.0;  ///< A, the current with which the linear driver gets there
 };
 
-/// What the driver would do if it were linear: the linear part of the model (SmallSignal.h), dz/dt = A z + B u, solved
+/// The motion of the driver if it were linear: the linear part of the model (SmallSignal.h), dz/dt = A z + B u, solved
 /// exactly from sample to sample for an input that is the cubic through the latest four samples,
 ///     z(n) = exp(A T) z(n-1) + sum_{k=0..3} g_k u(n-k).
 /// Position, velocity, acceleration and jerk are read from the same state, so that each is the derivative of the one
-/// before it: a = (A z + B u)_v, j = (A (A z + B u))_v. That, and not that they are the linear driver's to the last
-/// digit, is what an inversion needs: the error of the interpolation, 0.03 (w T)^4 of the motion, is linear and cancels
-/// in it. The state is kept in the coordinates of the eigenvectors of A, where exp(A T) has nothing but blocks of one
-/// and two, unless they are so close to one another (a driver of just critical damping) that digits would be lost: then
-/// as it is.
+/// before it: a = (A z + B u)_v, j = (A (A z + B u))_v. An inversion needs this consistency, and not agreement with the
+/// linear driver to the last digit: the interpolation error, 0.03 (w T)^4 of the motion, is linear and cancels in the
+/// inversion. The state is kept in the coordinates of the eigenvectors of A, where exp(A T) has only blocks of size one
+/// and two. If the eigenvectors are so close to one another that digits would be lost (a driver with just critical
+/// damping), the state is kept as it is.
 class Reference {
 public:
     /// @param sampleRate  Hz, of step()
     Reference(const Model&, double sampleRate);
 
-    /// Of any linear motion; of its points x and i are told, in the same states as those of a driver.
+    /// For any linear motion. Its points give x and i, in the same states as those of a driver.
     Reference(const LinearMotion&, double sampleRate);
 
     void reset();
-    const MotionPoint& step(double u);  ///< V, or N of a driver without a coil; returns the motion at this sample
+    const MotionPoint& step(double u);  ///< V, or N for a driver without a coil; returns the motion at this sample
 
-    /// As if the latest sample had been larger by that much.
+    /// As if the latest sample had been larger by this difference.
     const MotionPoint& correct(double difference);
 
     const MotionPoint& motion() const { return point_; }  ///< at the latest sample
@@ -57,14 +57,14 @@ private:
 
     std::size_t order_, rows_;  ///< rows_: the order, padded to a multiple of lanes
     bool electrical_ = false;
-    Eigen::Index pairs_ = 0;  ///< how many blocks of two there are, at the state's beginning
+    Eigen::Index pairs_ = 0;  ///< number of blocks of two, at the state's beginning
     bool dense_ = false;
     Rows transition_;  ///< if dense, by columns
-    Rows laid_;        ///< all else of a step, four states at a time
+    Rows laid_;        ///< the rest of a step, four states at a time
     Rows byNow_;       ///< g_0
     double accelerationInput_ = 0.0, jerkInput_ = 0.0;
     Eigen::MatrixXd basis_;
-    MotionPoint byInput_;            ///< of the motion, by u(n)
+    MotionPoint byInput_;            ///< direct contribution of u(n) to the motion
     std::array<double, 4> past_ {};  ///< u(n) .. u(n-3)
     Rows state_, next_;
     MotionPoint point_;

@@ -14,21 +14,21 @@
 
 namespace excursion {
 
-/// The driver with its effects, in real time: from the voltage to the acceleration of the cone, which is what is heard
+/// The driver with its effects, in real time: from the voltage to the acceleration of the cone, which is what one hears
 /// in front of it.
 ///     u -> up -> Cone -> down
-/// As for blocks and the audio thread see Predistorter. A sample that is not a finite number is played as silence;
-/// after it, and when the motion is not finite, the driver starts from rest and fades in from silence.
+/// For blocks and the audio thread see Predistorter. A sample that is not finite is played as silence. After it, and if
+/// the motion is not finite, the driver starts from rest and fades in from silence.
 class Speaker {
 public:
     /// Throws Error, see requireRunnable.
     Speaker(const Model&, const RealTimeOptions&);
 
     int latency() const { return oversampling_.latency(); }  ///< samples; fixed
-    int substeps() const { return cone_.substeps(); }        ///< steps a sample of the higher rate
+    int substeps() const { return cone_.substeps(); }        ///< steps per sample of the higher rate
     void reset();
 
-    /// @param share  how much of the linear driver's output is taken away, 0 to 1; followed smoothly
+    /// @param share  how much of the linear driver's output is subtracted, 0 to 1; followed smoothly
     void setLinearShareRemoved(double share) { cone_.setLinearShareRemoved(share); }
 
     /// @param in   V (or N); n samples
@@ -55,8 +55,8 @@ private:
     std::atomic<int> faults_ {0};
 };
 
-/// m/s^2 per V that a linear driver approaches well above resonance and below its inductance, Bl/(Re m) (1/m of a
-/// driver without a coil): what its output is divided by to be heard at the level of the input.
+/// m/s^2 per V that a linear driver approaches well above resonance and below the influence of its inductance, Bl/(Re
+/// m) (1/m for a driver without a coil). The output is divided by it, to be heard at the level of the input.
 double plateau(const Model&);
 
 }  // namespace excursion

@@ -10,8 +10,8 @@
 
 namespace excursion {
 
-/// While it lives, this thread's arithmetic takes and gives zeros for subnormal numbers, which would cost a hundred
-/// times the time as a filter rings out. (x86 and 64-bit ARM; elsewhere it does nothing.)
+/// During its lifetime, this thread's arithmetic treats subnormal numbers as zero. Otherwise, a filter that rings out
+/// would take a hundred times the time. (x86 and 64-bit ARM; elsewhere it does nothing.)
 class FlushSubnormals {
 public:
 #if defined(__SSE2__)
@@ -39,7 +39,7 @@ private:
 #endif
 };
 
-/// What is far below any converter becomes zero, also as a float.
+/// Numbers far below the resolution of any converter become zero, also as a float.
 inline double withoutSubnormals(double q) { return std::abs(q) < 1e-30 ? 0.0 : q; }
 
 }  // namespace excursion

@@ -13,23 +13,23 @@
 
 namespace excursion {
 
-/// What a linearized driver is to move like: as its own linear part does, or with another resonance, which is put
-/// before the predistorter as Linkwitz' equalizer,
+/// How a linearized driver is to move: like its own linear part, or with another resonance. Another resonance is a
+/// Linkwitz equalizer in front of the predistorter,
 ///     T(s) = (s^2 + (w0/Q0) s + w0^2) / (s^2 + (wt/Qt) s + wt^2),
-/// (f0, Q0) the driver's own (OwnLinearPart), (ft, Qt) the target's. The linearized driver has then the response of its
-/// linear part times T: without inductance and creep exactly that of a driver that resonates at ft with Qt. These two
-/// stay as they are, and so does the sensitivity above the resonance, as T goes to 1 there. At low frequencies T goes
-/// to (f0/ft)^2, which is what an octave of extension costs: 12 dB of excursion and of voltage. Or its sound is
-/// equalized in bands of a third of an octave (Equalizer), to what a band, some gains or a curve ask for. Sources: S.
-/// Linkwitz, Wireless World, May and June 1980 (the equalizer); R. Small, J. AES 20(10), 1972 (the closed box).
+/// (f0, Q0) the driver's own (OwnLinearPart), (ft, Qt) the target's. The linearized driver then has the response of its
+/// linear part times T. Without inductance and creep, this is exactly the response of a driver that resonates at ft
+/// with Qt. Inductance and creep stay as they are, and so does the sensitivity above the resonance, where T goes to 1.
+/// At low frequencies T goes to (f0/ft)^2: an octave of extension costs 12 dB of excursion and of voltage. Or the sound
+/// is equalized in third-octave bands (Equalizer), to a flat band, given gains or a given curve. Sources: S. Linkwitz,
+/// Wireless World, May and June 1980 (the equalizer); R. Small, J. AES 20(10), 1972 (the closed box).
 struct Target {
     enum class Kind {
         own,        ///< the driver's own linear part
-        resonance,  ///< that of frequency and quality
-        closedBox,  ///< what the driver would have in a closed box of that volume
-        flat,       ///< sound as loud as on average between `low` and `high`
+        resonance,  ///< the resonance of frequency and quality
+        closedBox,  ///< the resonance that the driver would have in a closed box of that volume
+        flat,       ///< flat sound between `low` and `high`, at its average level there
         bands,      ///< the gains of `curve`
-        response    ///< sound like `curve`, as loud as on average where that is given
+        response    ///< sound like `curve`, at its average level where the curve is given
     };
     Kind kind = Kind::own;
     double frequency = 40.0;  ///< Hz
@@ -38,7 +38,7 @@ struct Target {
     double low = 50.0, high = 500.0;  ///< Hz
     ThirdOctaves curve {};            ///< dB
 
-    static constexpr double notGiven = -999.0;  ///< of a band of the curve
+    static constexpr double notGiven = -999.0;  ///< marks a band without a value in the curve
     static constexpr double mostGain = 24.0;    ///< dB
     bool equalizes() const { return kind == Kind::flat || kind == Kind::bands || kind == Kind::response; }
 
@@ -53,43 +53,43 @@ struct Target {
     bool operator==(const Target&) const = default;
 };
 
-/// A curve in the bands of a target: the mean of its points in each third of an octave, what lies between its
-/// neighbours, over the logarithm of the frequency, where there is none, and Target::notGiven beyond its ends.
+/// A curve in the bands of a target: the mean of its points in each third-octave band. A band without points is
+/// interpolated over the logarithm of the frequency. Beyond the ends of the curve it is Target::notGiven.
 /// @param frequency  Hz, ascending, positive; as many as levels
 ThirdOctaves targetCurve(const std::vector<double>& frequency, const std::vector<double>& db);
 
-/// What a loudspeaker moves and sounds like itself, and what can be put in its place.
+/// How a loudspeaker moves and sounds by itself, and which targets it can have.
 struct OwnLinearPart {
     OwnLinearPart() = default;
 
-    /// A driver's; its resonance is coneResonance().
+    /// For a driver; its resonance is coneResonance().
     explicit OwnLinearPart(const Model&);
 
-    /// @param motion  a loudspeaker's displacement per input at frequency, any unit
-    /// @param own     what may be its resonance
+    /// @param motion  displacement per input at a frequency, in any unit
+    /// @param own     candidate for its resonance
     /// @param slow    the motion at 0 Hz
     void takeResonance(const std::function<std::complex<double>(double)>& motion, const Resonance& own, double slow);
 
-    /// Nothing: the linear part departs from this resonance by more than 6 dB between a quarter of f0 and twice that,
-    /// as in a vented box, where two resonances share the motion; then there is no other target than the own linear
-    /// part.
+    /// The single resonance of the motion. Nothing if the linear part departs from it by more than 6 dB between a
+    /// quarter of f0 and twice f0, as in a vented box, where two resonances share the motion. Then the only target is
+    /// the own linear part.
     std::optional<Resonance> single;
-    /// Vas = rho c^2 Sd^2/K, m^3: of air with the stiffness of the suspension; nothing where the area of the cone is
-    /// not known.
+    /// Vas = rho c^2 Sd^2/K, m^3: volume of air with the stiffness of the suspension; nothing if the cone area is not
+    /// known.
     std::optional<double> suspensionVolume;
-    std::optional<ThirdOctaves> sound;  ///< dB, of the level; nothing where the model does not tell a sound
+    std::optional<ThirdOctaves> sound;  ///< level, dB; nothing if the model gives no sound
 
-    /// What is played for a target. A closed box adds the stiffness of its air,
+    /// The resonance that is played for a target. A closed box adds the stiffness of its air,
     ///     ft = f0 sqrt(1 + Vas/V),   Qt = Q0 sqrt(1 + Vas/V).
-    /// What require() refuses is not played: then it is the own one. Any thread.
+    /// If require() refuses the target, this is the own resonance. Any thread.
     Resonance played(const Target&) const;
 
-    /// The gains at the centres of the bands, dB. Beside the bands that are asked for half of the gain at their border,
-    /// then none. Any thread.
+    /// The gains at the centres of the bands, dB. The band next to the requested ones has half of the gain at their
+    /// border, all further bands have none. Any thread.
     ThirdOctaves gains(const Target&) const;
 
-    /// Throws Error (data): why this loudspeaker cannot be given this target; also where that is farther than by a
-    /// factor of 8 from the own frequency, or takes a gain of more than 24 dB.
+    /// Throws Error (data): why this loudspeaker cannot have this target. Also if the target differs from the own
+    /// frequency by more than a factor of 8, or takes a gain of more than 24 dB.
     void require(const Target&) const;
 
 private:

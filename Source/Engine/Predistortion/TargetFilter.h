@@ -13,9 +13,9 @@ namespace excursion {
 /// integrators (Zavalishin, The Art of VA Filter Design, 2012, section 4),
 ///     y = u + (w0/(wt Q0) - 1/Qt) v1 + ((w0/wt)^2 - 1) v2,   v1 = (s/wt) v2,   v2 = u wt^2/(s^2 + (wt/Qt) s + wt^2),
 /// with s = (wt/tan(wt T/2)) (z - 1)/(z + 1). So it is exact at 0 and at ft, and at half the sample rate it is 1, as
-/// T(s) is at infinity; elsewhere the frequency is off by (w T)^2/12 relatively, 2e-5 at 120 Hz and 48 kHz. With the
-/// driver's own resonance both factors are zero, and y is u, bit by bit. A new target is followed along the logarithms
-/// of ft and Qt within some 50 ms; the states know no jump. What equalizes comes behind it.
+/// T(s) is at infinity. Elsewhere the relative frequency error is (w T)^2/12, 2e-5 at 120 Hz and 48 kHz. With the
+/// driver's own resonance both factors are zero, and y equals u bit for bit. A new target is followed along the
+/// logarithms of ft and Qt within some 50 ms, and the states do not jump. The equalizer follows this filter.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class TargetFilter {
@@ -24,13 +24,13 @@ public:
     TargetFilter(const OwnLinearPart&, double sampleRate);
 
     const OwnLinearPart& own() const { return own_; }
-    void aim(const Target&);  ///< one that is not sound is left
-    void jump();              ///< to where it was aimed
+    void aim(const Target&);  ///< an invalid target is ignored
+    void jump();              ///< to the target
     void reset();             ///< as jump(), and as after silence
     double step(double u);
 
-    /// V per V, of the target that it was aimed at; what the trapezoids make of it is in it. For any thread but that of
-    /// the audio.
+    /// V per V, the response of the target, including the effect of the trapezoidal form. For any thread but the audio
+    /// thread.
     std::complex<double> at(double frequency) const;
 
 private:

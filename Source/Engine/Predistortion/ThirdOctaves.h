@@ -7,7 +7,7 @@
 
 namespace excursion {
 
-/// A number for each band of a third of an octave from 20 Hz to 20 kHz; the bands are counted from the one of 1 kHz.
+/// A number for each third-octave band from 20 Hz to 20 kHz. The centres are defined from the band at 1 kHz.
 using ThirdOctaves = std::array<double, 31>;
 
 inline double thirdOctave(std::size_t k) { return 1000.0 * std::exp2((static_cast<double>(k) - 17.0) / 3.0); }  ///< Hz

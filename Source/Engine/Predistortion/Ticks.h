@@ -7,22 +7,22 @@
 
 namespace excursion {
 
-/// Protection decides once a tick; what its decisions share.
+/// What the decisions of Protection share. It decides once per tick.
 namespace ticks {
 
-inline constexpr int samples = 16;  ///< of a tick
+inline constexpr int samples = 16;  ///< samples per tick
 
-/// How many ticks there are in a time, s; at least 1.
+/// Number of ticks in a time, s; at least 1.
 inline int in(double seconds, double sampleRate) { return static_cast<int>(std::ceil(seconds * sampleRate / samples)); }
 
-/// The share of its way that a low-pass of first order goes in a tick.
+/// The share of a step that a first-order low-pass covers in one tick.
 /// @param tau  s
 inline double share(double tau, double sampleRate) { return 1.0 - std::exp(-samples / (tau * sampleRate)); }
 
 }  // namespace ticks
 
-/// A factor of a signal, 0 to 1, that falls at once when it must, and comes back slowly. While the limit that it serves
-/// is on the way itself, it falls slowly, too, so that moving a limit bends no signal.
+/// A factor of a signal, 0 to 1, that falls at once when needed, and comes back slowly. While its limit is changing, it
+/// also falls slowly, so that moving a limit does not distort the signal.
 class Factor {
 public:
     /// @param release  s, time constant of its return
@@ -33,7 +33,7 @@ public:
 
     void reset() { ease_.jump(1.0); }
 
-    /// @param need  the largest factor that will do
+    /// @param need  the largest allowed factor
     double step(double need, bool slowly)
     {
         double next = need;

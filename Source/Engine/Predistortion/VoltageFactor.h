@@ -9,8 +9,8 @@
 
 namespace excursion {
 
-/// By how much a signal is turned down so that, linearized, its peaks stay within a limit: peak x excess <= limit, with
-/// the peak of the last 100 to 200 ms and what linearizing has lately added to peaks.
+/// The factor that turns a signal down so that, after linearization, its peaks stay within a limit: peak x excess <=
+/// limit. Peak is that of the last 100 to 200 ms, excess the recent increase of peaks through linearization.
 class VoltageFactor {
 public:
     explicit VoltageFactor(double sampleRate)
@@ -35,8 +35,8 @@ public:
 
     /// At the end of a tick.
     /// @param limit   1/V; 0: none
-    /// @param moving  the limit is on its way
-    /// @param asked, wanted  peaks, V: of what was linearized in this tick, of what came of it
+    /// @param moving  the limit is changing
+    /// @param asked, wanted  peaks in this tick, V: before and after linearization
     double decide(double limit, bool moving, double asked, double wanted)
     {
         asked = asked_.step(asked);
@@ -51,7 +51,7 @@ public:
     }
 
     double factor() const { return factor_.value(); }
-    double peak() const { return peaks_.value() * factor(); }  ///< V, what is left of the latest peaks
+    double peak() const { return peaks_.value() * factor(); }  ///< V, latest peaks after the factor
 
 private:
     static constexpr double peakHold = 0.1, excessHold = 0.1, release = 0.5, forgetting = 1.0;  // s
