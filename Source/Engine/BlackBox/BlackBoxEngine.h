@@ -13,10 +13,10 @@
 
 namespace excursion {
 
-/// A model without physics in a chain: BlackBoxPredistorter, where the model can be inverted, and behind it the
-/// BlackBoxSpeaker. The model's output is heard at the level that the signal has under the stimulus of the fit (see
-/// PlayedBox::perOutput). Besides the limits (see BlackBoxPredistorter) it keeps to the region of the fit, which the
-/// meters tell as what the motion was turned down by.
+/// A model without physics in a chain: the BlackBoxPredistorter, if the model can be inverted, followed by the
+/// BlackBoxSpeaker. The model's output is scaled to the level that the signal has under the stimulus of the fit (see
+/// PlayedBox::perOutput). Besides the limits (see BlackBoxPredistorter) the signal stays in the region of the fit. The
+/// meters show this as reduction of the motion.
 class BlackBoxEngine : public ChainEngine {
 public:
     /// Throws Error (usage) for a rate that is more than 16 times the model's or less than a sixteenth.
@@ -39,7 +39,7 @@ private:
     BlackBoxSpeaker speaker_;
     double perOutput_;
     bool moves_;                   ///< the output is the excursion
-    std::vector<double> waiting_;  ///< a ring: what is not played waits as long as the speaker takes
+    std::vector<double> waiting_;  ///< a ring: delays the unplayed signal by the speaker's latency
     std::size_t at_ = 0;
     std::array<double, longestPart> sound_ {};
     std::atomic<int> faults_ {0};

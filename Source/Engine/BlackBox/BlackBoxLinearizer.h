@@ -13,23 +13,24 @@ namespace excursion {
 /// How a black box is inverted.
 struct BlackBoxDesign {
     PreviewControl control;
-    int preview = 0;  ///< samples of the model, of each pass
+    int preview = 0;  ///< samples of the model, per pass
     int passes = 2;   ///< at least 1
 };
 
-/// What has to be added to the input of a black box so that its output is that of its linear part alone, sample by
+/// The correction to add to the input of a black box so that its output is that of its linear part alone, sample by
 /// sample at the model's rate.
 ///
-/// With the linear part's states x_r and what the box differs from it, e = x - x_r and w the correction,
+/// With x_r the states of the linear part, e = x - x_r the difference of the box from it, and w the correction,
 ///     e(t+1) = A e + B w + E (q - q_r),   y - y_r = C e + D w + F (q - q_r)
-/// is a linear system under the disturbance q of the nonlinearity, which PreviewControl keeps at zero. What q will be
-/// is not known before w is: the first pass takes the q of the linear part's own trajectory, each later pass that of
-/// the pass before, which runs `preview` samples ahead of it. Every pass is a simulation of the box with its own
-/// correction, so an error of the q ahead is fed back and does not pile up. (A fixed-point iteration like the
-/// Picard form of Schetzen's p-th order inverse, with passes in place of orders, but closed by feedback.)
+/// is a linear system with the nonlinearity's q as disturbance. PreviewControl keeps its output at zero. The future q
+/// depends on w, which is not known yet. So the first pass takes the q of the linear part's own trajectory. Each later
+/// pass takes the q of the pass before, which runs `preview` samples ahead of it. Every pass is a simulation of the box
+/// with its own correction, so an error of the predicted q is fed back and does not accumulate. (This is a fixed-point
+/// iteration like the Picard form of Schetzen's p-th order inverse, with passes in place of orders, but closed by
+/// feedback.)
 ///
-/// The mean of q is no distortion: q_r is q below a twentieth of the lowest frequency of the stimulus, by two poles,
-/// and moves the linear part along, so no constant voltage is asked for.
+/// The mean of q is not distortion. q_r is q low-passed by two poles at a twentieth of the lowest frequency of the
+/// stimulus. It drives the linear part as well, so the correction asks for no constant voltage.
 ///
 /// Nothing allocates after construction.
 class BlackBoxLinearizer {
@@ -40,35 +41,35 @@ public:
     void reset();
 
     struct Sample {
-        double input = 0.0;       ///< what came in `latency()` samples ago
-        double correction = 0.0;  ///< what is to be added to it
-        double wanted = 0.0;      ///< both together, without any bound
-        double output = 0.0;      ///< what the model makes of both
-        double residual = 0.0;    ///< what is left of the distortion, as the model has it
-        double distance = 0.0;    ///< how far out in the region the box is, 1 at its border
+        double input = 0.0;       ///< the input of `latency()` samples ago
+        double correction = 0.0;  ///< to be added to the input
+        double wanted = 0.0;      ///< input plus correction, without any bound
+        double output = 0.0;      ///< output of the model for both
+        double residual = 0.0;    ///< remaining distortion, according to the model
+        double distance = 0.0;    ///< how far out in the region the box is; 1: at its border
     };
+
+    /// The slow part of q, q_r: for the latest input, not for the output.
+    const std::vector<double>& slow() const { return slow_; }
 
     /// @param u              finite
     /// @param largest        the correction is kept to this
     /// @param voltageLimit   input and correction together are kept to this, as far as the correction can
-    /// The slow part of q, q_r: of the latest input, not of what comes out.
-    const std::vector<double>& slow() const { return slow_; }
-
     Sample step(double u, double largest = std::numeric_limits<double>::infinity(),
                 double voltageLimit = std::numeric_limits<double>::infinity());
 
 private:
-    /// So many numbers for each of the latest samples, all in one row from the oldest to the newest.
+    /// A fixed number of values for each of the latest samples, contiguous from the oldest to the newest.
     class Window {
     public:
         Window(std::size_t each, std::size_t samples) : each_(each), samples_(samples), values_(2 * each * samples, 0.0)
         {
         }
         void clear() { std::fill(values_.begin(), values_.end(), 0.0); }
-        double* next();  ///< the place of a new sample, to be filled before settle()
+        double* next();  ///< the place of a new sample; fill it before settle()
         void settle();
         const double* oldest() const { return values_.data() + at_ * each_; }
-        /// what came `ago` samples before the newest
+        /// the sample that came `ago` samples before the newest
         const double* past(std::size_t ago) const { return oldest() + (samples_ - 1 - ago) * each_; }
 
     private:

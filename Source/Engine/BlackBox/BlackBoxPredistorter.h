@@ -15,8 +15,8 @@
 
 namespace excursion {
 
-/// A black box that is ready to be inverted: where it has been, where it rests, and what that is worth. Made once,
-/// for any number of channels. Throws Error, see visitedBy(), restOf() and rehearse().
+/// A black box that is ready to be inverted: with its region, its rest, and the benefit of inverting it. Made once, for
+/// any number of channels. Throws Error, see visitedBy(), restOf() and rehearse().
 struct RehearsedBox {
     explicit RehearsedBox(const BlackBox&);
     RehearsedBox(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&);
@@ -27,15 +27,15 @@ struct RehearsedBox {
     BlackBoxRehearsal rehearsal;
 };
 
-/// Bends the input of a loudspeaker that is known by a model without physics so that its output is that of the model's
+/// Predistorts the input of a loudspeaker, given a model without physics, so that its output is that of the model's
 /// linear part:
 ///     u -> TargetFilter -> BoxProtection -> delay ------------------------------------------+-> out
 ///                              |-> to the model's rate -> BlackBoxLinearizer -> and back ->-+
-/// The signal itself is delayed and not filtered, at any rate: only the correction passes through the rates, and so is
-/// band-limited to the lower of the two. What comes out is never more than the peak of the fit's input and the largest
-/// correction that the rehearsal at that level asked for. Of the controls the limit of the excursion is of a model of
-/// the excursion only, that of the power where the coil's resistance is given; the amount goes to 1 where the excursion
-/// comes near its limit, as a protection that can be turned down is none.
+/// The signal itself is delayed and not filtered, at any rate. Only the correction is converted between the rates, so
+/// it is band-limited to the lower of the two. The output never exceeds the peak of the fit's input plus the largest
+/// correction that the rehearsal at that level asked for. The excursion limit applies only to a model of the excursion,
+/// the power limit only if the coil's resistance is given. The amount goes to 1 where the excursion comes near its
+/// limit, so that a lower amount cannot weaken the protection.
 ///
 /// Everything but the construction is for the audio thread: no allocation, no lock, no exception. Blocks may have any
 /// length, and the output does not depend on how a signal is cut into blocks.
@@ -46,20 +46,20 @@ public:
 
     int latency() const { return protection_.latency() + behind_; }  ///< samples; fixed
     void reset();
-    void set(const PredistortionControls&);  ///< followed smoothly; what is not sound is left as it was
+    void set(const PredistortionControls&);  ///< followed smoothly; invalid controls keep their values
 
-    /// Switched off the signal goes through as it is, but for samples that are no numbers. Once the correction has
-    /// faded the model stands still; switched on again it hears the signal for 0.1 s, and then the correction comes in.
+    /// Switched off, the signal passes unchanged, except for samples that are not numbers. The model stops once the
+    /// correction has faded. Switched on again, it hears the signal for 0.1 s, and then the correction fades in.
     void turn(bool on);
 
     /// @param in, out  n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);
 
     /// Since the last call of collectMeters(); may be read from another thread.
-    struct Meters : Predistorter::Meters {  ///< displacement: of the model that is given what comes out
+    struct Meters : Predistorter::Meters {  ///< displacement: of the model driven by the output
         double correction = 0.0;            ///< peak of the correction
-        double region = 0.0;                ///< how far out the loudspeaker went, 1: as far as the fit has been
-        double regionReduction = 0.0;       ///< dB, by which the signal was turned down at most to stay there
+        double region = 0.0;                ///< how far out the loudspeaker went; 1: as far as in the fit
+        double regionReduction = 0.0;       ///< largest dB by which the signal was turned down to stay there
     };
     Meters collectMeters();
 
@@ -78,23 +78,23 @@ private:
     int behind_;
     TargetFilter target_;
     BoxProtection protection_;
-    /// the model, given what comes out, where its output is the excursion
+    /// the model driven by the output, if its output is the excursion
     BlackBoxStep truth_;
     std::vector<double> x_, z_, q_;
     Rest rest_;
     double still_;  ///< the output at rest
     bool moves_;    ///< the output is the excursion
-    int memory_;    ///< samples of the model, in which it forgets that it stood still
+    int memory_;    ///< samples of the model until its memory is filled after a stop
     bool on_ = true, idle_ = false;
     int warm_ = 0;  ///< samples of the model, until the correction may come in
     PredistortionControls controls_;
-    /// gate_: whether there is a correction; near_, effort_: see BoxProtection
+    /// gate_: whether the correction is on; near_, effort_: see BoxProtection
     Glide gate_, amount_, near_, effort_;
-    std::vector<double> delayed_, corrections_;  ///< rings; corrections_: those that came before their sample is due
+    std::vector<double> delayed_, corrections_;  ///< rings; corrections_: those made before their sample is due
     std::size_t at_ = 0, made_ = 0, used_ = 0;
     int early_ = 0;  ///< samples until the first correction is due
-    int skip_ = 0;   ///< corrections that are of before the beginning
-    Meters peak_;    ///< since it was published; of reductions the factors
+    int skip_ = 0;   ///< corrections that belong to samples before the beginning
+    Meters peak_;    ///< since the last publish(); reductions as factors
     Peak displacement_, out_, power_, correction_, region_;
     Peak displacementReduction_, voltageReduction_, powerReduction_, regionReduction_;
     std::atomic<int> faults_ {0};

@@ -12,11 +12,12 @@
 
 namespace excursion {
 
-/// A loudspeaker that is known by a model without physics, in real time:
+/// A loudspeaker in real time, given by a model without physics:
 ///     u -> to the model's rate -> BlackBoxStep -> and back -> its output
-/// so it is heard up to the lower of the two rates. Beyond the region of its fit the nonlinearity is held (see Region):
-/// it never runs away. As for blocks and the audio thread see BlackBoxPredistorter. A sample that is no number, or
-/// beyond 1000 times the peak of the fit, is played as silence, and the output fades in again from the model's rest.
+/// so it is heard up to half the lower of the two rates. Beyond the region of its fit the nonlinearity is held (see
+/// Region), so it never runs away. For blocks and the audio thread see BlackBoxPredistorter. A sample that is not a
+/// number, or beyond 1000 times the peak of the fit, is played as silence, and the output fades in again from the
+/// model's rest.
 class BlackBoxSpeaker {
 public:
     /// Throws Error (usage), see RateConverter.
@@ -25,7 +26,7 @@ public:
     int latency() const { return latency_; }  ///< samples; fixed
     void reset();
 
-    /// @param share  how much of the linear part's output is taken away, 0 to 1; followed smoothly
+    /// @param share  how much of the linear part's output is subtracted, 0 to 1; followed smoothly
     void setLinearShareRemoved(double share) { removed_.aim(share); }
 
     /// @param out  in the output's unit; n samples, may be the same place
@@ -33,7 +34,7 @@ public:
 
     /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
-        double region = 0.0;  ///< how far out it went, 1: as far as the fit has been
+        double region = 0.0;  ///< how far out it went; 1: as far as in the fit
         double output = 0.0;  ///< peak, from rest
         int faults = 0;       ///< since construction
     };
@@ -52,7 +53,7 @@ private:
     double loudest_;
     int latency_, early_ = 0;
     std::vector<double> x_, straight_, z_, q_, none_;
-    std::vector<double> made_;  ///< a ring of outputs that came before they are due
+    std::vector<double> made_;  ///< a ring of outputs made before they are due
     std::size_t in_ = 0, out_ = 0;
     Glide removed_;
     Recovery recovery_;

@@ -9,7 +9,7 @@
 
 namespace excursion {
 
-/// A matrix whose columns are padded to whole groups of four rows, for products without a remainder.
+/// A matrix whose columns are padded to a multiple of four rows, for products without a remainder loop.
 class PaddedMatrix {
 public:
     PaddedMatrix() = default;
@@ -32,8 +32,8 @@ private:
 double innerProduct(const double* a, const double* b, std::size_t n);
 
 /// One sample of a black box's equations, compiled for an audio thread: nothing here allocates after construction. The
-/// combinations q are those of the place within the region (see Region), so they are bounded whatever comes.
-/// All vectors are padded: states() and so on say how long they are.
+/// combinations q are taken at the place within the region (see Region), so they are bounded for any input. All vectors
+/// are padded: states() and so on give their lengths.
 class BlackBoxStep {
 public:
     BlackBoxStep(const BlackBox&, const Region&);
@@ -52,11 +52,11 @@ public:
             zOfQ_.add(q, z);
     }
 
-    /// q at z + G (q - before), from the q of the sample before as a first guess. @param before  may be null: zero
-    /// @returns how far out the place is, as a share of the region
+    /// q at z + G (q - before), with the q of the previous sample as a first guess. @param before may be null: zero
+    /// @returns how far out the place is, relative to the region
     double combinationsAt(const double* z, double u, const double* before, double* q);
 
-    /// C x + D u + F q of this sample; x becomes that of the next.
+    /// C x + D u + F q of this sample; x becomes the state of the next.
     double advance(double* x, double u, const double* q);
 
 private:

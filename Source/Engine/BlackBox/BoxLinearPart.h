@@ -6,14 +6,15 @@
 
 namespace excursion {
 
-/// What a black box of the displacement, the velocity, the acceleration or the pressure moves and sounds like: sound is
-/// the acceleration, or the pressure itself. The resonance is that of the pair of poles whose second order follows the
-/// motion best, from a quarter of its frequency to twice that. Of a current nothing is known.
+/// The motion and the sound of a black box whose output is displacement, velocity, acceleration or pressure. Its sound
+/// is the acceleration, or the pressure itself. Its resonance is that of the pair of poles whose second-order response
+/// follows the motion best, from a quarter of its frequency to twice its frequency. For a current, motion and sound are
+/// unknown.
 OwnLinearPart ownLinearPart(const BlackBox&);
 
-/// What a target costs a black box that is turned around, see forecastTarget(const Model&, ...): curves within the band
-/// of its fit, peaks by the linearizer, and no excursion where the model tells none.
-/// Throws Error, see OwnLinearPart::require; (usage) when volts is not positive.
+/// What a target costs a black box that is inverted, see forecastTarget(const Model&, ...): curves within the band of
+/// its fit, peaks from the linearizer, and no excursion if the model gives none.
+/// Throws Error, see OwnLinearPart::require; (usage) if volts is not positive.
 TargetForecast forecastTarget(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&,
                               const PredistortionControls&, double volts);
 

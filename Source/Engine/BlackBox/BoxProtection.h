@@ -13,40 +13,39 @@
 
 namespace excursion {
 
-/// Protection, the one decision that is made for drivers, for a loudspeaker that is known by a black box. A loudspeaker
-/// that is turned around moves as the linear part, so Protection foresees that; what a black box does besides is told
-/// to it:
-///  - where the model goes slowly, as it has no constant voltage to hold it (BlackBoxLinearizer::slow), an offset;
-///  - what the model is apart from its linear part in spite of the correction, or while there is less than all of it:
-///    a reserve, which is no less than what the rehearsal has seen;
-///  - the region of the fit and the peak of its input, which no signal may pass: RegionLimiter;
-///  - a coil, where its resistance is given, that is counted to take all of the voltage.
-/// A sample that is no number, or beyond 100 times the peak, is silence, and so is what is around it.
+/// Protection, the same algorithm as for drivers, for a loudspeaker given by a black box. A linearized loudspeaker
+/// moves like the linear part, so Protection predicts that. It gets the further properties of a black box as:
+///  - an offset: the slow displacement of the model, as no constant voltage holds it (BlackBoxLinearizer::slow);
+///  - a reserve: the deviation of the model from its linear part in spite of the correction, or while its amount is
+///    below 1. It is no less than the deviation in the rehearsal;
+///  - the region of the fit and the peak of its input, which no signal may exceed: RegionLimiter;
+///  - a coil, if its resistance is given, that is assumed to take all of the voltage.
+/// A sample that is not a number, or beyond 100 times the peak, is played as silence, and so is the signal around it.
 class BoxProtection {
 public:
-    /// @param late  samples from here to what comes out, for as long as which a decision has to last
+    /// @param late  samples from here to the output; a decision must last that long
     BoxProtection(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&, double sampleRate, int late);
 
     int latency() const { return static_cast<int>(delayed_.size()) + Protection::latency; }
     void reset();
     void set(const PredistortionControls&, bool on);
 
-    bool sound(double sample) const { return std::abs(sample) < beyondAll_; }  ///< not NaN, and not beyond all
+    bool sound(double sample) const { return std::abs(sample) < beyondAll_; }  ///< not NaN, and not far too large
 
-    /// @returns the sample of latency() ago, turned down where it is on
+    /// @returns the sample of latency() ago, turned down if switched on
     double step(double sample);
-    bool faulty() const { return faulty_; }    ///< the latest sample was none
-    bool decided() const { return decided_; }  ///< before the latest sample
+    bool faulty() const { return faulty_; }    ///< the latest sample was invalid
+    bool decided() const { return decided_; }  ///< a decision was made before the latest sample
 
-    /// Of a sample of the model: its slow part, how far the model is from its linear part, and the input as it was and
-    /// as the correction wanted it.
+    /// Reports a sample of the model: its slow part, how far the model is from its linear part, the input, and the
+    /// input that the correction wanted.
     void note(const std::vector<double>& slow, double apart, double asked, double wanted);
-    /// Of what comes out, and how much of the correction there is in it, 0 to 1.
+    /// Reports the output, and how much of the correction is in it, 0 to 1.
     void sent(double out, double amount);
 
     double voltageLimit() const { return protection_.voltageLimit(); }
-    double near() const { return near_; }  ///< 1: so near the excursion's limit that all of the correction is needed
-    double effort() const { return protection_.effort(); }  ///< what the limit of power leaves of the correction
+    double near() const { return near_; }  ///< 1: so near the excursion limit that all of the correction is needed
+    double effort() const { return protection_.effort(); }  ///< factor of the power limit on the correction
     double heat() const { return ohms_ > 0.0 ? protection_.heat() / ohms_ : 0.0; }  ///< W
     struct Reductions {  ///< factors, since the latest decision
         double region = 1.0;
@@ -66,10 +65,10 @@ private:
     std::vector<double> offset_, rest_;  ///< m per q; q at rest
     double beyondAll_, apartBefore_, apartAfter_;
     bool on_ = true, faulty_ = false, decided_ = false;
-    double ohms_ = 0.0, limit_ = 0.0;  ///< limit_: m, that is given to protection; 0: none
+    double ohms_ = 0.0, limit_ = 0.0;  ///< limit_: m, the limit for protection_; 0: none
     double region_ = 1.0, least_ = 1.0, amount_ = 1.0, near_ = 0.0, squares_ = 0.0;
     Protection::Outcome outcome_;
-    std::vector<double> delayed_, plain_;  ///< rings: until the region's factor is known; until protection lets go
+    std::vector<double> delayed_, plain_;  ///< rings: delay until the region's factor is known; delay of protection_
     std::size_t at_ = 0, plainAt_ = 0;
 };
 

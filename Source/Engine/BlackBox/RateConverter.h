@@ -7,24 +7,24 @@
 
 namespace excursion {
 
-/// A signal at another rate, sample by sample, for an audio thread: the sinc under a Kaiser window, read from a table
-/// of its phases with linear interpolation between them. Output k lies at the time of input k from/to, exactly, however
-/// long it runs. Flat to 0.41 of the lower of the two rates, -90 dB from 0.5 of it on. Of equal rates the signal goes
-/// through as it is.
+/// Converts a signal to another rate, sample by sample, for an audio thread. The filter is a sinc under a Kaiser
+/// window, read from a table of its phases with linear interpolation. Output k lies exactly at the time of input k
+/// from/to, however long it runs. Flat to 0.41 of the lower of the two rates, -90 dB from 0.5 of it on. If the rates
+/// are equal, the signal passes unchanged.
 ///
-/// libsoxr, which resamples records here, allocates as it runs and gives out what it has in lumps; an audio thread
-/// needs neither.
+/// libsoxr, which resamples records elsewhere in this project, allocates as it runs and delivers output in lumps. An
+/// audio thread can use neither.
 class RateConverter {
 public:
     RateConverter(double from,
-                  double to);  ///< Hz, to the thousandth; Error (usage) where they differ by more than 16 times
+                  double to);  ///< Hz, to the thousandth; Error (usage) if they differ by more than a factor of 16
 
-    /// Inputs beyond an output's time that have to be there before it comes: the delay.
+    /// The delay: number of inputs after an output's time that are needed for it.
     int reach() const { return reach_; }
     void reset();
 
     void push(double sample);
-    /// The next output, where all inputs that it needs are there.
+    /// The next output, if all inputs that it needs have come.
     bool pull(double& out);
 
 private:
@@ -35,8 +35,8 @@ private:
     std::vector<double> table_;  ///< phases + 1 rows of 2 reach_ taps
     std::vector<double> history_;
     std::size_t at_ = 0;
-    std::int64_t ahead_ = 0;     ///< inputs that came since the one at or before the next output
-    std::int64_t fraction_ = 0;  ///< of it, in 1/to_
+    std::int64_t ahead_ = 0;     ///< inputs since the one at or before the next output
+    std::int64_t fraction_ = 0;  ///< time from that input to the output, in 1/to_
 };
 
 }  // namespace excursion

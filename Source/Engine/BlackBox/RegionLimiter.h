@@ -9,16 +9,15 @@
 
 namespace excursion {
 
-/// By how much a signal has to be turned down so that the linear part of a black box stays in the region that its fit
-/// has visited, and the input within its peak: what is beyond, nobody has measured. It is told of a sample before that
-/// is due. A low tone that sets in at once far beyond takes the loudspeaker out of the region for its first half period
-/// nevertheless, as what is turned down has a memory; the peak of the input is kept at any time, and a limit of the
-/// excursion is Protection's.
+/// The factor that keeps the linear part of a black box in the region of its fit, and the input within the peak of the
+/// fit: nobody has measured what is beyond. It gets each sample before the sample is due. A low tone that starts
+/// suddenly, far too loud, nevertheless takes the loudspeaker out of the region for its first half period, because the
+/// system has a memory. The peak of the input is always kept. Protection handles the excursion limit.
 class RegionLimiter {
 public:
     RegionLimiter(const BlackBox&, const Region&, double sampleRate);
 
-    int reach() const { return converter_.reach(); }  ///< samples by which the answer is late
+    int reach() const { return converter_.reach(); }  ///< delay of the factor, samples
     void reset();
 
     /// @param sample  finite

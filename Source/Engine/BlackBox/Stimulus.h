@@ -12,15 +12,15 @@
 
 namespace excursion {
 
-/// What a model without physics was fitted under, as far as it matters afterwards: such a model knows nothing beyond
-/// the level and the band of its records. The field "stimulus" of a model's document keeps it.
+/// The input that a model without physics was fitted to, as far as it matters afterwards: such a model is not valid
+/// beyond the level and the band of its records. The field "stimulus" of a model's document keeps it.
 struct Stimulus {
-    double rms = 0.0;   ///< of the input, in its unit, without the mean
+    double rms = 0.0;   ///< rms of the input, in its unit, without the mean
     double peak = 0.0;  ///< the largest magnitude of the input
-    /// Hz, centres of the bands of a third of an octave that hold power, ascending; a band is what lies within 2^(1/6)
-    /// of its centre
+    /// Hz, centres of the third-octave bands that hold power, ascending; a band reaches 2^(1/6) to either side of its
+    /// centre
     std::vector<double> frequency;
-    std::vector<double> power;  ///< of each band, in the unit's square; they sum to about rms^2
+    std::vector<double> power;  ///< power of each band, in the square of the unit; they sum to about rms^2
 
     double lowest() const;   ///< Hz, where the first band begins
     double highest() const;  ///< Hz, where the last one ends
@@ -28,20 +28,20 @@ struct Stimulus {
     bool isValid(std::string* reason = nullptr) const;
 };
 
-/// Of the judged parts of the inputs, N x 1; a band whose density is 60 dB below the largest one is noise, and not
-/// counted. Throws Error (data) where the inputs are silent.
+/// The stimulus of the judged parts of the inputs, N x 1. A band whose density is 60 dB below the largest one is noise,
+/// and not counted. Throws Error (data) if the inputs are silent.
 Stimulus stimulusOf(const std::vector<InputOutputRecord>&, double sampleRate);
 
-/// One period of a multisine of random phases with these bands, on odd lines of which every fourth or so is left out,
-/// so that distortion shows on the others: its rms is that of the stimulus where the bands lie below half the rate.
-/// @param period  samples; the band must hold some lines, else Error (usage)
-/// @param lines   where not null: which lines are excited, ascending
+/// One period of a random-phase multisine with these bands, on odd lines. About every fourth line is left out, so that
+/// distortion shows there. Its rms is that of the stimulus if the bands lie below half the rate.
+/// @param period  samples; the band must contain some lines, else Error (usage)
+/// @param lines   if not null: which lines are excited, ascending
 std::vector<double> playedAs(const Stimulus&, double sampleRate, int period, std::uint64_t seed,
                              std::vector<int>* lines = nullptr);
 
 nlohmann::ordered_json toJson(const Stimulus&);
 
-/// Of the field "stimulus" of a model's document; none where there is none. Throws Error (input).
+/// Reads the field "stimulus" of a model's document; none if it is absent. Throws Error (input).
 std::optional<Stimulus> stimulusFrom(const JsonField& document);
 
 }  // namespace excursion
