@@ -12,25 +12,24 @@
 
 namespace excursion {
 
-/// How far a model's channel is from the measurement: relative rms error [B 4.26] and the rms of the noise against
-/// the same reference, dB. `chiSquaredPerValue` is the mean of |error|^2/sigma^2 over the lines: 1 when only noise is
-/// left.
+/// The error of a model in one channel: relative rms error [B 4.26], and the rms of the noise relative to the same
+/// reference, dB. `chiSquaredPerValue` is the mean of |error|^2/sigma^2 over the lines: 1 if only noise is left.
 struct ErrorLevel {
     double db = 0.0;
-    std::optional<double> noiseFloorDb;  ///< empty when the take cannot tell its noise
+    std::optional<double> noiseFloorDb;  ///< empty if the take does not show its noise
     double chiSquaredPerValue = 0.0;
 };
 
-/// What kind of error is left, as powers relative to the measured channel, dB. Needs known excited lines; grids without
-/// detection lines leave `odd` empty, as odd distortion then hides under the excited lines.
+/// The remaining error by kind, as powers relative to the measured channel, dB. This needs known excited lines. Grids
+/// without detection lines leave `odd` empty, as odd distortion then lies on the excited lines.
 struct ErrorKinds {
     std::optional<double> linear;  ///< on excited lines
     std::optional<double> odd;     ///< on odd lines that are not excited
     std::optional<double> even;    ///< on even lines that are not excited
-    std::optional<double> noise;   ///< expected on as many lines by the scatter over the periods
+    std::optional<double> noise;   ///< expected on the same number of lines, from the scatter over the periods
 };
 
-/// "excited lines at -41.0 dB, odd detection lines at -60.2 dB, even ones at ...": empty where nothing is known.
+/// "excited lines at -41.0 dB, odd detection lines at -60.2 dB, even ones at ..."; empty if nothing is known.
 std::string inWords(const ErrorKinds&);
 
 /// Error of one channel against frequency, in bands of 1/24 octave or finer; rms per band, in the channel's unit.
@@ -42,20 +41,20 @@ struct ChannelComparison {
     Quantity quantity = Quantity::current;
     std::string unit;
     ErrorLevel total;  ///< all validation sections
-    /// of the take (Wander.h); none where the model has an effect that drifts, or where it is not known
+    /// wander of the take (Wander.h); none if the model has an effect that drifts, or if it is not known
     std::optional<double> wanderDb;
-    std::vector<ErrorLevel> byLevel;  ///< one a level of the excitation
+    std::vector<ErrorLevel> byLevel;  ///< one per level of the excitation
     std::vector<ErrorKinds> kindsByLevel;
     std::vector<ErrorSpectrum> spectrumByLevel;
 };
 
 using ErrorByChannel = std::map<Quantity, ErrorLevel>;
 
-/// "current"; "impedance" where the channel is the impedance of a take that is a frequency response.
+/// "current"; "impedance" if the channel is the impedance of a take that is a frequency response.
 std::string titleOf(const ChannelComparison&);
 
 struct Comparison {
-    std::vector<double> levels;  ///< V rms; one entry 0 when the take has no levels
+    std::vector<double> levels;  ///< V rms; a single entry 0 if the take has no levels
     std::vector<ChannelComparison> channels;
     std::vector<ResidualCurve> residuals;  ///< at the loudest level
     double chiSquaredPerValue = 0.0;       ///< over all channels and levels
@@ -67,16 +66,15 @@ struct Comparison {
 ErrorByChannel errorByChannel(const Comparison&);
 
 struct CompareOptions {
-    int substeps = 0;     ///< 0: chosen
+    int substeps = 0;     ///< 0: chosen automatically
     bool spectra = true;  ///< fill spectra, kinds and residual curves
 };
 
-/// Compares a model with the validation sections of a record (all sections when none was held out).
-/// Throws Error (numerical) when the simulation runs away.
+/// Compares a model with the validation sections of a record (all sections if none was held out).
+/// Throws Error (numerical) if the simulation runs away.
 Comparison compare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
 
-/// A channel against time, as measured and as the model plays it, over the window that is compared; the unit is the
-/// channel's.
+/// A channel over time, measured and modelled, in the compared window, in the channel's unit.
 struct Waveform {
     Quantity quantity = Quantity::current;
     std::string unit;
@@ -84,13 +82,13 @@ struct Waveform {
     std::vector<double> measured, model;
 };
 
-/// The first validation section of that level, one waveform a channel. Lines that are not compared are left out of
+/// The first validation section of the level, one waveform per channel. Lines that are not compared are left out of
 /// both.
-/// Throws Error (numerical) when the simulation runs away.
+/// Throws Error (numerical) if the simulation runs away.
 std::vector<Waveform> waveforms(const Model&, const Record&, int level);
 
-/// Compares the linear part of a model with a take that is a frequency response only; one level, no noise, spectra
-/// filled with the magnitudes of the responses.
+/// Compares the linear part of a model with a take that is only a frequency response. The result has one level, no
+/// noise, and spectra filled with the magnitudes of the responses.
 Comparison compare(const Model&, const Spectra&);
 
 }  // namespace excursion

@@ -12,8 +12,8 @@
 
 namespace excursion {
 
-/// A comparison as a document, format "excursion-comparison", version 1 (Docs/Formats.md). What is not known is null;
-/// spectra and residual curves are rounded to seven digits.
+/// A comparison as a document, format "excursion-comparison", version 1 (Docs/Formats.md). Unknown values are null.
+/// Spectra and residual curves are rounded to seven digits.
 nlohmann::ordered_json toJson(const Comparison&);
 Comparison comparisonFromJson(const JsonField&);
 

@@ -11,7 +11,7 @@
 namespace excursion {
 
 /// A diagnosis as a document, format "excursion-diagnosis", version 1 (Docs/Formats.md). The refitted models of the
-/// candidates are not written: `add` makes them again.
+/// candidates are not written: `add` computes them again.
 nlohmann::ordered_json toJson(const Diagnosis&);
 Diagnosis diagnosisFromJson(const JsonField&);
 

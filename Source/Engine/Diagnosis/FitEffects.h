@@ -9,8 +9,8 @@
 
 namespace excursion {
 
-/// The fit that `add` and `excursion fit` make: the named effects on the base, laws expanded as far as the data asks
-/// for.
+/// The fit of `add` and `excursion fit`: the base with the named effects, and laws expanded as far as the data
+/// justifies.
 /// @param record  is adapted to the model
 Model fitEffects(Record& record, const std::vector<std::string>& effects, const FitOptions&, FitSummary* = nullptr,
                  const Progress& = {});

@@ -13,10 +13,10 @@
 
 namespace excursion {
 
-/// One step of the ladder: an effect was added (none at the first), everything was refitted.
+/// One step of the ladder: an effect was added (none at the first), and everything was refitted.
 struct Rung {
     std::string added;                            ///< effect id; empty at the start
-    std::map<Quantity, double> predictedErrorDb;  ///< by the diagnosis that proposed it
+    std::map<Quantity, double> predictedErrorDb;  ///< from the diagnosis that proposed it
     Comparison comparison;                        ///< after the fit, on validation data
     Diagnosis diagnosis;                          ///< of this rung's model: what to add next, or why to stop
     Model model;
@@ -28,7 +28,7 @@ struct Ladder {
     std::string sentence;
     std::vector<Rung> rungs;
     std::vector<Problem> problems;
-    /// effects that were tried and taken back, as what they left was as large as what they explained
+    /// effects that were tried and removed, because they left as much as they explained
     std::vector<std::string> withdrawn;
 
     const Model& model() const { return rungs.back().model; }
@@ -37,11 +37,11 @@ struct Ladder {
 /// The first part of a verdict: an effect of the last model.
 struct KnownEffect {
     std::string effect;                ///< id
-    std::optional<double> confidence;  ///< of the diagnosis that proposed it; none where it was put in by hand
+    std::optional<double> confidence;  ///< from the diagnosis that proposed it; none if it was added by hand
 };
 std::vector<KnownEffect> knownEffects(const Ladder&);
 
-/// "Found: Stiffness K(x) and Force factor Bl(x). " Empty where the ladder found nothing.
+/// "Found: Stiffness K(x) and Force factor Bl(x). " Empty if the ladder found nothing.
 std::string foundInWords(const Ladder&);
 
 }  // namespace excursion

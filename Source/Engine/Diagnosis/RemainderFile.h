@@ -8,7 +8,7 @@
 
 namespace excursion {
 
-/// What is left, as the object `remainder` of a diagnosis and of a ladder (Docs/Formats.md); null where nothing was
+/// The remainder as the object `remainder` of a diagnosis and of a ladder (Docs/Formats.md); null if nothing was
 /// compared.
 nlohmann::ordered_json toJson(const Remainder&);
 Remainder remainderFromJson(const JsonField&);

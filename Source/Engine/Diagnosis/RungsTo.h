@@ -8,9 +8,10 @@
 
 namespace excursion {
 
-/// The rungs that lead from the base to a whole, the largest fall of the error first. The diagnosis of each rung but
-/// the last names the effect of the next one; the last is the whole itself, not compared and not diagnosed yet.
-/// @param base  the first rung, compared; what its diagnosis says is said anew
+/// The rungs that lead from the base to a whole, the largest fall of the error first. The diagnosis of each rung except
+/// the last names the effect of the next one. The last rung is the whole itself, not yet compared and not yet
+/// diagnosed.
+/// @param base  the first rung, compared; its diagnosis is made anew
 std::vector<Rung> rungsTo(const Whole&, Rung base, const Record&, const DiagnoseOptions&, const Progress& = {});
 
 }  // namespace excursion

@@ -11,19 +11,19 @@
 
 namespace excursion {
 
-/// A model that has one effect more than another.
+/// A model with one more effect than the previous one.
 struct Step {
     std::string added;  ///< effect id
     Model model;
-    Vote vote;  ///< on what that effect takes off the error here
+    Vote vote;  ///< on how much the effect reduces the error here
 };
 
-/// The steps that lead from a model to all the linear effects that a frequency response shows, in the opposite order in
-/// which they could go again: at each step the one that is missed least. Effects are searched for together: those that
-/// have been found are the start for every other one, in the best orders, as a port behind a leaking box or beside a
-/// swinging part may not lower the error before that other effect is in. Then those are taken out that the others can
-/// do without, and those that stand for something else (isItself()).
-/// @param base  fitted; what it has stays
+/// The steps that lead from a model to all the linear effects that a frequency response shows. Their order is the
+/// reverse of removing the effects one by one, each time the one that is missed least. Effects are searched for
+/// together: those already found are the start for every other one, in the best orders. A port behind a leaking box or
+/// beside a swinging part, for example, may not lower the error before that other effect is in. Then effects that the
+/// others can replace are removed, and those that stand for something else (isItself()).
+/// @param base  fitted; its effects stay
 std::vector<Step> stepsByResponse(const Model& base, const Spectra&, unsigned threads, const Progress& = {});
 
 }  // namespace excursion

@@ -8,41 +8,41 @@
 
 namespace excursion {
 
-/// A fit by simulation on all that is not held out, as thorough as it pays: rough far above the noise, with slopes of
-/// fed laws near it.
-/// @param toTheEnd  as far as it goes, where something is left: before that is called unknown
+/// A fit by simulation on all sections that are not held out, as thorough as worthwhile: rough far above the noise,
+/// with gradients from fed laws near it.
+/// @param toTheEnd  fits as far as possible if something is left, before the remainder is called unknown
 FitSummary fitBySimulation(Model&, const Record&, const FitOptions&, bool toTheEnd, const Progress& = {});
 
-/// A fit with laws that are fed. With FitOptions::fedGradient it goes on from there, or from where the model was,
-/// whichever leaves less, to what a simulation leaves.
+/// A fit with fed laws. With FitOptions::fedGradient it continues to minimize the residual of a simulation, from the
+/// result or from the initial model, whichever leaves less.
 FitSummary quickFit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&,
                     const Progress& = {});
 
-/// A quick fit; where what it finds runs away when it is simulated, a fit that simulates in its place.
+/// A quick fit. If its result runs away in simulation, a fit by simulation replaces it.
 FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& sections, FitOptions, const Progress& = {});
 
-/// Makes trials on these sections judge by what a simulation leaves where that is less than what fed laws leave: near
-/// the noise, when the motion that laws are fed carries more of it than the model is wrong. FitOptions::substeps
-/// counts; 0 becomes what the model needs.
+/// Makes trials on these sections use the residual of a simulation if it is smaller than that of fed laws. This is so
+/// near the noise, when the noise of the motion fed to the laws exceeds the model's error. FitOptions::substeps
+/// applies; 0 becomes the number that the model needs.
 void chooseResiduals(FitOptions&, ScoreOptions&, const Model&, const Record&, const std::vector<std::size_t>& sections);
 
-/// Fits the model that a score test proposed. The proposed step is shortened first, should the simulation not follow it
-/// so far.
-/// @param model  the result: as proposed, with zero strength, when nothing helps
+/// Fits the model that a score test proposed. If the simulation does not follow the proposed step, it is shortened
+/// first.
+/// @param model  the result; with zero strength if nothing helps
 FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std::vector<std::size_t>& sections,
                   const FitOptions&, const Progress& = {});
 
-/// Finds linear effects that have several parts anew, as others that are known now may have uncovered more of them.
-/// True where that left less; the model has had a quick fit, then. Nothing is done of a record without periods.
+/// Searches again for linear effects that have several parts, as newly known effects may have uncovered more parts.
+/// True if that leaves less; the model then had a quick fit. Does nothing for a record without periods.
 bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
-/// Puts an effect into the model where the score test says that it starts, and fits that quickly. Throws Error (data)
-/// when the model has the effect already or can't have it.
+/// Adds an effect to the model with the start values of the score test, and makes a quick fit. Throws Error (data) if
+/// the model already has the effect or cannot have it.
 void tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});
 
-/// Refits a model whose newest effects have just been found: everything is free, laws are expanded as far as it pays.
-/// Of a take with periods the fits are quick ones, and what comes near the noise, or was better played, is fitted by
-/// simulation in the end; FitSummary::substeps is 0 where it was not.
+/// Refits a model whose newest effects have just been found. Everything is free, and laws are expanded as far as
+/// justified. For a take with periods the fits are quick ones. A model that comes near the noise, or was better in
+/// simulation, is fitted by simulation in the end. If not, FitSummary::substeps is 0.
 FitSummary refine(Model&, const Record&, const FitOptions&, const Progress& = {});
 
 }  // namespace excursion

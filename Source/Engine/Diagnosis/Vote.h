@@ -9,26 +9,26 @@
 
 namespace excursion {
 
-/// What a whole catalogue, or a whole model, says of one of its effects.
+/// The evidence of a whole catalogue, or a whole model, on one of its effects.
 struct Vote {
-    /// by how much all others together would leave more without it, in the channel that tells most: what it alone
+    /// how much more all others together would leave without it, in the most informative channel: what it alone
     /// explains
     double uniqueDb = 0.0;
-    /// how much more it would explain with strengths of its own at each level, as a share of that: a law is the same at
-    /// all levels, what is bent to stand for something else is not
+    /// how much more it would explain with separate strengths at each level, relative to that. A law is the same at all
+    /// levels; an effect that stands for something else is not
     double inconsistency = 0.0;
-    double byLevel = 0.0;  ///< how much more, of the cost
+    double byLevel = 0.0;  ///< the same, relative to the cost
 
-    /// Whether the others explain clearly less without it, and it is about the same at all levels.
+    /// Whether the others explain clearly less without it, and its strength is about the same at all levels.
     bool backs() const { return uniqueDb >= 0.5 && inconsistency < 0.5; }
-    /// Whether it explains what nothing else does, whatever else is missing.
+    /// Whether it explains what nothing else does, no matter what else is missing.
     bool standsAlone() const { return uniqueDb >= 3.0 && inconsistency < 0.2; }
 };
 
-/// @param together   places of the parameters that may all be moved
-/// @param strengths  of these, the effect's strengths
-/// @param away       the step of all parameters that takes just these strengths to zero: none for an effect that is not
-/// at work yet
+/// @param together   places of the parameters that may change
+/// @param strengths  places of the effect's strengths among them
+/// @param away       the step of all parameters that takes just these strengths to zero: none for an effect with zero
+///                   strength
 Vote voteOn(const Sums&, const std::vector<Eigen::Index>& together, std::vector<Eigen::Index> strengths,
             const Eigen::VectorXd& away, bool noiseKnown);
 

@@ -10,18 +10,18 @@
 
 namespace excursion {
 
-/// All that the catalogue explains of a take, found together.
+/// All effects of the catalogue that a take shows, found together.
 struct Whole {
-    Model model;                        ///< the base and the effects that are needed, refined
-    FitSummary fit;                     ///< not usable when nothing was found
-    std::map<std::string, Vote> votes;  ///< of the model on each of the effects that the base does not have
+    Model model;                        ///< the base and the needed effects, refined
+    FitSummary fit;                     ///< not usable if nothing was found
+    std::map<std::string, Vote> votes;  ///< of the model, on each effect that the base does not have
 };
 
-/// Fits to a record with periods what the catalogue explains together. In rounds all effects that a vote of the whole
-/// catalogue backs are put in at once, everything is fitted quickly, and those are taken out again that the others can
-/// do without; a later round may put them back. Should that not end at the noise, another search begins from the linear
-/// model of the loudest level. Where something is left that no effect explains, those stay that stand alone.
-/// @param base  fitted; what it has stays
+/// Fits all effects of the catalogue together to a record with periods. In each round, all effects that a vote of the
+/// whole catalogue backs are added at once, everything is fitted quickly, and effects that the others can replace are
+/// removed. A later round may add them again. If this does not end at the noise, another search begins from the linear
+/// model of the loudest level. If something is left that no effect explains, only effects that stand alone stay.
+/// @param base  fitted; its effects stay
 Whole fitWhole(const Model& base, const Record&, const FitOptions&, const Progress& = {});
 
 }  // namespace excursion
