@@ -12,11 +12,11 @@
 namespace excursion {
 
 /// (s I - A)^-1 at one s after another, for the linear part of a driver. The first three states, current and motion,
-/// move all others; a memory moves these three and no memory but its effect's own. So A is an arrow: eliminating the
-/// memories, one small group at a time, leaves three equations,
+/// drive all others. A memory drives these three, and only memories of its own effect. So A is an arrow matrix:
+/// eliminating the memories, one small group at a time, leaves three equations,
 ///     S = s I - A_cc - sum_g A_cg R_g A_gc,   R_g = (s I - A_gg)^-1,
-/// and each s costs as many operations as A has entries. Groups are found in A: states that no coupling joins stay
-/// apart, and no rounding joins them.
+/// and each s costs as many operations as A has entries. The groups are found from A: uncoupled states stay separate,
+/// and rounding does not join them.
 class ArrowResolvent {
 public:
     explicit ArrowResolvent(const Eigen::MatrixXd& A) : units_(stateUnits(A))
@@ -63,7 +63,7 @@ public:
         core_ = S.inverse();
     }
 
-    /// B, and a row c, as column() and row() take them at every s.
+    /// B, and a row c, in the form that column() and row() need at every s.
     Eigen::VectorXcd turnedRight(const Eigen::VectorXd& B) const
     {
         return B.cwiseQuotient(units_)(order_).cast<std::complex<double>>();
@@ -104,7 +104,7 @@ private:
         Eigen::Index first, size;
     };
 
-    /// The library's division and decomposition cost several times as much as this.
+    /// The library's division and decomposition take several times as long.
     static std::complex<double> reciprocal(std::complex<double> z) { return std::conj(z) / std::norm(z); }
     static void invert(const Eigen::MatrixXcd& M, Eigen::MatrixXcd& inverse)
     {
@@ -117,8 +117,7 @@ private:
         inverse << by * M(1, 1), -by * M(0, 1), -by * M(1, 0), by * M(0, 0);
     }
 
-    /// Of each state the first of those that it is joined with, other than through the core; of the core's states
-    /// nothing.
+    /// For each state, the first state that it is coupled with, other than through the core. Not for the core's states.
     static std::vector<Eigen::Index> groupsOf(const Eigen::MatrixXd& A)
     {
         std::vector<Eigen::Index> group(static_cast<std::size_t>(A.rows()));
@@ -168,9 +167,9 @@ private:
     }
 
     Eigen::VectorXd units_;
-    /// places in A of the states as they stand here: the core, single ones, groups
+    /// places in A of the states in the order used here: the core, single states, groups
     std::vector<Eigen::Index> order_;
-    std::vector<Group> groups_;  ///< of two states or more
+    std::vector<Group> groups_;  ///< groups of two states or more
     Eigen::Index singles_ = 0;
     Eigen::MatrixXcd A_, into_, from_;        ///< into the memories from the core, and back
     Eigen::VectorXcd poles_, own_;            ///< of single states, and 1/(s - pole)

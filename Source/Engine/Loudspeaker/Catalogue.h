@@ -8,11 +8,11 @@
 
 namespace excursion {
 
-/// Every effect that Excursion knows, in the order in which they came: new ones go to the end. Simulation, fit,
-/// diagnosis, report and the plugin are driven by it; none of them names an effect.
+/// Every effect that Excursion knows, in the order in which they were added: new ones go to the end. It drives
+/// simulation, fit, diagnosis, report and the plugin; none of them names an effect.
 const std::vector<const Effect*>& catalogue();
 
-/// The effect of that id; throws Error (usage) that lists the known ones.
+/// The effect with this id. Throws Error (usage) that lists the known ones.
 const Effect& effectNamed(std::string_view id);
 
 /// What every driver has, as an effect that is always present:
@@ -22,7 +22,7 @@ const Effect& electrodynamicBase();
 const Effect& mechanicalBase();
 const Effect& baseNamed(std::string_view id);
 
-/// The path from the cone to the microphone, which every driver has, too: area += Sd, acceleration += dv/dt, lateness
+/// The path from the cone to the microphone, which every driver also has: area += Sd, acceleration += dv/dt, lateness
 /// += tau.
 const Effect& radiation();
 

@@ -11,10 +11,10 @@ namespace excursion {
 
 /// A smooth curve that is zero at rest,
 ///     c(q) = sum_{k=1..n} c_k [T_k(q/Q) - T_k(0)],   |q| <= Q,
-/// with Chebyshev polynomials T_k, which keep the fit well conditioned at any degree that is of use. Beyond the visited
-/// range Q the curve stays at its end value, as a polynomial must not be believed where nothing was measured, unless
-/// the physics says how it goes on (see beyond). Coefficients are those of the monomials in q/Q, from degree 0 upwards
-/// (n + 1 of them).
+/// with Chebyshev polynomials T_k, which keep the fit well conditioned at any useful degree. Beyond the visited range Q
+/// the curve keeps its end value, because a polynomial is not valid where nothing was measured, unless the physics says
+/// how it continues (see beyond). Coefficients are those of the monomials in q/Q, from degree 0 upwards (n + 1 of
+/// them).
 namespace curve {
 
 inline constexpr int maximumDegree = 18;
@@ -45,7 +45,7 @@ struct ValueAndSlope {
     T value, slope;  ///< slope with respect to q
 };
 
-/// Horner's scheme for the value and the slope at q. Part of what calls it, so that it is compiled for the same
+/// Horner's scheme for the value and the slope at q. Inlined into its caller, so that it is compiled for the same
 /// processor.
 template <class T>
 [[gnu::always_inline]] inline ValueAndSlope<T> at(int n, const T* b, const T& q, double range)
@@ -63,11 +63,11 @@ template <class T>
     return {value, outside ? T(0.0) : slope * (1.0 / range)};
 }
 
-/// How a curve goes on beyond the visited range, from its end value. Its first two terms, which are the best
-/// determined, extend it:
+/// The continuation of a curve beyond the visited range, from its end value. Its first two terms, which are determined
+/// best, extend it:
 ///     max(0, c_1 (T_1(s) - T_1(+-1)) + c_2 (T_2(s) - T_2(1))),   1 < |s| <= 2,   s = q/Q,
-/// and from twice the range on it stays. A law that hardens goes on hardening; it never gives way where nothing was
-/// measured.
+/// and from twice the range on it is constant. A law that hardens continues to harden. It never softens where nothing
+/// was measured.
 template <class T>
 [[gnu::always_inline]] inline T beyond(const T& c1, const T& c2, const T& q, double range)
 {
@@ -87,8 +87,8 @@ inline double valueAt(int n, const double* c, double q, double range)
     return at(n, b.data(), q, range).value;
 }
 
-/// What a coefficient of degree k may plausibly be: the coefficients of a smooth law fall geometrically. So weak a
-/// prior yields to any data, but keeps the ends of the range, where a record seldom is, from running off.
+/// The plausible size of a coefficient of degree k: the coefficients of a smooth law fall geometrically. This weak
+/// prior yields to any data, but keeps the ends of the range, where a record has little data, from running off.
 inline double plausible(int k, double scale) { return 2.0 * std::abs(scale) * std::pow(0.75, k); }
 
 /// The n coefficients c_1..c_n as parameters, all strengths.
@@ -108,8 +108,8 @@ inline std::vector<Parameter> parameters(const OperatingRange& operatingRange, c
 
 }  // namespace curve
 
-/// An effect that is a law along one curve, and no more: its parameters are the curve's, its coefficients those of the
-/// monomials. A subclass says the law and what it does with the curve.
+/// An effect that is only a law along one curve. Its parameters are those of the curve, its coefficients those of the
+/// monomials. A subclass defines the law and how it uses the curve.
 template <class Self>
 class CurveLaw : public EffectOf<Self> {
 public:

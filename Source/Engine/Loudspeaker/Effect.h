@@ -15,7 +15,7 @@
 
 namespace excursion {
 
-/// The instant at which an effect is asked what it adds.
+/// The motion at the instant at which an effect contributes.
 template <class T>
 struct Motion {
     T i;  ///< coil current, A
@@ -23,7 +23,7 @@ struct Motion {
     T v;  ///< coil velocity, m/s
 };
 
-/// What the base and the effects add up to. With the flux phi(i, x) of the coil these close the two
+/// The sum of the contributions of the base and the effects. With the flux phi(i, x) of the coil they close the two
 /// equations of the driver ([B 2.1, 2.2], extended):
 ///     u            = drop + d(phi)/dt = drop + inductance di/dt + fluxSlope v
 ///     mass dv/dt   = force
@@ -36,19 +36,19 @@ struct Balance {
     T mass {0.0};        ///< kg
 };
 
-/// What leaves the driver at an instant, as the base's motion and the effects make it. The microphone at distance d
-/// hears
+/// The output of the driver at an instant, from the base's motion and the effects. The microphone at distance d
+/// measures
 ///     p(t + lateness) = rho/(2 pi d) area acceleration     (a half space; rho = 1.2 kg/m^3),
-/// the laser sees x + spot.
+/// the laser measures x + spot.
 template <class T>
 struct Emission {
-    T area {0.0};          ///< m^2 that the acceleration is referred to
-    T acceleration {0.0};  ///< m/s^2, outward: the volume that is moved, over the area
-    T lateness {0.0};      ///< s from this instant to its sound at the microphone
-    T spot {0.0};          ///< m, by which the point that the laser sees is ahead of the coil
+    T area {0.0};          ///< m^2, reference area of the acceleration
+    T acceleration {0.0};  ///< m/s^2, outward: volume acceleration over the area
+    T lateness {0.0};      ///< s from this instant until its sound reaches the microphone
+    T spot {0.0};          ///< m, how far the laser's point is ahead of the coil
 };
 
-/// Where and how finely an effect is to hold: what the take really visited. It is part of a model, so a
+/// The range and resolution in which an effect is valid: what the take really visited. It is part of the model, so a
 /// model means the same wherever it is loaded.
 struct OperatingRange {
     double displacement = 1e-3;    ///< peak, m
@@ -56,11 +56,11 @@ struct OperatingRange {
     double current = 1.0;          ///< peak, A
     double lowFrequency = 10.0;    ///< Hz, lowest frequency of interest
     double highFrequency = 1.0e4;  ///< Hz, highest frequency of interest
-    int degree = 6;                ///< of a law's expansion
-    /// the base parameter that the effect is sized by, in its unit: what is large for a law
+    int degree = 6;                ///< degree of a law's expansion
+    /// the base parameter that sets the effect's scale, in its unit: what is large for a law
     double scale = 1.0;
-    double duration = 10.0;  ///< s, of the take: what a slow memory had time for
-    /// parameters that are relaxed may differ from zero: false spares the memory that they stand for
+    double duration = 10.0;  ///< s, of the take: the time that a slow memory had
+    /// relaxed parameters may differ from zero; false saves the memory that they need
     bool relaxed = true;
 };
 
@@ -70,29 +70,29 @@ struct Parameter {
     double value = 0.0;
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
-    bool free = true;  ///< may a fit move it
-    /// means something beside an effect that relaxes only: zero and not free without one
+    bool free = true;  ///< a fit may change it
+    /// has a meaning only together with an effect that relaxes: zero and not free without one
     bool relaxed = false;
-    bool heard = false;     ///< only the sound shows it: not free where none was measured
-    bool strength = false;  ///< an effect whose strengths are all zero is absent
-    /// standard deviation about zero that is plausible beforehand
+    bool heard = false;     ///< only the sound shows it: not free if none was measured
+    bool strength = false;  ///< if all strengths of an effect are zero, it is absent
+    /// prior: plausible standard deviation about zero
     double prior = std::numeric_limits<double>::infinity();
     double standardError = std::numeric_limits<double>::quiet_NaN();  ///< NaN: unknown or not identifiable
 };
 
-/// A parameter of which only what is not negative makes sense.
+/// A parameter that must not be negative.
 inline Parameter positiveParameter(std::string name, std::string unit, double value)
 {
     return {.name = std::move(name), .unit = std::move(unit), .value = value, .lower = 0.0};
 }
 
-/// The parameter of that name; throws std::out_of_range.
+/// The parameter with this name; throws std::out_of_range.
 const Parameter& parameterNamed(const std::vector<Parameter>&, std::string_view name);
 
 /// Resonance in Hz of a base with these parameters, sqrt(K/m)/(2 pi).
 double resonanceOf(const std::vector<Parameter>& base);
 
-/// A number that a person knows an effect by, where its parameters are too many to be told.
+/// A characteristic number of an effect that has too many parameters to show.
 struct Figure {
     std::string name;
     std::string unit;
@@ -100,8 +100,8 @@ struct Figure {
     double standardError = std::numeric_limits<double>::quiet_NaN();  ///< NaN: unknown
 };
 
-/// A law is a curve a person knows the effect by: Bl(x), K(x), Le(x), Rms(v). The effect adds a
-/// difference, zero at rest, to a parameter of the base.
+/// A law is the well-known curve of an effect: Bl(x), K(x), Le(x), Rms(v). The effect adds a difference, zero at rest,
+/// to a parameter of the base.
 struct LawInfo {
     std::string name;      ///< "Bl(x)"
     std::string unit;      ///< "N/A"
@@ -110,26 +110,26 @@ struct LawInfo {
     std::string base;  ///< name of the base parameter it adds to
 };
 
-/// One of the like parts that an effect is the sum of, such as a mode of the cone.
+/// One of the similar parts that an effect is the sum of, such as a mode of the cone.
 struct Part {
-    std::size_t first = 0, count = 0;  ///< its parameters; with its strengths at zero it does nothing
-    /// values of these from which a search may begin, strengths zero, like beside like
+    std::size_t first = 0, count = 0;  ///< its parameters; with its strengths at zero it has no effect
+    /// start values for a search, strengths zero, similar ones next to each other
     std::vector<std::vector<double>> starts;
 };
 
-/// What an effect is called and how a person knows it, and the two facts that decide where it can be.
+/// The names and descriptions of an effect, and the two facts that decide where it can occur.
 struct EffectCard {
     std::string id;           ///< "force-factor"
     std::string title;        ///< "Force factor Bl(x)"
     std::string physics;      ///< one sentence
-    std::string symptoms;     ///< what betrays it, in words a person can check on a plot
+    std::string symptoms;     ///< how it shows, in words that the user can check on a plot
     std::string remedy;       ///< what a designer can do about it
     bool electrical = false;  ///< needs a coil; a mechanical-only driver has none
     bool linear = false;      ///< changes the frequency response, adds no distortion
 };
 
-/// One physical effect. A subclass is the whole of it: its card, its parameters, its memory, what it adds to the
-/// driver's two equations and what to the sound that leaves it, written once through EffectOf for any number type.
+/// One physical effect. A subclass contains all of it: its card, its parameters, its memory, and its contributions to
+/// the driver's two equations and to the emitted sound, written once through EffectOf for any number type.
 class Effect {
 public:
     explicit Effect(EffectCard card) : card_(std::move(card)) {}
@@ -142,53 +142,54 @@ public:
     const std::string& remedy() const { return card_.remedy; }
     bool electrical() const { return card_.electrical; }
     bool linear() const { return card_.linear; }
-    virtual bool felt() const { return true; }             ///< acts on coil and cone; else it is heard or seen only
-    virtual bool shownBy(Quantity) const { return true; }  ///< a channel of that quantity can show it
-    virtual bool undone() const { return felt(); }  ///< predistortion reckons with it; else it leaves it as it is
+    virtual bool felt() const { return true; }             ///< acts on coil and cone; else it is only heard or seen
+    virtual bool shownBy(Quantity) const { return true; }  ///< a channel of this quantity can show it
+    virtual bool undone() const { return felt(); }         ///< predistortion compensates it; else it ignores it
 
     virtual std::vector<Parameter> parameters(const OperatingRange&) const = 0;
 
-    /// Shapes to try when nothing is known yet: parameter vectors with every strength at zero.
+    /// Shapes to try if nothing is known yet: parameter vectors with every strength at zero.
     virtual std::vector<std::vector<double>> starts(const OperatingRange&) const;
 
-    /// For a linear effect that is a sum of parts, which may be narrow: a search on finely resolved frequency responses
-    /// takes them up one after the other, each where it explains most of what is left, for as long as another one pays.
-    /// None: the effect is searched as a whole.
+    /// For a linear effect that is a sum of parts, which may be narrow. A search on finely resolved frequency responses
+    /// adds them one after the other, each where it explains most of the remainder, as long as another one is
+    /// justified. None: the effect is searched as a whole.
     virtual std::vector<Part> parts(const OperatingRange&) const;
 
-    /// Resonances of the base in Hz from which a search on a frequency response begins together with a start, besides
-    /// the one that the base has: a base that was fitted without the effect may sit on a part of what the effect does.
+    /// Additional resonances of the base in Hz for a search on a frequency response from this start, besides the base's
+    /// own: a base that was fitted without the effect may have settled on a resonance of the effect.
     virtual std::vector<double> restarts(const OperatingRange&, const std::vector<double>& start) const;
 
-    /// Whether such values can be the effect's own, beside a base with those parameters. If not, its shape has been
-    /// bent to stand for something else, and it is not named.
+    /// Whether these values are plausible for the effect, with a base of these parameters. If not, the effect stands
+    /// for something else, and it is not named.
     virtual bool plausible(const OperatingRange&, const std::vector<Parameter>& own,
                            const std::vector<Parameter>& base) const;
 
-    /// What the parameters come to, in a few numbers (without errors, see figuresOf() in Summary.h); none where they
-    /// speak for themselves.
+    /// A summary of the parameters in a few numbers (without errors, see figuresOf() in Summary.h); none if the
+    /// parameters speak for themselves.
     virtual std::vector<Figure> summary(const OperatingRange&, const double* parameters) const;
 
     virtual std::optional<LawInfo> law() const { return std::nullopt; }
-    /// Difference that the effect adds at `argument` to the base parameter of its law.
+    /// The difference that the effect adds to the base parameter of its law at `argument`.
     virtual double lawAt(const OperatingRange&, const double* parameters, double argument) const;
 
-    /// Name of the base parameter whose value is OperatingRange::scale; of a law the one that it bends. Empty: none.
+    /// Name of the base parameter whose value is OperatingRange::scale; for a law, the one that it modifies. Empty:
+    /// none.
     virtual std::string sizedBy() const;
 
     virtual int memorySize(const OperatingRange&) const { return 0; }  ///< extra states
-    /// The memory changes little within a period: what it holds was made by the whole take before. Its rate is to be
-    /// affine in it.
+    /// The memory changes little within a period: its content depends on the whole take before. Its rate must be affine
+    /// in it.
     virtual bool slow() const { return false; }
-    virtual bool relaxes() const { return false; }  ///< yields in the course of time
+    virtual bool relaxes() const { return false; }  ///< yields over time
     virtual int coefficientCount(const OperatingRange&) const = 0;
 
-    /// Turns parameters into coefficients: all that depends on the parameters alone, once a run.
+    /// Turns parameters into coefficients, once per run: everything that depends on the parameters alone.
     virtual void prepare(const OperatingRange&, const double* parameters, double* coefficients) const = 0;
     virtual void prepare(const OperatingRange&, const Jet* parameters, Jet* coefficients) const = 0;
 
-    /// Adds to the balance; writes the time derivative of its memory. Called several times a sample:
-    /// no allocation, no lock, no exception.
+    /// Adds to the balance, and writes the time derivative of its memory. Called several times per sample: no
+    /// allocation, no lock, no exception.
     virtual void contribute(const OperatingRange&, const double* coefficients, const Motion<double>&,
                             const double* memory, double* memoryRate, Balance<double>&) const = 0;
     virtual void contribute(const OperatingRange&, const Jet* coefficients, const Motion<Jet>&, const Jet* memory,
@@ -199,7 +200,7 @@ public:
     /// Whether it adds to the emission.
     virtual bool emits() const = 0;
 
-    /// Adds to the emission; asked after contribute(), without whose memoryRate what a memory radiates is not known.
+    /// Adds to the emission. Called after contribute(), whose memoryRate is needed for what a memory radiates.
     /// @param acceleration  of the coil, m/s^2
     virtual void emit(const OperatingRange&, const double* coefficients, const Motion<double>&,
                       const double& acceleration, const double* memory, const double* memoryRate,
@@ -215,7 +216,7 @@ private:
 ///     template <class T> void prepareFor(const OperatingRange&, const T* parameters, T* coefficients) const;
 ///     template <class T> void addTo(const OperatingRange&, const T* coefficients, const Motion<T>&, const T* memory,
 ///                                   T* memoryRate, Balance<T>&) const;
-/// and, if it is heard or seen otherwise than through the cone's motion,
+/// and, if it is heard or seen other than through the cone's motion,
 ///     template <class T> void radiate(const OperatingRange&, const T* coefficients, const Motion<T>&, const T&
 ///     acceleration,
 ///                                     const T* memory, const T* memoryRate, Emission<T>&) const;
@@ -254,7 +255,7 @@ public:
     }
 
 private:
-    // What is asked all the time is compiled for the processor at hand, with all that it calls; a virtual function
+    // Frequently called code is compiled for the present processor, with everything that it calls. A virtual function
     // itself cannot be.
     EXCURSION_DISPATCH [[gnu::flatten]] static void add(const Self& self, const OperatingRange& e, const double* c,
                                                         const Motion<double>& motion, const double* memory,

@@ -9,13 +9,13 @@
 
 namespace excursion {
 
-/// The split equations of ExponentialStep, where the laws' part is a parabola through its latest three values
+/// The split equations of ExponentialStep, with the laws' part as a parabola through its latest three values
 /// (exponential Adams-Bashforth method of third order; Cox & Matthews 2002, section 2):
 ///     N(t_n + s h) = N_n + s D + s (s + 1)/2 D2,   D = N_n - N_(n-1),  D2 = N_n - 2 N_(n-1) + N_(n-2),   0 <= s <= 1.
-/// The laws are asked once a step instead of four times: for real time, where the rate is high already. Where they are
-/// too fast for that, what the parabola misses at the step's end is found there and counted in, as the cubic through
-/// all four (a predictor and corrector of fourth order, Adams-Moulton): that is stable for steps four times as long,
-/// and asks twice.
+/// The laws are evaluated once per step instead of four times. This suits real time, where the rate is already high. If
+/// the laws are too fast for that, the error of the parabola at the step's end is evaluated and corrected, as the cubic
+/// through all four values (a fourth-order predictor-corrector, Adams-Moulton). That is stable for steps four times as
+/// long, and takes two evaluations.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class ExponentialAdams {
@@ -36,7 +36,7 @@ public:
 
     /// Advances by h.
     /// @param u  as in ExponentialStep::step, at most `inputs`
-    /// @returns dv/dt at the step's end under the input there, m/s^2
+    /// @returns dv/dt at the step's end with the input there, m/s^2
     double step(std::span<const double> u);
 
     const Eigen::VectorXd& state();                                 ///< (i, x, v, memories)
@@ -48,8 +48,8 @@ private:
     ExponentialStep motion_;
     const bool corrected_;
     TiledProduct carry_;    ///< of from_ to run_
-    TiledProduct correct_;  ///< of what the parabola misses of the rates, likewise
-    /// states that move coil and cone, u, the parabola of the rates, states that follow
+    TiledProduct correct_;  ///< of the parabola's error of the rates, likewise
+    /// states that drive coil and cone, u, the parabola of the rates, states that follow
     std::vector<double> from_;
     std::vector<double> run_;  ///< at the end: moving, (A_i z, A_v z), following
     Eigen::VectorXd state_;

@@ -16,14 +16,14 @@ namespace excursion {
 /// One step of a model's simulation by exponential time differencing (ETDRK4: Cox & Matthews 2002, J. Comput. Phys.
 /// 176). The equations of Dynamics are split,
 ///     dz/dt = A z + B u + E N,
-/// into the linear part A, B of the base, the ladders and the relaxations, and what the laws add to a few rates: to
-/// di/dt, to dv/dt, and the rates of their own memories, should they have any. The linear part is exact for inputs that
-/// are polynomials on the step, however stiff it is; the laws' part is of fourth order. N depends on a few outputs
-/// only,
+/// into the linear part A, B of the base, the ladders and the relaxations, and the contributions N of the laws to a few
+/// rates: di/dt, dv/dt, and the rates of their own memories, if any. The linear part is exact for inputs that are
+/// polynomials on the step, no matter how stiff it is. The laws' part is of fourth order. N depends on only a few
+/// outputs,
 ///     y = (i, x, v, A_i z, A_v z, the laws' memories) = C z,
 /// so the stages within a step are found from y alone, and a step costs little more than one product of exp(A h) and z.
-/// Of that product what is zero is left out: a state that moves neither coil nor cone (a mode that is heard only)
-/// follows the others, which know nothing of it, and the laws' memories stand still but for the laws.
+/// Zeros in that product are skipped: a state that drives neither coil nor cone (a mode that is only heard) follows the
+/// others and does not act on them, and only the laws change the laws' memories.
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class ExponentialStep {
@@ -41,7 +41,7 @@ public:
     /// Starts at state z; at first it is at rest.
     void begin(const Eigen::VectorXd& z);
 
-    /// Advances by h, and tells dv/dt at the step's start, m/s^2.
+    /// Advances by h, and returns dv/dt at the step's start, m/s^2.
     /// @param u  coefficients of the input on the step, u(s) = sum u_k s^k, 0 <= s <= 1, V (or N); at most `terms`
     double step(std::span<const double> u);
 
@@ -50,8 +50,8 @@ public:
     double velocity() const { return z_[2]; }      ///< m/s
     void state(Eigen::VectorXd& z) const;
 
-    /// The largest eigenvalue of dN/d(i, v, the laws' memories), in size, over what was visited (1/s): where h times it
-    /// goes beyond 2, the step is too long to be stable.
+    /// The eigenvalue of dN/d(i, v, the laws' memories) that is largest in size over the visited range (1/s). If h
+    /// times it exceeds 2, the step is too long to be stable.
     double fastestLaw();
 
 private:
@@ -69,12 +69,12 @@ private:
         Eigen::Index memory;  ///< where its memory starts among the laws' memories
     };
 
-    /// Whether it is a law that moves something.
+    /// Whether it is a law with an effect on the motion.
     static bool isLaw(const Component&);
 
     /// The input halfway and at the end of the step.
     static std::pair<double, double> later(std::span<const double> u);
-    /// m/s^2 that the input makes at once
+    /// m/s^2, direct effect of the input
     double motion(double u) const { return electrical_ ? 0.0 : u / mass_; }
     void ask(double u, double* N);
 
@@ -87,17 +87,16 @@ private:
     double step_;                           ///< s
     double inductance_ = 0.0, mass_ = 0.0;  ///< of the linear part
     double byVoltage_ = 0.0;                ///< 1/inductance_
-    // The linear part's states: first those that act on coil and cone in the end, i, x and v ahead, then those that
-    // only follow.
+    // The linear part's states: first those that act on coil and cone, led by i, x and v, then those that only follow.
     Eigen::Index moving_ = 0;
     /// of the linear part's states, and of the laws' memories, in the state
     std::vector<Eigen::Index> linearPlace_, lawPlace_;
     Eigen::MatrixXd A_;
     Eigen::MatrixXd C_;  ///< linear states -> (i, x, v, A_i z, A_v z)
-    Eigen::MatrixXd E_;  ///< what laws add to di/dt and dv/dt
+    Eigen::MatrixXd E_;  ///< contribution of the laws to di/dt and dv/dt
     /// (linear states, u) -> linear states at the end, halfway, without the laws
     Eigen::MatrixXd whole_, halfway_;
-    /// (E_'s rates at the start, sum of both halfway, at the end) -> what they add to the linear states
+    /// (E_'s rates at the start, sum of both halfway, at the end) -> their contribution to the linear states
     Eigen::MatrixXd quadrature_;
     Eigen::MatrixXd Q_;                                   ///< int exp(A t) E dt over h/2
     Eigen::Matrix<double, motions, rates> stage_, last_;  ///< C Q and C exp(A h/2) Q

@@ -14,7 +14,7 @@ namespace excursion {
 /// A linear response on the lines of a window.
 struct Path {
     Spectrum value;
-    std::vector<Spectrum> slopes;  ///< by parameter, empty where it has no part in it; none unless asked for
+    std::vector<Spectrum> slopes;  ///< by parameter, empty if the parameter has no influence; none unless asked for
 };
 
 /// The linear part of a model, by its responses to the voltage and to a force on the cone, on the lines of a window.
@@ -24,27 +24,27 @@ struct Paths {
     double lateness = 0.0;  ///< s, of the sound at rest
 };
 
-/// 0 Hz is taken for a small share of the first line's frequency, where nothing divides by zero.
+/// 0 Hz is replaced by a small fraction of the first line's frequency, to avoid division by zero.
 /// @param resolution  Hz from line to line
 Paths pathsOf(const Model&, const std::vector<Quantity>&, std::size_t first, std::size_t last, double resolution,
               bool withGradient, unsigned threads = 1);
 
-/// What all laws make of the motion of one section.
+/// The contributions of all laws for the motion of one section.
 struct Fed {
-    std::vector<std::size_t> component;  ///< of the model, one a law
+    std::vector<std::size_t> component;  ///< index in the model, one per law
     std::vector<LawDrive> laws;
-    Spectrum voltage, force;  ///< at the terminals with the laws' taken away, and on the cone
+    Spectrum voltage, force;  ///< at the terminals minus that of the laws, and on the cone
 };
 
-/// [component][section], a quarter of a period before its window; empty for what is not slow
+/// [component][section], a quarter of a period before its window; empty if the memory is not slow
 using LawHistories = std::vector<std::vector<MemoryStart>>;
 
-/// Where the slow memories of the laws stand after what was played before.
+/// The slow memories of the laws after everything that was played before.
 LawHistories lawHistories(const Model&, const Record&, const std::vector<std::size_t>& sections,
                           const std::vector<ShownMotion>&, bool withGradient);
 
-/// The laws of a model, fed the motion of a section. A memory that is not slow is settled there.
-/// @param place   of the section among those of `histories`
+/// The laws of a model, fed with the motion of a section. A memory that is not slow is settled there.
+/// @param place   place of the section among those of `histories`
 /// @param wanted  by component, parameters to differentiate by; empty: none
 Fed feed(const Model&, const Record&, const Section&, const ShownMotion&, const LawHistories&, std::size_t place,
          const std::vector<std::vector<bool>>& wanted);

@@ -14,12 +14,12 @@ struct FitOptions {
     LeastSquaresOptions search;
     /// relative accuracy of the integration; 0: a seventh of the noise, at most 1e-4
     double simulationTolerance = 0.0;
-    int substeps = 0;  ///< integration steps a sample; 0: chosen from the tolerance
+    int substeps = 0;  ///< integration steps per sample; 0: chosen from the tolerance
     unsigned threads = 2;
-    /// sensitivities as finely as the simulation: slower steps, fewer of them where some directions hardly count
+    /// sensitivities as fine as the simulation: slower iterations, but fewer if some directions are poorly determined
     bool exactGradient = false;
-    /// sensitivities of fed laws around an exact simulation (playedError()): steps at a tenth of the price, a few more
-    /// of them
+    /// sensitivities of fed laws around an exact simulation (playedError()): iterations take a tenth of the time, but a
+    /// few more are needed
     bool fedGradient = false;
     bool fed = false;  ///< feed the laws the motion that the take shows (FeedbackError.h) instead of simulating: fast
                        ///< and nearly as good, for starts and trials; a take without periods is simulated all the same
@@ -29,27 +29,27 @@ struct FitOptions {
 
 struct FitSummary : SearchSummary {
     int substeps = 0;
-    double chiSquaredPerValue = 0.0;  ///< 1 when nothing but noise is left
-    bool onlyNoise = false;           ///< no channel's error stands above its noise
+    double chiSquaredPerValue = 0.0;  ///< 1 if only noise is left
+    bool onlyNoise = false;           ///< no channel's error is above its noise
 };
 
-/// What the take visits: the peaks of displacement, velocity and current, measured where a channel tells them, else
-/// simulated by the model, and the band that was excited.
+/// The range that the take visits: the peaks of displacement, velocity and current, measured if a channel gives them,
+/// else simulated by the model, and the excited band.
 OperatingRange visitedRange(const Model&, const Record&, int degree = 6);
 
 /// Output-error fit of all free parameters,
 ///     min sum_{sections, channels, lines} |Y_model - Y_measured|^2 / sigma^2,
 /// by Levenberg-Marquardt with automatic derivatives of the simulation. Leaves standard errors and the covariance in
-/// the model; when the residuals exceed the noise, both are scaled up by what is left.
+/// the model; if the residuals exceed the noise, both are scaled up accordingly.
 FitSummary fit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions& = {},
                const Progress& = {});
 
 /// Makes a record ready for models near this linear one: periodic sections start settled (the lead-in lasts until the
-/// resonance has decayed by 110 dB), and the input sensor's noise is counted as noise of the outputs,
+/// resonance has decayed by 110 dB), and the input sensor's noise counts as noise of the outputs,
 ///     sigma^2 += |G|^2 sigma_u^2  on the lines that are played.
 void adapt(Record&, const Model&);
 
-/// Steps a sample for simulating this model on this record; tolerance as FitOptions::simulationTolerance.
+/// Steps per sample for simulating this model on this record; tolerance as FitOptions::simulationTolerance.
 int substepsFor(const Model&, const Record&, double tolerance = 0.0);
 
 /// Start values, path, and the first linear fit of a take in the time domain.

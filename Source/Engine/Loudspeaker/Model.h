@@ -11,7 +11,7 @@
 
 namespace excursion {
 
-/// A base or an effect at work in a model.
+/// A base or an effect in a model.
 struct Component {
     const Effect* effect = nullptr;
     OperatingRange operatingRange;
@@ -28,13 +28,13 @@ std::vector<T> valuesOf(const Component& component)
     return values;
 }
 
-/// Whether any of its strengths is not zero; a component without strengths always is.
+/// Whether any of its strengths is not zero; always true for a component without strengths.
 bool isAtWork(const Component&);
 
-/// The component with its strengths times a factor; zero puts it at rest.
+/// The component with its strengths times a factor; zero switches it off.
 Component scaled(Component, double factor);
 
-/// The coefficients that its effect makes of such parameters (Effect::prepare).
+/// The coefficients that its effect computes from these parameters (Effect::prepare).
 template <class T>
 std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& parameters)
 {
@@ -44,8 +44,8 @@ std::vector<T> coefficientsOf(const Component& component, const std::vector<T>& 
 }
 
 /// The physical model of a driver: the base, then the effects in the order in which they were added, and the path to
-/// the microphone, as whose sum the sound comes (Emission); without an effect that is heard, p(t) = rho Sd / (2 pi d)
-/// a(t - tau).
+/// the microphone. The sound is the sum of their emissions (Emission). Without an effect that is heard, p(t) = rho Sd /
+/// (2 pi d) a(t - tau).
 struct Model {
     std::string name;
     std::vector<Component> components;  ///< components.front() is the base
@@ -59,33 +59,33 @@ struct Model {
     std::vector<std::string> effectIds() const;
     const Component* find(std::string_view effectId) const;
 
-    /// The parameter of the base of that name; throws std::out_of_range.
+    /// The base parameter with this name; throws std::out_of_range.
     Parameter& baseParameter(std::string_view name);
     const Parameter& baseParameter(std::string_view name) const;
 };
 
-/// Pa per m/s^2 of a piston of 1 m^2 at 1 m in a half space: rho / (2 pi).
+/// Pa per m/s^2 for a piston of 1 m^2 at 1 m in a half space: rho / (2 pi).
 double radiationPerArea();
 
 /// A model of the base alone (baseId "electrodynamic" or "mechanical") with default parameters.
 Model makeModel(std::string_view baseId);
 
-/// Whether a fit of the model may move that parameter of an effect as it comes: one that is only heard not where
-/// nothing listens.
+/// Whether a fit of the model may change this parameter of a new effect. Not if the parameter is only heard and there
+/// is no sound channel.
 bool movable(const Model&, const Parameter&);
-/// The model with that effect at zero strength (its first start unless another is given).
+/// The model with this effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const OperatingRange&, std::size_t start = 0);
-/// Every component as the others are now: OperatingRange::scale of an effect as its base parameter is, and parameters
-/// that mean something beside other effects only are free, or zero, as these are there or not.
+/// Adjusts every component to the others: OperatingRange::scale of an effect follows its base parameter. Parameters
+/// that have a meaning only with other effects are free if these are present, or else zero.
 void followOthers(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.
 Model linearPart(Model);
-/// Whether an effect that is not linear is in it, at any strength.
+/// Whether it has a nonlinear effect, at any strength.
 bool hasLaws(const Model&);
-/// The base and those effects that predistortion reckons with.
+/// The base and the effects that predistortion compensates.
 Model undonePart(Model);
-/// The model with the law of that component expanded to another degree; coefficients that are new are zero.
+/// The model with the law of this component expanded to another degree; new coefficients are zero.
 Model withDegree(Model, std::size_t component, int degree);
 
 /// All parameters one after the other: components in order, then the path.
@@ -94,11 +94,11 @@ std::vector<const Parameter*> parametersOf(const Model&);
 Eigen::VectorXd parameterVector(const Model&);
 void setParameterVector(Model&, const Eigen::VectorXd&);
 
-/// A law of the model with its 95 % band over [-range, range] of what was visited, for plots and reports.
+/// A law of the model with its 95 % band over the visited range [-range, range], for plots and reports.
 struct LawCurve {
     LawInfo info;
-    std::string effectId;                            ///< of the effect that bends it
-    std::vector<double> argument, value, halfWidth;  ///< halfWidth of the 95 % band; NaN when unknown
+    std::string effectId;                            ///< id of the effect with this law
+    std::vector<double> argument, value, halfWidth;  ///< halfWidth of the 95 % band; NaN if unknown
 };
 std::vector<LawCurve> laws(const Model&, int points = 81);
 
