@@ -8,13 +8,13 @@
 namespace excursion {
 
 /// The differential equations of a model, generic in the number type. State z = (i, x, v, memories of the components in
-/// order); the input is the voltage, or the force of a mechanical-only driver.
+/// order); the input is the voltage, or the force for a mechanical-only driver.
 ///     di/dt = (u - drop - fluxSlope v) / inductance,   dx/dt = v,   dv/dt = force / mass
 /// The model must outlive the dynamics.
 template <class T>
 class Dynamics {
 public:
-    /// @param parameters  one value a parameter of the model, in the order of parametersOf()
+    /// @param parameters  one value per parameter of the model, in the order of parametersOf()
     Dynamics(const Model& model, const std::vector<T>& parameters) : electrical_(model.electrical())
     {
         std::size_t offset = 0;
@@ -57,7 +57,7 @@ public:
         }
     }
 
-    /// What leaves the driver at state z with the rates dz.
+    /// The emission of the driver at state z with the rates dz.
     Emission<T> emission(const T* z, const T* dz) const
     {
         const Motion<T> at {z[0], z[1], z[2]};

@@ -8,8 +8,8 @@
 
 namespace excursion {
 
-/// The linear part of a driver as a network of ideal parts, the form that circuit simulators take. Two circuits that
-/// the motor joins: the coil, all of whose parts are in series,
+/// The linear part of a driver as a network of ideal parts, the form that circuit simulators accept. It has two
+/// circuits that the motor joins: the coil, with all parts in series,
 ///     u = sum of resistors and inductors, each cell a resistor in parallel with an inductor, + Bl v,
 /// and the mechanics in the mobility analogy, where the voltage of a node is the velocity of a body (m/s) and a current
 /// is a force (N):
@@ -23,8 +23,8 @@ struct Network {
 
     struct Part {
         Kind kind;
-        std::string of;           ///< id of the component that it stands for
-        double value = 0.0;       ///< SI: ohm, H, kg, N/m, N s/m; of a cell its ohms
+        std::string of;           ///< id of the component that it represents
+        double value = 0.0;       ///< SI: ohm, H, kg, N/m, N s/m; for a cell its resistance
         double inductance = 0.0;  ///< of a cell, H
         std::string from, to;     ///< of mechanical parts; a mass lies between its node and ground
     };
@@ -32,11 +32,11 @@ struct Network {
     double forceFactor = 0.0;  ///< Bl, N/A; 0: there is no coil
     std::vector<Part> parts;   ///< in the order of the model's components
     std::vector<std::string>
-        leftOut;  ///< ids of components that have no part in it: laws, and what is only heard or seen
+        leftOut;  ///< ids of components without parts in it: laws, and effects that are only heard or seen
 };
 
-/// Draws one component into a network. Parts of no effect are left out; all springs between the cone and ground become
-/// one, which so is positive even where an effect only moves a share of it elsewhere.
+/// Draws one component into a network. Parts without effect are left out. All springs between the cone and ground
+/// become one, so it is positive even if an effect only moves a share of it elsewhere.
 class NetworkDrawing {
 public:
     NetworkDrawing(Network& network, std::string component) : network_(network), of_(std::move(component)) {}
@@ -55,16 +55,16 @@ private:
     std::string of_;
 };
 
-/// What a linear effect that is felt is beside an Effect: parts of a network. The tests of the network ask each of the
-/// catalogue.
+/// The second interface of a linear effect that acts on the motion: parts of a network. The tests of the network check
+/// every such effect in the catalogue.
 class NetworkParts {
 public:
     virtual ~NetworkParts() = default;
 
-    /// @param coefficients  as Effect::prepare() makes them
+    /// @param coefficients  from Effect::prepare()
     virtual void draw(const OperatingRange&, const double* coefficients, NetworkDrawing&) const = 0;
 
-    /// Belongs to the box and not to the driver in it: a datasheet of the driver leaves it out.
+    /// The effect belongs to the box and not to the driver in it: a datasheet of the driver leaves it out.
     virtual bool ofEnclosure() const { return false; }
 };
 

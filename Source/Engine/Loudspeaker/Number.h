@@ -12,10 +12,10 @@ inline constexpr int jetWidth = 8;
 using Jet = ceres::Jet<double, jetWidth>;
 
 /// A number that carries its derivatives with respect to time (slot 0) and to the coil's current (slot 1). Run on it,
-/// the physics tells how force and flux go on along a given motion, which is what an inversion needs.
+/// the physics gives the derivatives of force and flux along a given motion, which an inversion needs.
 using Tangent = ceres::Jet<double, 2>;
 
-/// A value, or the limit above which it has no meaning.
+/// A value, limited to the bound above which it has no meaning.
 template <class T>
 T atMost(double limit, const T& value)
 {

@@ -9,9 +9,9 @@
 
 namespace excursion {
 
-/// Standard errors of numbers that follow from a model, sqrt(diag(J C J^T)): J by central differences over a small
-/// share of each parameter's standard error, C the model's covariance. NaN where that is unknown, and where a number
-/// follows from a parameter whose error is.
+/// Standard errors of numbers derived from a model, sqrt(diag(J C J^T)): J by central differences over a small fraction
+/// of each parameter's standard error, C the model's covariance. NaN if C is unknown, or if a number depends on a
+/// parameter whose error is unknown.
 Eigen::VectorXd standardErrorsOf(const Model&, const std::function<Eigen::VectorXd(const Model&)>& numbers);
 
 }  // namespace excursion

@@ -10,13 +10,13 @@
 
 namespace excursion {
 
-/// What leaves the driver along a trajectory, and its derivatives by parameters of the model: the sum of what its path
-/// to the microphone and those of its effects that are heard or seen add (Emission).
+/// The emission of the driver along a trajectory, and its derivatives by parameters of the model: the sum of the
+/// contributions of its path to the microphone and of its effects that are heard or seen (Emission).
 ///
 /// Thread: after construction nothing allocates, locks or throws.
 class Radiator {
 public:
-    /// What is observed at an instant.
+    /// The observed values at an instant.
     struct Sound {
         double flow = 0.0;      ///< area times acceleration, m^3/s^2
         double lateness = 0.0;  ///< s
@@ -27,14 +27,14 @@ public:
     explicit Radiator(const Model&, std::span<const Eigen::Index> active = {});
     Radiator(const Radiator&) = delete;  // it points into its own model
 
-    /// m^2 that the acceleration is referred to.
+    /// m^2, reference area of the acceleration.
     double area();
 
     /// @param z             the state, as in Dynamics
     /// @param acceleration  of the coil, m/s^2
     Sound at(const double* z, double acceleration);
 
-    /// Derivatives of the sound: one row an active parameter; columns: flow, lateness, spot.
+    /// Derivatives of the sound: one row per active parameter; columns: flow, lateness, spot.
     /// @param S             derivatives of z, parameters x states
     /// @param acceleration  and its derivatives, by parameter
     void differentiate(const double* z, double acceleration, const Eigen::Ref<const Eigen::MatrixXd>& S,

@@ -11,15 +11,15 @@
 
 namespace excursion {
 
-/// A sum of relaxations with positive weights, drawn to a law. `cells` neighbouring cells (rate p_k, weight w_k) of a
-/// ladder that follows the law depart from it by
+/// A sum of relaxations with positive weights, with a prior that pulls it towards a law. `cells` neighbouring cells
+/// (rate p_k, weight w_k) of a ladder that follows the law deviate from it by
 ///     p_k -> p_k exp(r(k)),   w_k -> w_k exp(w(k)),   r(k) = sum_{m=2..6} r_m G_m(k),   w(k) likewise,
 ///     G_m(k) = (2/M)^1/2 cos(pi m (k + 1/2)/M),   M = `cells`, k = 0 .. M-1.
-/// The cosines are orthonormal and have no mean and next to no slope, which belong to the law: its scale and its
-/// exponent. Weights stay positive whatever the numbers are, so the element stays passive. Rates depart too, because
-/// lumps of a spectrum lie between the cells of any grid: free rates and weights reach the accuracy of a Gauss rule
-/// with few cells. The numbers are normal about zero beforehand, which draws the spectrum to the law and yields to any
-/// data that says otherwise.
+/// The cosines are orthonormal and have no mean and almost no slope, as these belong to the law: its scale and its
+/// exponent. Weights are positive for any numbers, so the element is always passive. Rates deviate too, because peaks
+/// of a spectrum lie between the cells of any grid: free rates and weights reach the accuracy of a Gauss rule with few
+/// cells. The prior of the numbers is normal about zero. It pulls the spectrum towards the law and yields to any data
+/// that says otherwise.
 namespace spectrum {
 
 inline constexpr int cells = 8;

@@ -13,22 +13,22 @@
 
 namespace excursion {
 
-/// Error power and measured power of a channel, not weighted; noise power in the same window.
+/// Error power and measured power of a channel, unweighted; noise power in the same window.
 struct ErrorPower {
     double error = 0.0, measured = 0.0, noise = 0.0;
 
-    static constexpr double most = 2.0;  ///< of error over noise that still is noise: 3 dB
+    static constexpr double most = 2.0;  ///< largest ratio of error to noise that still counts as noise: 3 dB
 
     void add(const ErrorPower&);
     double overNoise() const { return noise > 0.0 ? error / noise : std::numeric_limits<double>::infinity(); }
 };
 
-/// The share of the noise's cost that is left out of account while a channel's error stands above its noise. Most lines
-/// of a take hold nothing but noise, and what a few with much power miss hardly moves a mean over all of them.
+/// The share of the noise's cost that is disregarded while a channel's error is above its noise. Most lines of a take
+/// hold only noise, so the error of a few lines with high power hardly changes a mean over all of them.
 inline constexpr double sureNoise = 0.9;
 
 /// Residuals of a section: all lines of the take's band, their real parts first. They are (model - measured)/deviation,
-/// of unit variance each if only noise is left; NormalEquations gathers those of one channel over some sections.
+/// of unit variance each if only noise is left; NormalEquations sums those of one channel over some sections.
 class Residual {
 public:
     Residual(const Record&, const Section&);
@@ -37,7 +37,7 @@ public:
     std::size_t lastLine() const { return last_; }
     Eigen::Index rows() const { return 2 * lines_; }
 
-    /// What a predicted spectrum leaves of a channel.
+    /// The residual of a channel after a predicted spectrum.
     Eigen::VectorXd of(std::size_t channel, const std::vector<std::complex<double>>& predicted) const;
     ErrorPower power(std::size_t channel, const std::vector<std::complex<double>>& predicted) const;
     /// The derivative of the residuals, from that of the predicted spectrum.

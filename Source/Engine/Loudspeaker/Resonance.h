@@ -5,17 +5,17 @@
 
 namespace excursion {
 
-/// A resonance of second order, s^2 + (w/Q) s + w^2 with w = 2 pi f.
+/// A second-order resonance, s^2 + (w/Q) s + w^2 with w = 2 pi f.
 struct Resonance {
     double frequency = 0.0;  ///< f, Hz
     double quality = 0.0;    ///< Q
 };
 
-/// That of the cone, as Thiele and Small count it,
+/// The resonance of the cone, as defined by Thiele and Small,
 ///     f0 = sqrt(K/m)/(2 pi),   Q0 = sqrt(K m)/(Rms + Bl^2/Re),
-/// without the term in Bl for a driver without a coil. It is where the impedance has its peak. The poles of the linear
-/// part are no better measure: those of eddy currents stand among them, and a well damped woofer of 32 Hz may have its
-/// pair at 62 Hz.
+/// without the term in Bl for a driver without a coil. The impedance has its peak there. The poles of the linear part
+/// are not a better measure: they include those of eddy currents, and a well-damped woofer of 32 Hz may have its pair
+/// at 62 Hz.
 Resonance coneResonance(const Model&);
 
 }  // namespace excursion

@@ -9,10 +9,10 @@
 
 namespace excursion {
 
-/// What a take shows of a loudspeaker, as far as it decides which effects can be seen there.
+/// The properties of a take that decide which effects can be seen in it.
 struct Seen {
     bool coil = true;                ///< a voltage drives it
-    bool records = true;             ///< in time; else a frequency response
+    bool records = true;             ///< time records; else a frequency response
     std::vector<Quantity> channels;  ///< all that were measured
 };
 
@@ -20,7 +20,7 @@ Seen seenIn(const Record&);
 Seen seenIn(const Measurement&);
 Seen seenIn(const Spectra&);
 
-/// Why that effect cannot be seen there, as a sentence that says what to do about it; empty when it can.
+/// Why this effect cannot be seen in the take, as a sentence that says what to do about it; empty if it can.
 std::string whyUnseen(const Effect&, const Seen&);
 
 }  // namespace excursion

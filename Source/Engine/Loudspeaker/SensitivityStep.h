@@ -10,12 +10,12 @@ namespace excursion {
 
 /// ExponentialStep together with the derivatives S = dz/dtheta of the state by parameters of the model, which obey
 ///     dS/dt = A S + E (N_y C S + N_theta) + (dA/dtheta) z + (dB/dtheta) u
-/// with the same A: the same exponentials serve them, all parameters at once. The derivatives of the laws, N_y and
+/// with the same A. So the same exponentials apply, for all parameters at once. The derivatives of the laws, N_y and
 /// N_theta, come from the same physics run on jets, at the start, the middle and the end of a step.
 class SensitivityStep {
 public:
-    /// @param active  the parameters to differentiate by, in the order of parametersOf(); those of the path move no
-    /// state
+    /// @param active  the parameters to differentiate by, in the order of parametersOf(); those of the path act on no
+    ///                state
     SensitivityStep(const Model&, double h, std::span<const Eigen::Index> active);
 
     int order() const { return motion_.order(); }
@@ -50,7 +50,7 @@ private:
         Balance<Jet> sum;
         std::vector<Jet> memory, rate;
     };
-    /// What drives S at one instant.
+    /// The drive of S at one instant.
     struct Instant {
         Eigen::MatrixXd Ny;      ///< y x laws
         Eigen::MatrixXd Ntheta;  ///< parameters x laws
@@ -76,8 +76,8 @@ private:
     Eigen::VectorXd dInductance_, dMass_;         ///< of the linear part, by parameter
     std::vector<Eigen::Index> linearParameters_;  ///< columns of S whose parameters belong to the linear part
     double step_ = 0.0;
-    // Without drive S moves itself so, its columns in the order of ExponentialStep: what moves coil and cone knows
-    // nothing of what follows.
+    // The free evolution of S, with columns in the order of ExponentialStep: states that drive coil and cone do not
+    // depend on those that follow.
     Eigen::MatrixXd carryMoving_, carryFollowing_;  ///< -> S at the end, its first and its last columns
     /// -> (A_i z, A_v z) now, motions halfway, (A_i z, A_v z) at the end
     Eigen::MatrixXd carryMotions_;
@@ -89,7 +89,7 @@ private:
     TiledProduct toHalfway_;
     Eigen::VectorXd middle_, remembered_;  ///< linear states and the laws' memories halfway
     Eigen::VectorXd y_, accelerationSlopes_;
-    /// rows, one a parameter, are padded; S: the linear part's states, then the laws' memories
+    /// rows, one per parameter, are padded; S: the linear part's states, then the laws' memories
     Eigen::MatrixXd S_, run_, now_, later_, Y_, K_, twice_;
     std::array<Eigen::MatrixXd, 4> stage_;
     Instant start_, halfway_, end_;

@@ -13,7 +13,7 @@
 
 namespace excursion {
 
-/// What the channels of a take see of a trajectory, as unnormalized DFTs of its window, which is taken for one period:
+/// The channels of a take for a trajectory, as unnormalized DFTs of its window, which is treated as one period:
 ///     displacement  X = DFT{x + spot},   velocity, acceleration: of its derivatives,
 ///     pressure      P = rho/(2 pi d) exp(-j w tau_0) DFT{area acceleration, heard later by lateness - tau_0},
 /// tau_0 the lateness at rest (Emission, Arrival). The trajectory must outlive this.
@@ -26,16 +26,16 @@ public:
     {
     }
 
-    /// The traces of a trajectory that a channel is made of.
+    /// The traces of a trajectory that a channel consists of.
     std::vector<Trace> tracesOf(Quantity) const;
 
     Spectrum seen(Quantity) const;
 
     /// Derivative of seen() by one parameter.
-    /// @param slopes  derivatives of the traces of tracesOf(quantity), one row a trace
+    /// @param slopes  derivatives of the traces of tracesOf(quantity), one row per trace
     Spectrum slope(Quantity, const Eigen::MatrixXd& slopes);
 
-    /// The channel in time, one value a sample.
+    /// The channel over time, one value per sample.
     std::vector<double> record(Quantity) const;
 
 private:
@@ -46,8 +46,8 @@ private:
     const Trajectory& run_;
     double sampleRate_, gain_, restLateness_;
     bool spot_;
-    Arrival arrival_;                    ///< of what the lateness is more than at rest
-    std::vector<double> flowByLeaving_;  ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope asks for it
+    Arrival arrival_;                    ///< for the lateness minus that at rest
+    std::vector<double> flowByLeaving_;  ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope needs it
 };
 
 }  // namespace excursion

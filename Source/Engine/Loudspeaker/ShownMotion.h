@@ -13,16 +13,15 @@ using Spectrum = std::vector<std::complex<double>>;  ///< unnormalized DFT of a 
 
 /// The motion of coil and cone over one period, band-limited.
 struct ShownMotion {
-    static constexpr std::size_t fine = 2;  ///< values a sample of the record
-    std::vector<double> i, slope, x, v, a;  ///< A, A/s, m, m/s, m/s^2; `fine` values a sample
+    static constexpr std::size_t fine = 2;  ///< values per sample of the record
+    std::vector<double> i, slope, x, v, a;  ///< A, A/s, m, m/s, m/s^2; `fine` values per sample
 };
 
-/// One value a sample of the motion.
+/// The motion with one value per sample.
 PeriodicMotion everySample(const ShownMotion&);
 
-/// What a periodic section tells of the motion. A line of the current, or of the displacement (from every channel of
-/// motion, weighted by its noise), that stands three times above its noise is taken as it was measured, any other as it
-/// is expected.
+/// The motion that a periodic section shows. A line of the current, or of the displacement (from every motion channel,
+/// weighted by its noise), that is three times above its noise is used as measured. Any other line is used as expected.
 /// @param current, displacement  expected spectra of the section's window, A and m
 ShownMotion shownMotion(const Record&, const Section&, const Spectrum& current, const Spectrum& displacement);
 

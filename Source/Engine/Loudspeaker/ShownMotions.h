@@ -10,17 +10,17 @@
 
 namespace excursion {
 
-/// The motions of some sections of a record, one each.
+/// The motions of some sections of a record, one per section.
 using ShownMotions = std::vector<ShownMotion>;
 
-/// Whether the sections of a record are periods, which is what motions are told of.
+/// Whether the sections of a record are periods, as needed for motions.
 bool hasPeriods(const Record&);
 
-/// Motions of the sections as the take shows them, and where it shows nothing as the model expects them from the
-/// motions `before`; without these from its linear part.
+/// Motions of the sections as the take shows them. Where it shows nothing, they are what the model expects from the
+/// motions `before`, or without these, from its linear part.
 ShownMotions shownMotions(const Model&, const Record&, const std::vector<std::size_t>& sections,
                           const ShownMotions& before = {}, unsigned threads = 1);
-/// The same, from the linear part and once more from there.
+/// The same, first from the linear part and then once more from that result.
 ShownMotions settledMotions(const Model&, const Record&, const std::vector<std::size_t>& sections,
                             unsigned threads = 1);
 

@@ -11,7 +11,7 @@
 namespace excursion {
 
 struct SimulationOptions {
-    double tolerance = 1e-5;  ///< largest relative rms change of any channel when the step is halved
+    double tolerance = 1e-5;  ///< largest relative rms change of any channel if the step is halved
     int maximumSubsteps = 64;
     bool isValid(std::string* reason) const;
 };
@@ -22,12 +22,12 @@ struct SimulationSummary {
     bool converged = false;  ///< accuracy is within the tolerance
 };
 
-/// The number of steps a sample that reaches the tolerance on (a stretch of) this input.
+/// The number of steps per sample that reaches the tolerance on (a part of) this input.
 SimulationSummary chooseSubsteps(const Model&, std::span<const double> input, double sampleRate,
                                  const SimulationOptions&);
 
 /// Simulates all channels (the input, current, displacement, velocity, acceleration and pressure) from an input record,
-/// with the step halved until the tolerance is reached. Throws Error (numerical) when the model runs away.
+/// with the step halved until the tolerance is reached. Throws Error (numerical) if the model runs away.
 Measurement simulate(const Model&, std::span<const double> input, double sampleRate, const SimulationOptions&,
                      SimulationSummary* = nullptr, const Progress& = {});
 

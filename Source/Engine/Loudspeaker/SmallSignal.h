@@ -10,21 +10,21 @@
 
 namespace excursion {
 
-/// Where a linear part is driven: at its terminals by the voltage (a mechanical-only driver by the force), or at the
-/// cone by a force.
+/// Where a linear part is driven: at its terminals by the voltage (for a mechanical-only driver, by the force), or at
+/// the cone by a force.
 enum class Drives { terminals, cone };
 
-/// The model's linear part, dz/dt = A z + B u, with z as in Dynamics ([B eq. 2.3], extended by the memories), and what
-/// leaves it,
+/// The model's linear part, dz/dt = A z + B u, with z as in Dynamics ([B eq. 2.3], extended by the memories), and its
+/// emission,
 ///     (area acceleration, spot) = C z + D u     (Emission).
-/// Laws are zero at rest and have no part in it. Neither have their memories, which stand still here: friction is a
-/// spring for motions that are smaller than its reach, but such a small motion says nothing about the driver in use. A
+/// Laws are zero at rest and do not contribute. Their memories are constant here and do not contribute either: friction
+/// is a spring for motions smaller than its reach, but such a small motion says nothing about the driver in use. A
 /// mechanical-only driver has no current; its first state is decoupled.
 struct SmallSignal {
     Eigen::MatrixXd A, C;
     Eigen::VectorXd B, D;
     double lateness = 0.0;  ///< s, of the sound
-    /// By parameter, in the order of parametersOf(); filled when asked for.
+    /// By parameter, in the order of parametersOf(); filled if asked for.
     std::vector<Eigen::MatrixXd> dA, dC;
     std::vector<Eigen::VectorXd> dB, dD;
     std::vector<double> dLateness;
@@ -38,22 +38,22 @@ SmallSignal smallSignal(const Model&, bool withGradient = false, Drives = Drives
 /// Eigenvalues of A, 1/s.
 Eigen::VectorXcd poles(const SmallSignal&);
 
-/// Whether A is finite and has no eigenvalue on the right. Those at zero are no fault: the decoupled first state of a
-/// driver without a coil stands there, and a memory that only integrates.
+/// Whether A is finite and has no eigenvalue in the right half plane. Eigenvalues at zero are allowed: the decoupled
+/// first state of a driver without a coil is there, and a memory that only integrates.
 bool isStable(const Model&);
 
-/// Frequency response of a quantity (current, displacement, velocity, acceleration, pressure) per unit of what drives.
+/// Frequency response of a quantity (current, displacement, velocity, acceleration, pressure) per unit of drive.
 struct Response {
-    std::vector<std::complex<double>> value;  ///< one a frequency
+    std::vector<std::complex<double>> value;  ///< one per frequency
     Eigen::MatrixXcd gradient;                ///< frequencies x parameters; empty unless asked for
 };
 
-/// G(j w) = C (j w I - A)^-1 B + D of several quantities at once; one factorization a frequency serves them all.
+/// G(j w) = C (j w I - A)^-1 B + D of several quantities at once; one factorization per frequency serves them all.
 std::vector<Response> respond(const Model&, const std::vector<Quantity>& quantities,
                               const std::vector<double>& frequency, bool withGradient = false,
                               Drives = Drives::terminals);
 
-/// The same for several ways to drive the model, [drive][quantity]: what they share is worked out once.
+/// The same for several ways to drive the model, [drive][quantity]: common parts are computed once.
 std::vector<std::vector<Response>> respondToEach(const Model&, const std::vector<Quantity>& quantities,
                                                  const std::vector<double>& frequency, const std::vector<Drives>&,
                                                  bool withGradient = false, unsigned threads = 1);

@@ -12,12 +12,12 @@
 
 namespace excursion {
 
-/// A record that a simulation leaves: of the coil's motion, and of what leaves the driver (Emission; flow is area times
+/// A record from a simulation: of the coil's motion, or of the emission of the driver (Emission; flow is area times
 /// acceleration).
 enum class Trace { current, displacement, velocity, acceleration, flow, lateness, spot };
 inline constexpr std::size_t traceCount = 7;
 
-/// What the driver does, sample by sample. Every vector has one value a sample.
+/// The motion and emission of the driver. Every vector has one value per sample.
 struct Trajectory {
     std::vector<double> current, displacement, velocity, acceleration;  ///< A, m, m/s, m/s^2
     std::vector<double> flow, lateness, spot;                           ///< m^3/s^2, s, m
@@ -28,19 +28,19 @@ struct Trajectory {
 /// Integrates the model from rest, or from another state (ExponentialStep).
 /// @param first  the trajectory is kept from this sample on
 /// @param start  state z of Dynamics at the drive's first sample; empty: rest
-/// @returns false when the state leaves the finite numbers or any plausible range; the trajectory is then void
+/// @returns false if the state is no longer finite or in a plausible range; the trajectory is then invalid
 bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, const Eigen::VectorXd& start = {});
 
 /// Derivatives of the trajectory by parameters of the model (SensitivityStep).
 /// @param active    the parameters, in the order of parametersOf()
 /// @param observed  the traces to differentiate
 /// @param start     state at the drive's first sample and its derivatives by all parameters; empty: rest
-/// @param out       one matrix an observed trace, parameters x samples
+/// @param out       one matrix per observed trace, parameters x samples
 bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, std::size_t first,
                    const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
 
-/// The fewest steps a sample, at most 64, with which the laws' fastest eigenvalue times the step stays within the
-/// limit; by default that up to which both of the above are stable.
+/// The smallest number of steps per sample, at most 64, for which the laws' fastest eigenvalue times the step stays
+/// within the limit; by default the limit up to which both of the above are stable.
 int stableSubsteps(const Model&, double sampleRate, double limit = 2.0);
 
 }  // namespace excursion
