@@ -27,23 +27,23 @@ struct BenchSetup {
                            .lines = {}};
     std::vector<Quantity> channels {Quantity::voltage, Quantity::current, Quantity::displacement, Quantity::pressure};
     double microphoneDistance = 0.3;  ///< m
-    /// rms of each sensor's noise against that channel at the loudest level; -infinity: none
+    /// rms of each sensor's noise relative to its channel at the loudest level; -infinity: none
     double noiseDb = -70.0;
-    std::map<Quantity, double> channelNoiseDb;  ///< where a channel differs
+    std::map<Quantity, double> channelNoiseDb;  ///< for channels that differ
     NoiseColour noiseColour = NoiseColour::white;
-    std::uint64_t seed = 1;  ///< of the multisines and of the noise
+    std::uint64_t seed = 1;  ///< seed of the multisines and of the noise
     std::vector<Fault> faults;
     int oversampling = 0;  ///< steps of the simulation per sample; 0: chosen
 };
 
-/// Plays all levels and realizations one after another, starting from rest, and records them:
-/// the drive of Stimulus.h through run() of Run.h, each channel decimated by the same filter, then its sensor.
-/// Excitation::lines is filled. Pressure contains the time of flight.
-/// Throws Error (usage) for a setup that makes no sense, Error (numerical) when the driver is torn apart.
+/// Plays all levels and realizations one after another, starting from rest, and records them: the drive of Stimulus.h
+/// through run() of Run.h, each channel decimated by the same filter, then its sensor. Excitation::lines is filled.
+/// Pressure contains the time of flight.
+/// Throws Error (usage) for an impossible setup, Error (numerical) if the simulation of the driver fails.
 Measurement measure(const Loudspeaker&, const BenchSetup&, const Progress& = {});
 
-/// Plays any voltage (V, from silence to silence) and returns what perfect sensors see at the same
-/// rate and instants. The record has no excitation.
+/// Plays any voltage (V, from silence to silence) and returns the signals of perfect sensors at the same rate and
+/// instants. The record has no excitation.
 Measurement play(const Loudspeaker&, std::span<const double> voltage, double sampleRate,
                  const std::vector<Quantity>& channels, double microphoneDistance = 0.3, const Progress& = {});
 

@@ -5,7 +5,7 @@
 
 namespace excursion::bench {
 
-/// How a parameter of the loudspeaker depends on one quantity q (position, current or velocity):
+/// The dependence of a loudspeaker parameter on one quantity q (position, current or velocity):
 ///     parameter(q) = parameter(0) * value(q),   value(q) = shape(y) / shape(y at q = 0),   y = (q - centre) / width
 /// None of the shapes is a polynomial; e stands for `extra`, a for `amount`.
 struct Curve {
@@ -44,9 +44,9 @@ struct Curve {
     /// The largest |value - 1| for q within [-range, range].
     double change(double range) const;
 
-    /// A copy whose change over [-range, range] is `strength` (0.01 .. 0.9): springs, gaps and the
-    /// saturation are made narrower or wider, steps and drags get their amount (its sign is kept).
-    /// `centre` is kept, so a curve that is off centre stays so.
+    /// A copy whose change over [-range, range] is `strength` (0.01 .. 0.9). Springs, gaps and the saturation become
+    /// narrower or wider; steps and drags get their amount (its sign is kept). `centre` is kept, so an off-centre curve
+    /// stays off centre.
     Curve scaledTo(double strength, double range) const;
 };
 

@@ -7,8 +7,8 @@
 
 namespace excursion::bench {
 
-/// A curve made ready for the time loop: base * value(q) with the normalization computed once.
-/// Without a curve it is the constant 1 times base.
+/// A curve prepared for the time loop: base * value(q) with the normalization computed once. Without a curve it is the
+/// constant base.
 class Law {
 public:
     Law() = default;
@@ -24,7 +24,7 @@ public:
 
     bool present() const { return present_; }
 
-    Curve::Point operator()(double q) const  ///< value and slope against q
+    Curve::Point operator()(double q) const  ///< value, and slope with respect to q
     {
         if (!present_)
             return {base_, 0.0};

@@ -13,8 +13,8 @@
 
 namespace excursion::bench {
 
-/// Beside Re and Le: a semi-inductance u = coefficient * s^exponent i, or, where there are cells, a chain of resistors
-/// in parallel with inductors, u = sum of resistance s/(s + rate) i.
+/// In addition to Re and Le: a semi-inductance u = coefficient * s^exponent i, or, if there are cells, a chain of
+/// resistors in parallel with inductors, u = sum of resistance s/(s + rate) i.
 struct EddyCurrents {
     double coefficient = 0.0;  ///< ohm s^exponent
     double exponent = 0.6;     ///< 0.45 .. 0.9
@@ -23,7 +23,7 @@ struct EddyCurrents {
         double rate = 0.0;        ///< rad/s, resistance over inductance
     };
     std::vector<Cell> cells {};
-    /// the loops lie in the iron and couple to the coil as its inductance does: by sqrt(Le(x)/Le(0)) each way
+    /// the loops are in the iron, and their coupling to the coil follows its inductance: sqrt(Le(x)/Le(0)) each way
     bool moves = false;
 };
 
@@ -47,9 +47,9 @@ struct Creep {
     std::vector<Cell> cells {};
 };
 
-/// Dahl elements in parallel, dF/dt = stiffness v - stiffness |v| F / limit each: hysteresis that
-/// depends on how far the cone went and not on how fast. One is Dahl's friction, several with spread
-/// limits approach Iwan's model.
+/// Dahl elements in parallel, dF/dt = stiffness v - stiffness |v| F / limit each: hysteresis that depends on how far
+/// the cone moved and not on how fast. One element is Dahl's friction; several with spread limits approach Iwan's
+/// model.
 struct Friction {
     struct Element {
         double stiffness = 0.0;  ///< N/m
@@ -67,11 +67,11 @@ struct CoilHeating {
     double magnetResistance = 3.0;  ///< K/W, magnet to room
 };
 
-/// An air spring shared by cone and port, all as volume displacement over the cone's area: y of the port, l of what
-/// leaks.
+/// An air spring shared by cone and port. All displacements are volume displacements over the cone's area: y of the
+/// port, l of the leak.
 ///     q = -stiffness (x + y + l) - absorption (x' + y' + l')   is the force on the cone,
 ///     mass y'' = q - resistance y' - spring y                  the port, or a passive radiator with a spring,
-///     l' = q / leak                                            no leak when infinite,
+///     l' = q / leak                                            no leak if infinite,
 /// and the port's y'' is heard with the cone's x''.
 struct VentedBox {
     double stiffness = 0.0;                                 ///< N/m
@@ -89,21 +89,21 @@ struct ConeMode {
     double gain = 0.2;  ///< participation, either sign
 };
 
-/// A surround or a dust cap that hangs on the cone by a spring and a damper of its own, y'' = -(w/Q) (y' - x') - w^2 (y
-/// - x), and pulls back with mass y''. The base's m is without it.
+/// A surround or a dust cap that is attached to the cone by its own spring and damper, y'' = -(w/Q) (y' - x') - w^2 (y
+/// - x), and reacts with mass y''. The base's m does not include it.
 struct HungPart {
     double mass = 0.001;       ///< kg
     double frequency = 500.0;  ///< Hz
     double quality = 8.0;
 };
 
-/// A loudspeaker in free air, or in a vented box, as the bench knows it:
+/// A loudspeaker in free air, or in a vented box, as the bench simulates it:
 ///     u = Re(T) i + d/dt [ lambda(x, i) + lambda_eddy ] + Bl(x) v,     lambda = Le(x, i) i,
 ///         lambda_eddy = k(x) G(s) k(x) i
 ///     m x'' = Bl(x) i - Rms(v) v - F_suspension - F_friction - F_box - F_parts + F_odd + d/dx (integral of lambda di)
-/// where the last term is the reluctance force, 1/2 i^2 dLe/dx when Le does not depend on i, and with k'(x) i times the
-/// loops' flux G(s) k(x) i where the loops' coupling k moves. Signs: positive current moves the cone to positive x,
-/// towards the microphone.
+/// where the last term is the reluctance force, 1/2 i^2 dLe/dx if Le does not depend on i. If the loops' coupling k
+/// depends on x, it also has k'(x) i times the loops' flux G(s) k(x) i. Signs: positive current moves the cone to
+/// positive x, towards the microphone.
 struct Loudspeaker {
     std::string name = "midbass";
     double Re = 3.3;           ///< ohm
@@ -113,7 +113,7 @@ struct Loudspeaker {
     double Rms = 0.786;        ///< N s/m, at v = 0
     double K = 1852.0;         ///< N/m, at x = 0
     double coneArea = 0.0132;  ///< m^2
-    double xmax = 0.004;       ///< m, the excursion it is made for
+    double xmax = 0.004;       ///< m, rated excursion
 
     std::optional<Curve> forceFactor;         ///< Bl against x
     std::optional<Curve> stiffness;           ///< K against x, in F = K(x) x
@@ -128,7 +128,7 @@ struct Loudspeaker {
     bool doppler = false;
     std::vector<ConeMode> coneBreakup;
     std::vector<HungPart> sideResonance;
-    std::optional<Oddity> oddity;  ///< what no effect describes
+    std::optional<Oddity> oddity;  ///< a force that no effect describes
 
     double forceFactorAt(double x) const;               ///< N/A
     double stiffnessAt(double x) const;                 ///< N/m
@@ -136,18 +136,18 @@ struct Loudspeaker {
     double inductanceSlopeAt(double x) const;           ///< H/m, d Le/dx at i = 0
     double dampingAt(double v) const;                   ///< N s/m
 
-    /// The blocked coil's eddy impedance and the suspension's dynamic stiffness at rest, in closed form.
+    /// The eddy impedance of the blocked coil and the dynamic stiffness of the suspension at rest, in closed form.
     std::complex<double> eddyImpedance(std::complex<double> s) const;        ///< ohm
     std::complex<double> suspensionStiffness(std::complex<double> s) const;  ///< N/m
 
-    /// Small-signal response at s = 2 pi j frequency, coil cold, cone modes and delay left out.
+    /// Small-signal response at s = 2 pi j frequency, with a cold coil, without cone modes and delay.
     struct Response {
         std::complex<double> current, displacement;  ///< per volt
         std::complex<double> radiated;               ///< m/s^2 per volt: of cone and port
     };
     Response small(double frequency) const;
 
-    /// The ids of the effects present, in the order of effectIds(); an oddity is none.
+    /// The ids of the effects present, in the order of effectIds(); an oddity is not an effect.
     std::vector<std::string> effects() const;
 
     /// The same driver without any effect or oddity.

@@ -8,7 +8,7 @@
 
 namespace excursion::bench {
 
-/// The force of an oddity over a simulation: begin() a step, force() as often as the step is iterated, finish() it.
+/// The force of an oddity in a simulation: call force() in each iteration of a step, then finish().
 class OddForce {
 public:
     /// @param step  s

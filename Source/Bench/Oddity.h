@@ -9,14 +9,14 @@ namespace excursion::bench {
 
 class Random;
 
-/// A force that real loudspeakers show and no effect of the diagnosis describes. It stands beside the known ones, so
-/// that takes with it show whether the known ones are still named and nothing else is.
+/// A force that real loudspeakers show and that no effect of the diagnosis describes. It is added to the known effects,
+/// so that takes with it show whether the known effects are still named, and nothing else.
 struct Oddity {
     enum class Kind {
         contact,     ///< F = stiffness (side x - gap)^1.5 where side x > gap: a coil former that touches
-        wander,      ///< F = K w(t) x, w(t) a sum of slow sinusoids: a suspension that changes by itself
+        wander,      ///< F = K w(t) x, w(t) a sum of slow sinusoids: a suspension that wanders
         hysteresis,  ///< Bouc-Wen: F = stiffness z, z' = v (1 - (b sign(v z) + 1 - b) |z/limit|^n)
-        jump         ///< F = K d(t), d(t) leaps between two positions of rest: a spider that snaps over
+        jump         ///< F = K d(t), d(t) jumps between two rest positions: a spider that snaps over
     };
     Kind kind = Kind::contact;
     double side = 1.0;       ///< contact: +1 or -1
@@ -24,9 +24,9 @@ struct Oddity {
     double stiffness = 0.0;  ///< contact: N/m^1.5; hysteresis: N/m; wander and jump: N/m, of the spring
     double limit = 0.0;      ///< m, hysteresis: largest |z|
     double exponent = 2.0;   ///< hysteresis: n
-    double pinch = 0.5;      ///< hysteresis: b, not below 1/2, where it would make energy; 1 with n = 1 is Dahl's
-    double depth = 0.0;      ///< wander: rms of w; jump: m, from one rest to the other
-    std::uint64_t seed = 1;  ///< of the course over time
+    double pinch = 0.5;      ///< hysteresis: b, not below 1/2, where it would generate energy; 1 with n = 1 is Dahl's
+    double depth = 0.0;      ///< wander: rms of w; jump: m, between the two rest positions
+    std::uint64_t seed = 1;  ///< seed of the course over time
 };
 
 /// The names of the kinds: contact, wander, hysteresis, jump.

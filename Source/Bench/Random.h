@@ -6,9 +6,9 @@
 
 namespace excursion::bench {
 
-/// Random numbers that are the same on every machine: the raw 64-bit words of std::mt19937_64 are
-/// fixed by the standard, the distributions of <random> are not, so they are made here.
-/// Streams of one seed are independent of one another (the pair is mixed by SplitMix64).
+/// Random numbers that are the same on every machine. The standard fixes the raw 64-bit words of std::mt19937_64, but
+/// not the distributions of <random>, so they are implemented here. Streams of one seed are independent (the pair is
+/// mixed by SplitMix64).
 class Random {
 public:
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0);

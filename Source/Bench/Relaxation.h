@@ -6,7 +6,7 @@
 
 namespace excursion::bench {
 
-/// A memory made of many first-order cells, driven by one signal g:
+/// A memory of many first-order cells, driven by one signal g:
 ///     dz_k/dt = -rate_k z_k + g,   output = sum_k weight_k z_k,   H(s) = sum_k weight_k / (s + rate_k)
 struct Relaxations {
     std::vector<double> rate;  ///< 1/s, positive

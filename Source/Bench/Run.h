@@ -11,7 +11,7 @@
 
 namespace excursion::bench {
 
-/// What the laboratory would see with perfect sensors, still at the finer rate of the simulation.
+/// The signals of perfect sensors, at the finer rate of the simulation.
 struct Record {
     double sampleRate = 0.0;  ///< Hz, of the played voltage
     int oversampling = 1;
@@ -23,11 +23,10 @@ struct Record {
 /// eddy currents, whose fastest cells lower the order of the method from 5 to 4. Each step has three points.
 int defaultOversampling(const Loudspeaker&, double sampleRate);
 
-/// Plays a voltage from rest through an ideal converter (band-limited interpolation, exact at every
-/// point that the simulation asks for) and an amplifier without output impedance.
-/// `voltage` should begin and end in silence or fade; its band should end below 0.45 sampleRate.
-/// Pressure (in Pa, 2 pi radiation as far field): p(t) = rho Sd/(2 pi d) a(t'), t' = t - d/c, or with the Doppler
-/// effect t' = t - (d - x(t'))/c; rho = 1.2 kg/m^3, c = 343 m/s.
+/// Plays a voltage from rest through an ideal converter (band-limited interpolation, exact at every point that the
+/// simulation uses) and an amplifier without output impedance. `voltage` should begin and end in silence or fade; its
+/// band should end below 0.45 sampleRate. Pressure (in Pa, 2 pi radiation as far field): p(t) = rho Sd/(2 pi d) a(t'),
+/// t' = t - d/c, or with the Doppler effect t' = t - (d - x(t'))/c; rho = 1.2 kg/m^3, c = 343 m/s.
 /// @param lowest  Hz, down to which the fractional elements are accurate
 Record run(const Loudspeaker&, std::span<const double> voltage, double sampleRate,
            const std::vector<Quantity>& channels, double microphoneDistance, double lowest, int oversampling = 0,

@@ -10,16 +10,16 @@
 
 namespace excursion::bench {
 
-/// The loudspeaker in time, from rest, in equal steps of three-point Radau IIA collocation (order 5).
-/// States: total flux Lambda = lambda(x, i) + lambda_eddy, dLambda/dt = u - Re(T) i - Bl(x) v; x; v; the
-/// cells of eddy currents and creep (stepped exactly for a parabolic input); friction forces; port.
-/// In a step the three currents come from Newton's method on the flux, the rest from fixed-point
-/// iteration (contraction about (w0 h)^2), until nothing moves by more than 1e-11 of its largest value.
+/// The loudspeaker in the time domain, from rest, in equal steps of three-point Radau IIA collocation (order 5).
+/// States: total flux Lambda = lambda(x, i) + lambda_eddy, dLambda/dt = u - Re(T) i - Bl(x) v; x; v; the cells of eddy
+/// currents and creep (stepped exactly for a parabolic input); friction forces; port. In a step, the three currents
+/// come from Newton's method on the flux, the rest from fixed-point iteration (contraction about (w0 h)^2), until
+/// nothing changes by more than 1e-11 of its largest value.
 class Simulator {
 public:
     /// @param step     s
     /// @param highest  rad/s up to which the fractional elements are accurate
-    /// @param lowest   rad/s down to which they are
+    /// @param lowest   rad/s down to which they are accurate
     Simulator(const Loudspeaker&, double step, double highest, double lowest);
 
     struct Sample {
@@ -28,7 +28,7 @@ public:
     };
 
     /// @param voltage  at the three points of the step, see Radau::points()
-    /// Returns the end of the step. Throws Error (numerical) when the iteration does not converge.
+    /// Returns the end of the step. Throws Error (numerical) if the iteration does not converge.
     const Sample& step(const Triple& voltage);
 
     const Sample& sample() const { return sample_; }
@@ -50,7 +50,7 @@ private:
     void predict();
     void solveCurrents(const Triple& voltage);
     void coupleLoops();
-    Triple coupledCurrent() const;  ///< as the loops see it
+    Triple coupledCurrent() const;  ///< the current that the loops see
     void frictionForces();
     void suspensionForces();
     Triple accelerations();
@@ -68,9 +68,9 @@ private:
     RelaxationBank eddy_, creep_;
     std::optional<OddForce> oddity_;
     bool loopsMove_ = false;
-    double creepScale_ = 0;  // what multiplies the creep cells' output
+    double creepScale_ = 0;  // factor on the creep cells' output
 
-    // this step: current, acceleration, the port's, what leaks a second
+    // this step: current, acceleration, acceleration of the port, leak per second
     Triple i_ {}, a_ {}, port_ {}, leak_ {};
     Triple iBefore_ {}, aBefore_ {}, portBefore_ {}, leakBefore_ {};  // the step before it
     Triple x_ {}, v_ {}, box_ {}, bl_ {}, suspension_ {}, frictionSum_ {}, odd_ {}, eddyHistory_ {}, creepHistory_ {};

@@ -8,8 +8,8 @@
 
 namespace excursion::bench {
 
-/// The DFT lines that a multisine excites within the band: full (every line), odd (odd ones), or odd-random (odd
-/// ones with one left out at random of each group of `detectionGroup` consecutive odd lines).
+/// The DFT lines that a multisine excites within the band: full (every line), odd (odd lines), or odd-random (odd
+/// lines, of which one is left out at random in each group of `detectionGroup` consecutive odd lines).
 inline constexpr int detectionGroup = 4;
 std::vector<int> excitedLines(const Excitation&, double sampleRate, Random&);
 
@@ -17,11 +17,11 @@ std::vector<int> excitedLines(const Excitation&, double sampleRate, Random&);
 ///     u(n) = sum_k A_k cos(2 pi k n / N + phi_k),  A_k of shape white (1), pink (f^-1/2) or red (f^-1)
 std::vector<double> multisine(const Excitation&, const std::vector<int>& lines, Random&);
 
-/// The whole drive: level by level, realization by realization, settling and kept periods, then `tail`
-/// more samples that continue the last period and fade out. The phases of a realization are the same at every level.
-/// Where one multisine follows another, the old one goes on for 256 samples of the new one's settling time and the
-/// two are crossfaded over the next 1024 (an error function, so that nothing leaves the band); the
-/// first fades in. So every kept period is exactly periodic up to its last sample.
+/// The whole drive: level by level, realization by realization, settling and kept periods, then `tail` more samples
+/// that continue the last period and fade out. The phases of a realization are the same at every level. If one
+/// multisine follows another, the old one continues for 256 samples of the new one's settling time, and the two are
+/// crossfaded over the next 1024 (an error function, so that nothing leaves the band). The first one fades in. So every
+/// kept period is exactly periodic up to its last sample.
 std::vector<double> drive(const Excitation&, double sampleRate, std::uint64_t seed, int tail);
 
 }  // namespace excursion::bench

@@ -7,7 +7,7 @@
 
 namespace excursion::bench {
 
-/// What was hidden, for after the diagnosis:
+/// What was hidden, to compare with after the diagnosis:
 ///   { "format": "excursion-truth", "version": 1, "driver": {class and the linear parameters, SI},
 ///     "effects": [ {"id", "strength", its parameters} ], "visited": {...}, "noiseDb",
 ///     "laws": { "force-factor": {"against": "displacement", "at": [...], "value": [...]}, ... } }
