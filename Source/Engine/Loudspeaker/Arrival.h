@@ -13,7 +13,7 @@ namespace excursion {
 std::vector<double> slopeOf(std::span<const double> samples, double sampleRate);
 
 /// Derivative of the arriving sound with respect to the instant s at which it left, x'(s)/(1 + lateness'(s)), at each
-/// instant s. If the sound leaves later by ds, its value at a fixed arrival time falls by this times ds.
+/// instant s. If the sound is late by another ds, its value at a fixed arrival time falls by this times ds.
 std::vector<double> slopeByLeaving(std::span<const double> samples, std::span<const double> lateness,
                                    double sampleRate);
 
