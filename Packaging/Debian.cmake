@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `cpack` makes two packages: excursion (program, presets, manual; plugin and app where they are built) and libexcursion-dev.
-set(EXCURSION_MAINTAINER "The Excursion authors <excursion@localhost>" CACHE STRING "Who made the Debian packages, with a mail address")
+# `cpack` makes two packages: excursion (program, presets, manual; plugin and app where they are built) and
+# libexcursion-dev.
+set(EXCURSION_MAINTAINER "The Excursion authors <excursion@localhost>" CACHE STRING
+    "Who made the Debian packages, with a mail address")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME excursion)
@@ -13,7 +15,8 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+    WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
@@ -33,9 +36,11 @@ endif()
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexcursion-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "excursion (= ${PROJECT_VERSION}-1), pkg-config, libeigen3-dev (>= 3.4), nlohmann-json3-dev (>= 3.11),\
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+    "excursion (= ${PROJECT_VERSION}-1), pkg-config, libeigen3-dev (>= 3.4), nlohmann-json3-dev (>= 3.11),\
  libceres-dev (>= 2.1), libfftw3-dev, libsndfile1-dev, libmatio-dev, libsoxr-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers, static libraries and CMake files of Excursion: find_package(Excursion)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+    "Headers, static libraries and CMake files of Excursion: find_package(Excursion)
 and Excursion::engine.")
 
 # What Debian asks of every package: a copyright file, and a changelog of the package beside that of the program.
@@ -47,7 +52,8 @@ if(GZIP)
         COMMAND ${GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > changelog.gz
         COMMAND ${GZIP} -9nc changelog.Debian > changelog.Debian.gz
         DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian VERBATIM)
-    add_custom_target(changelogs ALL DEPENDS ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian.gz)
+    add_custom_target(changelogs ALL DEPENDS ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz
+        ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian.gz)
 endif()
 foreach(component program development)
     string(TOUPPER ${component} upper)

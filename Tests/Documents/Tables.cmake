@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The tables of Docs/Architecture.md under "Where things live" name what is in the tree, every effect, and every chapter;
-# those of Docs/Dissertation.md what is in the tree, every section, numbered equation and listing.
+# The tables of Docs/Architecture.md under "Where things live" name what is in the tree, every effect, and every
+# chapter; those of Docs/Dissertation.md what is in the tree, every section, numbered equation and listing.
 #     cmake -DSOURCE=... -DPROGRAM=... -P Tables.cmake
 cmake_minimum_required(VERSION 3.25)
 file(READ ${SOURCE}/Docs/Architecture.md text)
@@ -41,7 +41,8 @@ foreach(file ${files})
 endforeach()
 
 # Every chapter and appendix of the dissertation, and every class of models that has a document of its own.
-foreach(part 2.1 2.2 2.3 3.1 3.2 3.3 4.1 4.2 4.3 4.4 5.1 5.2 5.3 5.4 6.1 6.2 7.1 7.2 "appendix A" "appendix B" "appendix C" "appendix D")
+foreach(part 2.1 2.2 2.3 3.1 3.2 3.3 4.1 4.2 4.3 4.4 5.1 5.2 5.3 5.4 6.1 6.2 7.1 7.2 "appendix A" "appendix B"
+    "appendix C" "appendix D")
     string(REPLACE "." "\\." pattern ${part})
     if(NOT tables MATCHES "\n\\| ([0-9.]+, )?${pattern}[ ,]")
         string(APPEND faults "\n${part} of the dissertation has no row")
@@ -78,15 +79,18 @@ endforeach()
 string(REGEX REPLACE "[][;]" " " rows "${text}")
 string(REGEX MATCHALL "\n\\| [^|]*" firsts "${rows}")
 string(REPLACE ";" "" firsts "${firsts}")
-foreach(section 1 2.1 2.2 2.3 3.1 3.2 3.3 4.1.1 4.1.2 4.1.3 4.1.4 4.2.1 4.2.2 4.2.3 4.3 4.3.1 4.3.2 4.4.1 4.4.2 4.5 5.1.1 5.1.2 5.1.3
+foreach(section 1 2.1 2.2 2.3 3.1 3.2 3.3 4.1.1 4.1.2 4.1.3 4.1.4 4.2.1 4.2.2 4.2.3 4.3 4.3.1 4.3.2 4.4.1 4.4.2 4.5
+    5.1.1 5.1.2 5.1.3
         5.1.4 5.2.1 5.2.2 5.3 5.4 5.5 5.6 6.1.1 6.1.2 6.1.3 6.1.4 6.2.1 6.2.2 6.2.3 6.2.4 6.2.5 6.2.6 7.1 7.2 7.3)
     string(REPLACE "." "\\." pattern ${section})
     if(NOT firsts MATCHES "\n\\| ([0-9.]+, )?${pattern}[ ,]")
         string(APPEND faults "\nsection ${section} has no row")
     endif()
 endforeach()
-foreach(listing BLA Excitation_signal multisine IOdelay mckelvey_algo1 mckelvey_algo2 SubSpace_CT_simple LM_algo cost jacobianPNLSSvsEF
-        unflatten_theta PNLSSfilter CalculateP diffmonomials getmonomialpwrs monomials prunepz removepz shownewsys prunePZpairs
+foreach(listing BLA Excitation_signal multisine IOdelay mckelvey_algo1 mckelvey_algo2 SubSpace_CT_simple LM_algo cost
+    jacobianPNLSSvsEF
+        unflatten_theta PNLSSfilter CalculateP diffmonomials getmonomialpwrs monomials prunepz removepz shownewsys
+        prunePZpairs
         StabilizeSS zpplot3D fo_pzmap)
     if(NOT firsts MATCHES "\n\\| `${listing}` ")
         string(APPEND faults "\nthe listing ${listing} has no row")
@@ -121,4 +125,5 @@ endforeach()
 if(faults)
     message(FATAL_ERROR "Docs/Dissertation.md:${faults}")
 endif()
-message(STATUS "${count} paths, all effects, all chapters; ${named} paths, all sections, equations and listings of the dissertation")
+message(STATUS
+    "${count} paths, all effects, all chapters; ${named} paths, all sections, equations and listings of the dissertation")

@@ -8,7 +8,8 @@ file(MAKE_DIRECTORY ${scratch})
 
 # run(CODE COMMAND...): the command must end with that exit code; what it said is in `said`.
 function(run expected)
-    execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${scratch} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
+    execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${scratch} RESULT_VARIABLE code OUTPUT_VARIABLE out
+        ERROR_VARIABLE err)
     if(expected STREQUAL "not 0" AND NOT code EQUAL 0)
         set(code "not 0")
     endif()

@@ -118,7 +118,7 @@ TEST_CASE("Flux that current and position change together is one potential, whos
     const auto names = alone.effect.parameters(alone.operatingRange);
     double place = 0.3;
     for (std::size_t k = 0; k < names.size(); ++k)
-        if (names[k].name.front() == 'p')
+        if (names[k].name.front() == 'q')
             alone.parameters[k] = place *= -0.7;
     alone.prepare();
     const double dx = 1e-4 * alone.operatingRange.displacement, di = 1e-4 * alone.operatingRange.current;

@@ -55,7 +55,7 @@ std::vector<std::string> remarksOn(const ScaledModel& given)
             remarks.emplace_back("Measured in a box, whose parts are left out: the moving mass has the air of the box "
                                  "on it, and the compliance is that of the "
                                  "suspension with what of the box acts on a cone at rest.");
-        if (parts && component.effect->relaxes() && isAtWork(component))
+        if (parts && component.effect->creeps() && isAtWork(component))
             remarks.emplace_back("The suspension creeps: Cms and Rms are those at fs; more slowly it is softer.");
     }
     return remarks;

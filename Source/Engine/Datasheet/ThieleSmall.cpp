@@ -70,7 +70,7 @@ double resonanceIn(const OpenCoilMechanics& mechanics, double near)
 /// The model without what yields in the course of time.
 Model withoutCreep(Model model)
 {
-    std::erase_if(model.components, [](const Component& c) { return c.effect->relaxes(); });
+    std::erase_if(model.components, [](const Component& c) { return c.effect->creeps(); });
     model.covariance.resize(0, 0);
     return model;
 }

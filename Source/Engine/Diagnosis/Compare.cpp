@@ -143,7 +143,8 @@ ErrorByChannel errorByChannel(const Comparison& comparison)
     return errors;
 }
 
-Comparison compare(const Model& model, const Record& record, const CompareOptions& options, const Progress& progress)
+std::optional<Comparison> tryCompare(const Model& model, const Record& record, const CompareOptions& options,
+                                     const Progress& progress)
 {
     const auto sections = validationSections(record);
     OutputErrorOptions run;
@@ -152,10 +153,8 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
     run.substeps = options.substeps > 0 ? options.substeps : substepsFor(model, record);
     progress.at(0.1, "comparing");
     const auto fits = outputError(model, record, sections, {}, run, progress);
-    for (const auto& fit : fits)
-        if (!fit.finite)
-            throw Error(Error::Kind::numerical,
-                        "The model runs away when it is simulated on this take; fit it to the take first.");
+    if (std::any_of(fits.begin(), fits.end(), [](const SectionFit& fit) { return !fit.finite; }))
+        return std::nullopt;
 
     Comparison result;
     result.levels = record.levels.empty() ? std::vector<double> {0.0} : record.levels;
@@ -163,9 +162,8 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
     result.validated = std::any_of(record.sections.begin(), record.sections.end(),
                                    [](const Section& s) { return s.validation; });
     // What is slow, or still relaxes when the periods begin that count, differs from period to period by itself.
-    const bool drifts = std::any_of(model.components.begin(), model.components.end(), [](const Component& part) {
-        return part.effect->slow() || part.effect->relaxes();
-    });
+    const bool drifts = std::any_of(model.components.begin(), model.components.end(),
+                                    [](const Component& part) { return part.effect->slow() || part.effect->creeps(); });
     NormalEquations everything;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         ChannelComparison channel;
@@ -201,6 +199,15 @@ Comparison compare(const Model& model, const Record& record, const CompareOption
         result.residuals = residualCurves(model, record, sections, fits);
     progress.at(1.0, "compared");
     return result;
+}
+
+Comparison compare(const Model& model, const Record& record, const CompareOptions& options, const Progress& progress)
+{
+    auto comparison = tryCompare(model, record, options, progress);
+    if (!comparison)
+        throw Error(Error::Kind::numerical,
+                    "The model runs away when it is simulated on this take; fit it to the take first.");
+    return std::move(*comparison);
 }
 
 std::vector<Waveform> waveforms(const Model& model, const Record& record, int level)

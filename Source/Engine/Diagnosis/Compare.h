@@ -70,8 +70,11 @@ struct CompareOptions {
     bool spectra = true;  ///< fill spectra, kinds and residual curves
 };
 
-/// Compares a model with the validation sections of a record (all sections if none was held out).
-/// Throws Error (numerical) if the simulation runs away.
+/// Compares a model with the validation sections of a record (all sections if none was held out). Nothing if the
+/// simulation runs away.
+std::optional<Comparison> tryCompare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
+
+/// The same; throws Error (numerical) if the simulation runs away.
 Comparison compare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
 
 /// A channel over time, measured and modelled, in the compared window, in the channel's unit.

@@ -272,19 +272,19 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
             progress.at(begun, "trying " + entry.effect);
             Model trial;
             const auto summary = tryFit(trial, candidate, record, sections, quick, progress.part(begun, begun + share));
-            if (summary.usable()) {
-                const auto after = compare(trial, record, {quick.substeps, false});
+            if (const auto after = summary.usable() ? tryCompare(trial, record, {quick.substeps, false})
+                                                    : std::nullopt) {
                 entry.model = trial;
-                entry.confirmedChiSquaredPerValue = after.chiSquaredPerValue;
-                for (const auto& channel : after.channels)
+                entry.confirmedChiSquaredPerValue = after->chiSquaredPerValue;
+                for (const auto& channel : after->channels)
                     entry.confirmedErrorDb[channel.quantity] = channel.total.db;
                 const auto& added = trial.components.back();
-                entry.significant = falls(before.chiSquaredPerValue, after.chiSquaredPerValue, options.significantFall)
+                entry.significant = falls(before.chiSquaredPerValue, after->chiSquaredPerValue, options.significantFall)
                                     && added.effect->plausible(added.operatingRange, added.parameters,
                                                                trial.base().parameters);
                 errorAfter = entry.confirmedErrorDb;
                 if (entry.significant)
-                    bestLeft = std::min(bestLeft, excess(after.chiSquaredPerValue));
+                    bestLeft = std::min(bestLeft, excess(after->chiSquaredPerValue));
             }
         }
         entry.reason = reasonFor(*candidate.effect, entry.model, before, errorAfter);

@@ -23,6 +23,22 @@ Model partOf(const Whole& whole, const Model& model, const std::string& more)
     return part;
 }
 
+/// A rung with one more effect of the whole that is not at work yet: what only holds together runs away in parts.
+Rung atRest(const Rung& rung, const std::vector<Score>& scores, const Whole& whole)
+{
+    const auto& candidate = *std::find_if(scores.begin(), scores.end(),
+                                          [&](const Score& s) { return whole.model.has(s.effect->id()); });
+    Rung next;
+    next.added = candidate.effect->id();
+    next.predictedErrorDb = candidate.errorDb;
+    next.model = rung.model;
+    next.model.components.push_back(scaled(candidate.model.components.back(), 0.0));
+    next.model.covariance.resize(0, 0);
+    next.fit = rung.fit;
+    next.comparison = rung.comparison;
+    return next;
+}
+
 /// How sure an effect of the whole is: the share of what would be left without it that it explains, as far as that is
 /// the same at all levels.
 double confidenceOf(const Vote& vote)
@@ -102,12 +118,17 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
             } else {
                 trial.fit = fitFed(trial.model, record, estimationSections(record), brief, part.part(0.4, 0.9));
             }
-            trial.comparison = compare(trial.model, record);
+            auto comparison = tryCompare(trial.model, record);
+            if (!comparison)
+                continue;
+            trial.comparison = std::move(*comparison);
             if (next.added.empty() || trial.comparison.chiSquaredPerValue < next.comparison.chiSquaredPerValue)
                 next = std::move(trial);
             if (next.comparison.chiSquaredPerValue < rung.comparison.chiSquaredPerValue)
                 break;  // else another one may go first
         }
+        if (next.added.empty())
+            next = atRest(rung, scores, whole);
         rung.diagnosis = diagnosisOf(rung, next, scores, whole);
         rungs.push_back(std::move(next));
     }

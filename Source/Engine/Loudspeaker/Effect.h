@@ -71,7 +71,7 @@ struct Parameter {
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
     bool free = true;  ///< a fit may change it
-    /// has a meaning only together with an effect that relaxes: zero and not free without one
+    /// has a meaning only together with an effect of its domain that relaxes: zero and not free without one
     bool relaxed = false;
     bool heard = false;     ///< only the sound shows it: not free if none was measured
     bool strength = false;  ///< if all strengths of an effect are zero, it is absent
@@ -181,7 +181,9 @@ public:
     /// The memory changes little within a period: its content depends on the whole take before. Its rate must be affine
     /// in it.
     virtual bool slow() const { return false; }
-    virtual bool relaxes() const { return false; }  ///< yields over time
+    /// Linear, and yields over time: a suspension that creeps, loops in the iron.
+    virtual bool relaxes() const { return false; }
+    bool creeps() const { return relaxes() && !electrical(); }
     virtual int coefficientCount(const OperatingRange&) const = 0;
 
     /// Turns parameters into coefficients, once per run: everything that depends on the parameters alone.

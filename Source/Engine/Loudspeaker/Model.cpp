@@ -87,23 +87,25 @@ Model makeModel(std::string_view baseId)
 
 namespace {
 
-bool relaxes(const Model& model)
+/// Whether a model has an effect that relaxes in the coil, or else in the suspension.
+bool relaxes(const Model& model, bool electrical)
 {
     return std::any_of(model.components.begin(), model.components.end(),
-                       [](const Component& c) { return c.effect->relaxes(); });
+                       [&](const Component& c) { return c.effect->relaxes() && c.effect->electrical() == electrical; });
 }
 
 }  // namespace
 
-bool movable(const Model& model, const Parameter& p)
+bool movable(const Model& model, const Effect& effect, const Parameter& p)
 {
     const bool listens = model.path.parameters[1].free;  // the delay is, where a pressure was measured
-    return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model));
+    return p.free && (listens || !p.heard) && (!p.relaxed || relaxes(model, effect.electrical()));
 }
 
 Model withEffect(Model model, const Effect& effect, const OperatingRange& visited, std::size_t start)
 {
     OperatingRange operatingRange = visited;
+    operatingRange.relaxed = relaxes(model, effect.electrical());
     if (const auto base = effect.sizedBy(); !base.empty())
         operatingRange.scale = model.baseParameter(base).value;
     Component component {&effect, operatingRange, effect.parameters(operatingRange)};
@@ -112,7 +114,7 @@ Model withEffect(Model model, const Effect& effect, const OperatingRange& visite
     for (std::size_t k = 0; k < values.size(); ++k)
         component.parameters[k].value = values[k];
     for (auto& p : component.parameters)
-        p.free = movable(model, p);
+        p.free = movable(model, effect, p);
     model.components.push_back(std::move(component));
     model.covariance.resize(0, 0);
     return model;
@@ -120,10 +122,13 @@ Model withEffect(Model model, const Effect& effect, const OperatingRange& visite
 
 void followOthers(Model& model)
 {
-    const bool yields = relaxes(model);
+    const bool coil = relaxes(model, true), suspension = relaxes(model, false);
     for (auto& component : model.components) {
+        const bool yields = component.effect->electrical() ? coil : suspension;
         if (const auto base = component.effect->sizedBy(); !base.empty())
             component.operatingRange.scale = model.baseParameter(base).value;
+        if (component.operatingRange.relaxed == yields)
+            continue;
         component.operatingRange.relaxed = yields;
         for (auto& p : component.parameters)
             if (p.relaxed) {

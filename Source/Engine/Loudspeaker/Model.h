@@ -72,7 +72,7 @@ Model makeModel(std::string_view baseId);
 
 /// Whether a fit of the model may change this parameter of a new effect. Not if the parameter is only heard and there
 /// is no sound channel.
-bool movable(const Model&, const Parameter&);
+bool movable(const Model&, const Effect&, const Parameter&);
 /// The model with this effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const OperatingRange&, std::size_t start = 0);
 /// Adjusts every component to the others: OperatingRange::scale of an effect follows its base parameter. Parameters

@@ -125,7 +125,7 @@ SearchSummary fitParts(Model& model, const std::vector<Part>& parts, const std::
     component.parameters = component.effect->parameters(component.operatingRange);
     std::vector<bool> free;
     for (auto& p : component.parameters) {
-        free.push_back(movable(best, p));
+        free.push_back(movable(best, *component.effect, p));
         p.free = false;
         if (p.strength)
             p.value = 0.0;

@@ -37,6 +37,8 @@ public:
     {
     }
 
+    bool relaxes() const override { return true; }
+
     std::vector<Parameter> parameters(const OperatingRange&) const override
     {
         Parameter K, a;

@@ -2,7 +2,6 @@
 #include "Engine/Loudspeaker/Curve.h"
 #include "Engine/Loudspeaker/Effects/Effects.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -15,7 +14,7 @@ namespace {
 ///     d(phi)/di = Le + g (c + i dc/di).
 /// An even law saturates the iron; an odd one is the field of the coil that adds to the magnet's or takes from it. Iron
 /// that the coil has left has less to saturate:
-///     g(x) = 1 + sum_n p_n s^n,  s = x/X within the visited range, n = 1 .. 3.
+///     g(x) = 1 + sum_n q_n [T_n(s) - T_n(0)],  s = x/X within the visited range, n = 1 .. 10.
 /// Where Le(x, i) is a product of both laws g is Le(x)/Le; where data does not tell, g is 1. What changes with x makes
 /// a force, dg/dx int_0^i c j dj. Beyond the visited range the flux goes on with the slope that it has at the end.
 class InductanceCurrent final : public EffectOf<InductanceCurrent> {
@@ -46,37 +45,32 @@ public:
     {
         auto result = curve::parameters(e, "H");
         for (int n = 1; n <= places; ++n)
-            result.push_back({.name = "p" + std::to_string(n), .unit = "1", .prior = plausiblePlace});
+            result.push_back(
+                {.name = "q" + std::to_string(n), .unit = "1", .prior = curve::plausible(n, plausiblePlace)});
         return result;
     }
-    int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + places; }
+    int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + places + 1; }
 
-    /// The curve's, then p_n.
+    /// The curve's, then those of the monomials of g - 1.
     template <class T>
     void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
         curve::prepare(e.degree, p, c);
-        std::copy_n(p + e.degree, places, c + e.degree + 1);
+        curve::prepare(places, p + e.degree, c + e.degree + 1);
     }
 
     template <class T>
     void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
-        const T* p = c + e.degree + 1;
-        T s = at.x * (1.0 / e.displacement);
-        const bool outside = s > T(1.0) || s < T(-1.0);
-        if (outside)
-            s = s > T(0.0) ? T(1.0) : T(-1.0);
-        const T g = 1.0 + s * (p[0] + s * (p[1] + s * p[2]));
-        const T slope = outside ? T(0.0) : (p[0] + s * (2.0 * p[1] + 3.0 * s * p[2])) * (1.0 / e.displacement);
+        const auto [place, slope] = curve::at(places, c + e.degree + 1, at.x, e.displacement);
         const auto own = fluxAt(e, c, at.i);
-        sum.inductance += g * own.slope;
+        sum.inductance += (1.0 + place) * own.slope;
         sum.fluxSlope += slope * own.flux;
         sum.force += slope * own.coenergy;
     }
 
 private:
-    static constexpr int places = 3;
+    static constexpr int places = 10;
     static constexpr double plausiblePlace = 0.5;
 
     template <class T>

@@ -23,8 +23,9 @@ namespace {
 /// inductances and resistances by a curve instead feed them with k^2 and hear them at 1: `way` w lets data tell,
 ///     1 + (1 + w)(k - 1) on the way in, 1 + (1 - w)(k - 1) on the way out,   -1 <= w <= 1, 0 for a mutual inductance.
 ///
-/// The rates begin above the band, as what is slower than its end delays what is seen there; each next one is a fifth.
-/// A chain of loops that follows K s^0.4 is met to -82 dB of the current with four, to -75 with three.
+/// Without linear eddy currents there are no loops. The rates begin above the band, as what is slower than its end
+/// delays what is seen there; each next one is a fifth. A chain of loops that follows K s^0.4 is met to -82 dB of the
+/// current with four, to -75 with three.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
     InductancePosition()
@@ -50,13 +51,17 @@ public:
     {
         auto result = curve::parameters(e, "H");
         for (int n = 1; n <= loops; ++n)
-            result.push_back(
-                {.name = "g" + std::to_string(n), .unit = "1", .lower = 0.0, .upper = 1e3, .prior = plausibleWeight});
-        result.push_back({.name = "depth", .unit = "1", .lower = -3.0, .upper = 3.0, .prior = 0.5});
-        result.push_back({.name = "way", .unit = "1", .lower = -1.0, .upper = 1.0, .prior = 0.5});
+            result.push_back({.name = "g" + std::to_string(n),
+                              .unit = "1",
+                              .lower = 0.0,
+                              .upper = 1e3,
+                              .relaxed = true,
+                              .prior = plausibleWeight});
+        result.push_back({.name = "depth", .unit = "1", .lower = -3.0, .upper = 3.0, .relaxed = true, .prior = 0.5});
+        result.push_back({.name = "way", .unit = "1", .lower = -1.0, .upper = 1.0, .relaxed = true, .prior = 0.5});
         return result;
     }
-    int memorySize(const OperatingRange&) const override { return 2 * loops; }
+    int memorySize(const OperatingRange& e) const override { return e.relaxed ? 2 * loops : 0; }
     int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + 2 * loops + 2; }
 
     /// The curve's, then each loop's rate and inductance, d = exp(depth)/g_0 and w.
@@ -81,6 +86,12 @@ public:
     {
         using std::sqrt;
         const auto [value, slope] = curve::at(e.degree, c, at.x, e.displacement);
+        sum.inductance += value;
+        if (!e.relaxed) {
+            sum.fluxSlope += slope * at.i;
+            sum.force += 0.5 * slope * at.i * at.i;
+            return;
+        }
         const T* loop = c + e.degree + 1;
         const T &d = loop[2 * loops], &way = loop[2 * loops + 1];
         // A trial of a search may go where the coil would have no inductance left.
@@ -97,7 +108,6 @@ public:
             held += loop[1] * h;
             delayed += loop[1] * (out * rate[2 * n] - rate[2 * n + 1]);
         }
-        sum.inductance += value;
         sum.fluxSlope += slope * at.i + (1.0 - way) * kSlope * held;
         sum.drop += delayed;
         sum.force += (0.5 * slope * at.i + kSlope * held) * at.i;

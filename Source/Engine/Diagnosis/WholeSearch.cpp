@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Diagnosis/WholeSearch.h"
+
+#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/FitResponse.h"
+
+#include <cmath>
+
+namespace excursion {
+namespace {
+
+constexpr LeastSquaresOptions search {12, 1e-3}, brief {5, 1e-2}, glance {1, 1e-1};
+constexpr double barelyMissed = 6.0;   // dB
+constexpr double sorelyMissed = 15.0;  // dB more that are left: no fit would make that good
+
+double inDecibels(double ratio) { return 10.0 * std::log10(ratio); }
+
+/// The effects of a model whose parameters are no longer what their names say.
+std::set<std::string> implausible(const Model& model)
+{
+    std::set<std::string> found;
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        const auto& one = model.components[k];
+        if (!one.effect->plausible(one.operatingRange, one.parameters, model.base().parameters))
+            found.insert(one.effect->id());
+    }
+    return found;
+}
+
+}  // namespace
+
+WholeSearch::WholeSearch(const Model& base, const Record& record, const FitOptions& options)
+    : base_(base), record_(record), sections_(trialSections(record, 2)), options_(options)
+{
+    test_.threads = options.threads;
+}
+
+void WholeSearch::chooseResiduals(const Model& model)
+{
+    options_.substeps = 0;  // chosen for this model
+    excursion::chooseResiduals(options_, test_, model, record_, sections_);
+}
+
+FitOptions WholeSearch::within(const LeastSquaresOptions& steps) const
+{
+    auto options = options_;
+    options.search = steps;
+    return options;
+}
+
+FitSummary WholeSearch::fit(Model& model, const Progress& progress) const { return fit(model, search, progress); }
+
+FitSummary WholeSearch::fit(Model& model, const LeastSquaresOptions& steps, const Progress& progress) const
+{
+    return quickFit(model, record_, sections_, within(steps), progress);
+}
+
+/// Of models that are played anyhow: with the simulation's own slopes.
+FitSummary WholeSearch::fitExactly(Model& model) const
+{
+    auto options = within(brief);
+    options.fedGradient = false;
+    return excursion::fit(model, record_, sections_, options, {});
+}
+
+void WholeSearch::findPartsAnew(Model& model) const
+{
+    excursion::findPartsAnew(model, record_, sections_, within(brief));
+}
+
+Left WholeSearch::left(const Model& model) const
+{
+    OutputErrorOptions plain;
+    plain.gradient = false;
+    plain.played = test_.played;
+    plain.substeps = test_.substeps;
+    plain.threads = options_.threads;
+    const auto fits = quickError(model, record_, sections_, {}, plain);
+    const auto sum = sumOf(fits);
+    Left left;
+    if (!sum)
+        return left;
+    left.cost = sum->cost;
+    left.chiSquaredPerValue = sum->cost / std::max(1.0, sum->rows);
+    for (std::size_t c = 0; c < record_.channels.size(); ++c) {
+        double cost = 0.0, rows = 0.0;
+        ErrorPower power;
+        for (const auto& fit : fits) {
+            cost += fit.channels[c].cost;
+            rows += fit.channels[c].rows;
+            power.add(fit.power[c]);
+        }
+        left.channels.push_back({cost / std::max(1.0, rows),
+                                 record_.noiseKnown ? power.overNoise() : std::numeric_limits<double>::infinity()});
+    }
+    return left;
+}
+
+double WholeSearch::lost(const Left& more, const Left& less) const
+{
+    constexpr double beyondMeasure = std::numeric_limits<double>::infinity();
+    if (more.channels.empty() || less.channels.empty())
+        return more.channels.empty() == less.channels.empty() ? 0.0
+               : more.channels.empty()                        ? beyondMeasure
+                                                              : -beyondMeasure;
+    double most = -beyondMeasure;
+    for (std::size_t c = 0; c < less.channels.size(); ++c) {
+        const auto &then = more.channels[c], &now = less.channels[c];
+        const double sure = record_.noiseKnown && !now.isNoise() ? sureNoise : 0.0;
+        const double least = record_.noiseKnown ? 0.5 * (1.0 - sure) : 0.0;
+        most = std::max(most, inDecibels(std::max(then.chiSquaredPerValue - sure, least)
+                                         / std::max({now.chiSquaredPerValue - sure, least, 1e-300})));
+        if (record_.noiseKnown)
+            most = std::max(most, inDecibels(std::max(then.power, 1.0) / std::max(now.power, 1.0)));
+    }
+    return most;
+}
+
+/// The vote on an effect that was really taken out. At the noise what it explains is what is left more without it, not
+/// the little that derivatives say of that; while more is missing the doubt of these stands.
+Vote WholeSearch::votedBy(const std::string& effect, const Vote& vote, const Left& without, const Left& with) const
+{
+    const double explained = std::max(without.cost - with.cost, 1e-300);
+    return {lost(without, with),
+            effectNamed(effect).linear() ? 0.0
+            : with.areNoise()            ? vote.byLevel / explained
+                                         : vote.inconsistency,
+            vote.byLevel};
+}
+
+/// @param still  the record without the model's laws, once that was needed
+Removal WholeSearch::without(const Model& model, const Left& now, const std::string& effect, const Vote& vote,
+                             bool thorough, std::optional<Record>& still) const
+{
+    Removal removal {vote, {}};
+    auto leaner = withoutEffect(model, effect);
+    if (!fit(leaner, glance).usable())
+        return removal;
+    auto then = left(leaner);
+    if (lost(then, now) < sorelyMissed) {
+        if (!fit(leaner, brief).usable())
+            return removal;
+        then = left(leaner);
+        if (effectNamed(effect).linear() && lost(then, now) < barelyMissed) {
+            if (!still)
+                still = withoutLaws(model, record_, options_.threads);
+            if (reshape(leaner, then, now, *still))
+                then = left(leaner);
+        }
+        if (thorough && test_.played && lost(then, now) > hardlyNeeded && fitExactly(leaner).usable())
+            then = left(leaner);
+    }
+    removal.vote = votedBy(effect, vote, then, now);
+    removal.times = then.chiSquaredPerValue / now.chiSquaredPerValue;
+    removal.staysNoise = then.areNoise();
+    removal.leaner = std::move(leaner);
+    return removal;
+}
+
+WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough) const
+{
+    Removals tried;
+    const auto now = left(model);
+    const auto strange = implausible(model);
+    std::optional<Record> still;
+    for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
+        if (base_.has(effect))
+            continue;
+        const bool plausible = !strange.contains(effect);
+        auto& one = tried[effect];
+        one = vote.standsAlone() && plausible ? Removal {vote, {}} : without(model, now, effect, vote, thorough, still);
+        one.plausible = plausible;
+    }
+    return tried;
+}
+
+std::optional<WholeSearch::Removals> WholeSearch::takeOut(Model& model, bool thorough,
+                                                          const std::function<bool(const Removal&)>& keeps) const
+{
+    bool any = false;
+    auto every = tryWithout(model, thorough);
+    std::vector<std::pair<const std::string, Removal>*> order;
+    for (auto& one : every)
+        order.push_back(&one);
+    std::stable_sort(order.begin(), order.end(),
+                     [](auto* a, auto* b) { return a->second.vote.uniqueDb < b->second.vote.uniqueDb; });
+    for (auto* one : order) {
+        auto& [effect, removal] = *one;
+        if (keeps(removal))
+            continue;
+        const bool fitted = !any && !removal.leaner.components.empty();
+        auto leaner = fitted ? std::move(removal.leaner) : withoutEffect(model, effect);
+        if (!fitted) {  // also when another one has gone, whose work it may do now
+            if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
+                continue;
+            const auto then = left(leaner), now = left(model);
+            if (keeps({votedBy(effect, removal.vote, then, now),
+                       {},
+                       then.chiSquaredPerValue / now.chiSquaredPerValue,
+                       then.areNoise(),
+                       !implausible(model).contains(effect)}))
+                continue;
+        }
+        model = std::move(leaner);
+        any = true;
+    }
+    if (any)
+        return std::nullopt;
+    return every;
+}
+
+std::set<std::string> WholeSearch::takeOutImplausible(Model& model) const
+{
+    auto strange = implausible(model);
+    std::erase_if(strange, [&](const std::string& effect) { return base_.has(effect); });
+    auto leaner = model;
+    for (const auto& effect : strange)
+        leaner = withoutEffect(leaner, effect);
+    if (strange.empty() || !fit(leaner, brief).usable())
+        return {};
+    model = std::move(leaner);
+    return strange;
+}
+
+/// What seems to miss a linear effect a little may only have another of its linear effects in a wrong shape, from which
+/// no small step leads to the right one: each is found anew on the responses. Whether that helped.
+bool WholeSearch::reshape(Model& model, const Left& now, const Left& enough, const Record& still) const
+{
+    auto best = now;
+    bool helped = false;
+    for (std::size_t k = 1; k < model.components.size() && lost(best, enough) > hardlyNeeded; ++k) {
+        const auto& effect = *model.components[k].effect;
+        if (!effect.linear() || base_.has(effect.id()))
+            continue;
+        auto anew = model;
+        if (!fitByResponse(anew, k, still).usable() || !fit(anew, brief).usable())
+            continue;
+        if (auto then = left(anew);
+            lost(best, then) > hardlyNeeded && then.chiSquaredPerValue < best.chiSquaredPerValue) {
+            model = std::move(anew);
+            best = std::move(then);
+            helped = true;
+        }
+    }
+    return helped;
+}
+
+}  // namespace excursion

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/Score.h"
+#include "Engine/Diagnosis/Vote.h"
+#include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/OutputError.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// dB that are left more: an effect that costs no more than that is not needed.
+inline constexpr double hardlyNeeded = 0.2;
+
+/// What a model leaves of a record; no channels where a law's memory runs away.
+struct Left {
+    struct Channel {
+        double chiSquaredPerValue = 0.0;  ///< mean squared residual in units of the noise
+        double power = 0.0;  ///< of the error over that of the noise; infinite where the noise is not known
+
+        bool isNoise() const { return power <= ErrorPower::most; }
+    };
+    double chiSquaredPerValue = std::numeric_limits<double>::infinity();  ///< of all channels
+    double cost = std::numeric_limits<double>::infinity();
+    std::vector<Channel> channels;
+
+    bool areNoise() const
+    {
+        return !channels.empty()
+               && std::all_of(channels.begin(), channels.end(), [](const Channel& c) { return c.isNoise(); });
+    }
+    bool isNoise() const { return areNoise() && chiSquaredPerValue < atNoise; }
+};
+
+/// An effect that a model has, and what the model is without it.
+struct Removal {
+    Vote vote;
+    Model leaner;  ///< fitted again without the effect; no components where that was not tried
+    /// by which the mean squared residual grows without it; as if beyond measure where not tried
+    double times = std::numeric_limits<double>::infinity();
+    bool staysNoise = false;  ///< every channel's error without it
+    bool plausible = true;    ///< as it stands in the model; else it stands for something else
+};
+
+/// The steps of a search for all effects of a loudspeaker at once: they judge by two realizations a level, and by what
+/// a simulation leaves where that is less than what fed laws leave.
+class WholeSearch {
+public:
+    /// @param base  what it has stays in every model; it and the record outlive the search
+    WholeSearch(const Model& base, const Record&, const FitOptions&);
+
+    /// Chooses by which residuals is judged from here on: those that are less for this model.
+    void chooseResiduals(const Model&);
+    const ScoreOptions& test() const { return test_; }
+
+    Left left(const Model&) const;
+
+    /// By how many dB more a model leaves than another, in the channel that tells most: of the mean over all lines,
+    /// beside what is noise for sure, or of the power, which may stand in a few lines, over that of the noise.
+    double lost(const Left& more, const Left& less) const;
+
+    FitSummary fit(Model&, const Progress& = {}) const;
+    void findPartsAnew(Model&) const;  ///< see Trial.h
+
+    using Removals = std::map<std::string, Removal>;
+    /// Every effect of a model but those of the base. By derivatives it says little of an effect that has become a
+    /// large part of the linear model, so one that seems to be needed little is really taken out.
+    /// @param thorough  what seems to be missed is fitted with a simulation's own slopes before that is believed: where
+    ///                  laws rule the motion those of fed laws lead no further than near the least error
+    Removals tryWithout(const Model&, bool thorough) const;
+
+    /// Takes the effects out of which the others do not lose what `keeps` asks for, the least needed first. What was
+    /// found of them all where none was taken out, else nothing.
+    std::optional<Removals> takeOut(Model&, bool thorough, const std::function<bool(const Removal&)>& keeps) const;
+
+    /// Takes out what stands for something else; returns what that was.
+    std::set<std::string> takeOutImplausible(Model&) const;
+
+private:
+    FitOptions within(const LeastSquaresOptions&) const;
+    FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
+    FitSummary fitExactly(Model&) const;
+    bool reshape(Model&, const Left& now, const Left& enough, const Record& still) const;
+    Removal without(const Model&, const Left& now, const std::string& effect, const Vote&, bool thorough,
+                    std::optional<Record>& still) const;
+    Vote votedBy(const std::string& effect, const Vote&, const Left& without, const Left& with) const;
+
+    const Model& base_;
+    const Record& record_;
+    std::vector<std::size_t> sections_;
+    ScoreOptions test_;
+    FitOptions options_;
+};
+
+}  // namespace excursion
