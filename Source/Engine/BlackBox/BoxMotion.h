@@ -8,6 +8,8 @@ namespace excursion {
 
 /// Whether the model's output is the excursion, so that a limit can be kept.
 bool tellsExcursion(const BlackBox&);
+/// Whether its input is that of a coil, so that a limit of the power can be kept.
+bool drivesCoil(const BlackBox&);
 
 /// What protection foresees a black box with: its linear part in continuous time, by the bilinear transform
 ///     z = (k + s)/(k - s),   k = w0/tan(w0/2 rate)

@@ -7,6 +7,7 @@
 #include "Engine/Predistortion/Protection.h"
 #include "Engine/Predistortion/Recovery.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -21,17 +22,23 @@ namespace excursion {
 ///    a reserve, which is no less than what the rehearsal has seen;
 ///  - the region of the fit and the peak of its input, which no signal may pass: RegionLimiter;
 ///  - a coil, where its resistance is given, that is counted to take all of the voltage.
-/// A sample that is no number, or beyond 100 times the peak, is silence, and so is what is around it.
+/// A sample that is no number, or beyond any amplifier, is silence, and so is what is around it. What is beyond 100
+/// times the peak is taken for that: it is turned down like all that is beyond the peak.
 class BoxProtection {
 public:
     /// @param late  samples from here to what comes out, for as long as which a decision has to last
     BoxProtection(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&, double sampleRate, int late);
+
+    /// What of a limit of the excursion is left to the signal.
+    static double share(const BlackBox&, const BlackBoxRehearsal&, double margin);
 
     int latency() const { return static_cast<int>(delayed_.size()) + Protection::latency; }
     void reset();
     void set(const PredistortionControls&, bool on);
 
     bool sound(double sample) const { return std::abs(sample) < beyondAll_; }  ///< not NaN, and not beyond all
+
+    double bounded(double sample) const { return std::clamp(sample, -farBeyond_, farBeyond_); }
 
     /// @returns the sample of latency() ago, turned down where it is on
     double step(double sample);
@@ -48,6 +55,7 @@ public:
     double near() const { return near_; }  ///< 1: so near the excursion's limit that all of the correction is needed
     double effort() const { return protection_.effort(); }  ///< what the limit of power leaves of the correction
     double heat() const { return ohms_ > 0.0 ? protection_.heat() / ohms_ : 0.0; }  ///< W
+    void warm(double heat) { protection_.warm(ohms_ * heat); }                      ///< W, that is there from before
     struct Reductions {  ///< factors, since the latest decision
         double region = 1.0;
         Protection::Factors factors;
@@ -64,7 +72,8 @@ private:
     Recovery recovery_;
     PeakHold apart_, nearness_;
     std::vector<double> offset_, rest_;  ///< m per q; q at rest
-    double beyondAll_, apartBefore_, apartAfter_;
+    bool moves_, coil_;
+    double farBeyond_, beyondAll_, apartBefore_, apartAfter_;
     bool on_ = true, faulty_ = false, decided_ = false;
     double ohms_ = 0.0, limit_ = 0.0;  ///< limit_: m, that is given to protection; 0: none
     double region_ = 1.0, least_ = 1.0, amount_ = 1.0, near_ = 0.0, squares_ = 0.0;

@@ -37,6 +37,8 @@ public:
     int latency() const { return engine_->latency(); }  ///< samples; fixed
     void reset();
     void set(const ChainControls&);
+    /// The coil is as warm as another chain left it that played until now.
+    void takeOver(const Chain& before);
     void process(const double* in, double* out, std::size_t n);
 
     using Meters = ChainEngine::Meters;  ///< faults: also samples that were not finite
@@ -44,8 +46,11 @@ public:
 
 private:
     double delayed(double sample, double& scale);
+    double heat() const;
 
     std::unique_ptr<ChainEngine> engine_;
+    double rate_;        ///< Hz
+    double rest_ = 0.0;  ///< samples for which the engine has not run
     Fade wet_, played_;  ///< what is made of the signal; of that, the loudspeaker's part
     /// before_, after_: where the trim is; plainGain_: keeps the plain signal to the limit while it fades
     Glide fullScale_, before_, after_, plainGain_;

@@ -25,6 +25,9 @@ public:
     virtual void resetBending() = 0;  ///< the predistorter is off, and knows nothing of before
     virtual void resetPlaying() = 0;  ///< the loudspeaker is at rest
 
+    virtual double heat() const = 0;     ///< W, the running mean of the coil's heat; 0 where it is not known
+    virtual void warm(double heat) = 0;  ///< W, what of it is there from before
+
     virtual void set(const PredistortionControls&) = 0;  ///< where they are to go; what a class does not know is left
     virtual void turn(bool bends) = 0;                   ///< off, the predistorter lets the signal through as it is
     /// @param share  how much of the linear loudspeaker's output is taken away, 0 to 1; followed smoothly

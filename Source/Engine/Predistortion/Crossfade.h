@@ -12,7 +12,8 @@ namespace excursion {
 
 /// Plays the engine that was handed over last: when a new one comes, both run, the new one unheard at first, until what
 /// it has to remember of the signal is there, and then the old one fades into the new. A third that is offered
-/// meanwhile waits. Until the first one comes the signal goes through as it is. Engines have process(const double* in,
+/// meanwhile waits. Where engines have takeOver(const Engine& before), the new one is told of the old one as it comes
+/// in. Until the first one comes the signal goes through as it is. Engines have process(const double* in,
 /// double* out, std::size_t n); where their latencies differ, the signal fades from one time to the other.
 template <class Engine>
 class Crossfade {
@@ -61,6 +62,9 @@ public:
                 if (auto* parcel = handover_.accept()) {
                     old_ = now_;
                     now_ = parcel;
+                    if constexpr (requires(Engine & next, const Engine& before) { next.takeOver(before); })
+                        if (old_)
+                            now_->engine->takeOver(*old_->engine);
                     unheard_ = warm_ + std::max(parcel->warm, 0);
                     left_ = unheard_ + length_;
                     fade_.turn(false);

@@ -47,6 +47,9 @@ public:
 
     void reset();
 
+    /// What of a limit of the excursion is left to the signal, for the margin.
+    static double share(const LinearMotion&, double margin);
+
     /// From now on the limits are those of the controls, or there are none.
     void set(const PredistortionControls&, bool on);
 
@@ -70,6 +73,7 @@ public:
 
     double voltageLimit() const { return voltageNow_; }  ///< V, of what comes out at the moment
     double heat() const { return cool_.mean(); }         ///< W, the running mean
+    void warm(double heat) { cool_.warm(heat); }         ///< that is the running mean, W, from before
     /// what the limit of power leaves of the amount of linearization
     double effort() const { return cool_.effort(); }
     /// How near to its limit the cone will come, by the latest plan; 0: there is no limit.

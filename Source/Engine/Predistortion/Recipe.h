@@ -65,7 +65,8 @@ struct Recipe : Settings {
 Model withoutOff(const Model&, const Recipe&);
 
 /// The controls of a predistorter. What leaves it is never more than full scale, as no converter gives more.
-/// The first is safe on an audio thread.
+/// The first is safe on an audio thread; the second is of a model as it was loaded, with the effects that are switched
+/// off, as those have told how far it was measured.
 PredistortionControls controlsOf(const Settings&, double measuredDisplacement);
 PredistortionControls controlsOf(const Recipe&, const Model&);
 

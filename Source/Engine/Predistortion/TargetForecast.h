@@ -13,6 +13,7 @@ namespace excursion {
 struct ForecastSubject {
     struct Peak {
         double displacement = 0.0, voltage = 0.0;  ///< m, V (or N)
+        double region = 0.0;                       ///< of where a model without physics was fitted, 1: all of that
     };
     /// Plays a signal, V, at so many times its level, and tells the peaks from a sample on; what is infinite has been
     /// driven beyond all.
@@ -25,6 +26,7 @@ struct ForecastSubject {
     std::function<std::complex<double>(double)> motion;  ///< m per V (or N) at a frequency; none: not told
     std::function<double(double)> soundDb;               ///< of what is heard; its level does not matter
     std::function<Play(const Target&)> linearized;       ///< towards a target, without limits
+    double share = 1.0;  ///< of the limit of the excursion, that its protection leaves a signal
 };
 
 /// What a target costs a loudspeaker, told before it is used.
@@ -47,9 +49,10 @@ struct TargetForecast {
         double displacement = 0.0;  ///< m
         double voltage = 0.0;       ///< V (or N)
         /// dB: the signal may be that much louder (or has to be softer) for excursion and voltage to stay within the
-        /// limits; infinite without any. No more than 40.
+        /// limits, margin included, and a model without physics within the region of its fit; infinite without any. No
+        /// more than 40.
         double roomDb = 0.0;
-        bool byDisplacement = true;  ///< it is the excursion that comes first
+        enum class First { displacement, voltage, region } first = First::displacement;  ///< that is met
     };
     Peaks ownPink, targetPink;  ///< pink, of random phases, from 20 Hz (or a third of the lower resonance) to 5 kHz
     Peaks ownSine, targetSine;  ///< the worst sine from a quarter of the lower resonance to four times the higher one
