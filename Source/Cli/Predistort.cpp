@@ -64,6 +64,12 @@ Wav readPlayable(const std::string& file, const std::string& out)
     return wav;
 }
 
+void requireValid(const PredistortionControls& controls)
+{
+    if (std::string reason; !controls.isValid(&reason))
+        throw Error(Error::Kind::usage, "The predistortion cannot run: " + reason + ".");
+}
+
 std::string turnedDown(double decibels, bool limited)
 {
     return limited ? "by " + fixed(decibels, 1) + " dB" : "no limit";
@@ -105,9 +111,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
         throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model has none; leave it out.");
     const RealTimeOptions realTime {static_cast<double>(wav.sampleRate), options.oversampling};
     const auto controls = controlsFrom(options, model);
-    std::string reason;
-    if (!controls.isValid(&reason))
-        throw Error(Error::Kind::usage, "The predistortion cannot run: " + reason + ".");
+    requireValid(controls);
     nlohmann::ordered_json target;
     if (options.target.asked())
         target = tellTarget(forecastTarget(model, controls, options.fullScale), controls.target.kind, options.fullScale,

@@ -4,6 +4,7 @@
 
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
 #include "Engine/BlackBox/BoxLinearPart.h"
+#include "Engine/BlackBox/BoxMotion.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
@@ -28,6 +29,7 @@ PredistortionControls controlsFrom(const PredistortArguments& options, const Reh
     controls.powerLimit = options.powerLimit.value_or(none);
     controls.coilResistance = options.coilResistance.value_or(0.0);
     controls.target = targetFrom(options.target, ownLinearPart(model.box));
+    requireValid(controls);
     return controls;
 }
 
@@ -37,7 +39,7 @@ void requireKnown(const PredistortArguments& options, const BlackBox& box)
     if (!tellsExcursion(box) && (options.displacementLimit || options.margin != 0.0))
         throw Error(Error::Kind::usage, "--limit-x and --margin are of the excursion, and this model tells the "
                                             + box.output + ": leave them out; it keeps to where it was fitted.");
-    if (options.powerLimit && box.input != "voltage")
+    if (options.powerLimit && !drivesCoil(box))
         throw Error(Error::Kind::usage, "--limit-p is of the heat of a coil, and this model begins at the " + box.input
                                             + "; leave it out.");
     if (options.powerLimit && !options.coilResistance)

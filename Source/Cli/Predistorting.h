@@ -47,6 +47,7 @@ Wav readPlayable(const std::string& file, const std::string& out);
 /// dB from which on a limit is told to have acted.
 inline constexpr double noticed = 1e-3;
 std::string turnedDown(double decibels, bool limited);
+void requireValid(const PredistortionControls&);  ///< Throws Error (usage).
 
 /// One channel through a predistorter of its own, by which its delay is taken out again.
 template <class AnyPredistorter>

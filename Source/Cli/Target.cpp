@@ -14,10 +14,19 @@ namespace {
 
 constexpr double litre = 1e-3;  // m^3
 
+/// Of what is met first.
+std::string nameOf(TargetForecast::Peaks::First first)
+{
+    using First = TargetForecast::Peaks::First;
+    return first == First::displacement ? "displacement" : first == First::voltage ? "voltage" : "region";
+}
+
 std::string roomOf(const TargetForecast::Peaks& peaks)
 {
     return std::isfinite(peaks.roomDb)
-               ? fixed(peaks.roomDb, 1) + " dB" + (peaks.byDisplacement ? " (excursion)" : " (voltage)")
+               ? fixed(peaks.roomDb, 1) + " dB ("
+                     + (peaks.first == TargetForecast::Peaks::First::displacement ? "excursion" : nameOf(peaks.first))
+                     + ")"
                : "no limit";
 }
 
@@ -26,7 +35,7 @@ nlohmann::ordered_json documentOf(const TargetForecast::Peaks& peaks)
     return {{"displacement", peaks.displacement},
             {"voltage", numberOrNull(peaks.voltage)},
             {"levelDb", numberOrNull(peaks.roomDb)},
-            {"first", peaks.byDisplacement ? "displacement" : "voltage"}};
+            {"first", nameOf(peaks.first)}};
 }
 
 nlohmann::ordered_json documentOf(const Resonance& one, const TargetForecast::Peaks& sine,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/LinearizePage.h"
 
+#include "Engine/BlackBox/BoxMotion.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -61,7 +62,8 @@ LinearizePage::LinearizePage(Window& window)
                       "recording will do");
     adapt_.onClick = [this] {
         window_.tell("The model is being adapted to the take.", false);
-        session().adapt(processor_.model());
+        const auto version = processor_.modelVersion();  // first: a model that comes in between is another one
+        session().adapt(processor_.model(), version);
     };
     drivers_.setTitle("Factory drivers");
     recipes_.setTitle("Recipes");
@@ -92,19 +94,19 @@ void LinearizePage::showModel(const AnyModel& model)
 {
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     box_ = box != nullptr ? *box : nullptr;
+    coil_ = box_ ? drivesCoil(box_->played.box) : std::get<Model>(model).electrical();
     const auto numbers = processor_.parameters().numbers();
     for (std::size_t k = 0; k < dials_.size(); ++k) {
         const auto& id = numbers[k]->paramID;
-        const bool moves = !box_ || std::isfinite(measuredDisplacement(box_->played)),
-                   coil = !box_ || box_->played.box.input == "voltage";
+        const bool moves = !box_ || std::isfinite(measuredDisplacement(box_->played));
         const bool shown = id == "displacementLimit" || id == "margin" ? moves
-                           : id == "powerLimit"                        ? coil
-                           : id == "coilResistance"                    ? box_ && coil
+                           : id == "powerLimit"                        ? coil_
+                           : id == "coilResistance"                    ? box_ && coil_
                                                                        : true;
         dials_[k].first->setVisible(shown);
         dials_[k].second->slider().setVisible(shown);
     }
-    facts_.setVisible(box_ != nullptr);
+    facts_.setVisible(box_ || followed_ == processor_.modelVersion());
     adapt_.setVisible(!box_);
     excursion_.setHead(box_ && !std::isfinite(measuredDisplacement(box_->played)) ? "Region" : "Excursion");
     if (box_)
@@ -221,14 +223,15 @@ void LinearizePage::showForecast()
         return;
     if (auto question = std::pair {processor_.modelVersion(), toJson(recipe).dump()}; question != asked_) {
         asked_ = std::move(question);
-        const auto model = withoutOff(processor_.model(), recipe);
-        forecast_.ask([model, controls = controlsOf(recipe, model), volts = recipe.fullScale] {
-            try {
-                return std::optional(predictDistortion(model, controls, volts));
-            } catch (const Error&) {
-                return std::optional<PredictedDistortion>();  // a model that cannot be run has none to tell
-            }
-        });
+        const auto loaded = processor_.model();
+        forecast_.ask(
+            [model = withoutOff(loaded, recipe), controls = controlsOf(recipe, loaded), volts = recipe.fullScale] {
+                try {
+                    return std::optional(predictDistortion(model, controls, volts));
+                } catch (const Error&) {
+                    return std::optional<PredictedDistortion>();  // a model that cannot be run has none to tell
+                }
+            });
     }
     const auto answer = forecast_.collect().value_or(std::nullopt);
     if (!answer)
@@ -246,10 +249,15 @@ void LinearizePage::useAdapted()
     const auto adapted = session().takeAdapted();
     if (!adapted)
         return;
+    if (adapted->version != processor_.modelVersion()) {
+        window_.tell("Another model was loaded meanwhile, and stays. The one before: " + words(adapted->words), false);
+        return;
+    }
     window_.use(adapted->model, "its last take");
+    if (adapted->version == processor_.modelVersion())
+        return;  // it cannot be run, which has been told
+    followed_ = processor_.modelVersion();
     facts_.setText("Since it was fitted: " + words(adapted->words), juce::dontSendNotification);
-    facts_.setVisible(true);
-    resized();
     window_.tell(words(adapted->words), false);
 }
 
@@ -285,7 +293,7 @@ void LinearizePage::showMeters()
             meters.displacementReduction);
     voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V",
                   meters.voltageReduction);
-    if (const bool told = std::isfinite(limits.powerLimit) && (!box_ || limits.coilResistance > 0.0);
+    if (const bool told = std::isfinite(limits.powerLimit) && coil_ && (!box_ || limits.coilResistance > 0.0);
         told != power_.isVisible()) {
         power_.setVisible(told);
         resized();

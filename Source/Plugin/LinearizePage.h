@@ -58,6 +58,8 @@ private:
     Forecast<std::optional<PredictedDistortion>> forecast_;
     /// version of the model, and the recipe, that the forecast is of
     std::pair<std::uint64_t, std::string> asked_;
+    std::uint64_t followed_ = 0;  ///< version of a model that has followed its take, which the facts tell of
+    bool coil_ = false;           ///< the model has one, whose heat may be limited
     std::unique_ptr<juce::FileChooser> chooser_;
     int faults_ = 0;
 };

@@ -77,8 +77,9 @@ std::vector<std::unique_ptr<Chain>> Processor::chains(const AnyModel& model, std
             result.push_back(std::make_unique<Chain>(
                 std::make_unique<BlackBoxEngine>((*box)->played, rate, controls.linearization), rate, controls));
     } else {
-        const auto running = asSwitched(std::get<Model>(model), parameters_.recipe(), options());
-        measured = measuredDisplacement(running);
+        const auto& loaded = std::get<Model>(model);
+        const auto running = asSwitched(loaded, parameters_.recipe(), options());
+        measured = measuredDisplacement(loaded);  // an effect that is switched off takes no limit with it
         for (std::size_t k = 0; k < channels; ++k)
             result.push_back(std::make_unique<Chain>(running, options(), parameters_.controls(measured)));
     }

@@ -49,6 +49,7 @@ struct Identification {
 struct Adapted {
     Model model;
     std::string words;
+    std::uint64_t version = 0;  ///< as it was ordered with
 };
 
 /// The work on one take, done on a thread of its own: open it, fit the first model, add effects, take them back,
@@ -70,7 +71,9 @@ public:
     void shape(const ShapeWish&);  ///< of the model that was identified; in place of a wish that waits
     void fitPnlss(const PnlssWish&);
     void put(const Identification&);  ///< what there was before; not an order
-    void adapt(const Model&);         ///< to the take, by what drifts with temperature and age
+    /// To the take, by what drifts with temperature and age.
+    /// @param version  comes back with what comes of it
+    void adapt(const Model&, std::uint64_t version);
     void saveReport(const std::string& path);
     void saveTake(const std::string& folder);
 

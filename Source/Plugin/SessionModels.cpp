@@ -76,9 +76,9 @@ void Session::fitPnlss(const PnlssWish& wish)
     });
 }
 
-void Session::adapt(const Model& model)
+void Session::adapt(const Model& model, std::uint64_t version)
 {
-    order([this, model](const Progress& progress) {
+    order([this, model, version](const Progress& progress) {
         const auto now = findings();
         if (!now)
             throw Error(Error::Kind::usage,
@@ -89,7 +89,7 @@ void Session::adapt(const Model& model)
         const auto words = wordsOn(adapted);
         {
             const std::lock_guard lock(mutex_);
-            adapted_ = Adapted {adapted.drift.model, words};
+            adapted_ = Adapted {adapted.drift.model, words, version};
         }
         say(words);
     });

@@ -140,10 +140,10 @@ void TargetPanel::ask()
     asked_ = std::move(question);
     words_.setText("What the target costs is being computed.", juce::dontSendNotification);  // not the one before
     const auto box = processor_.box();
-    const auto model = withoutOff(processor_.model(), recipe);
+    const auto loaded = processor_.model(), model = withoutOff(loaded, recipe);
     Answer answer;
     answer.controls = box ? controlsOf(static_cast<const Settings&>(recipe), measuredDisplacement(box->played))
-                          : controlsOf(recipe, model);
+                          : controlsOf(recipe, loaded);
     answer.unit = (box ? box->played.box.input == "voltage" : model.electrical()) ? "V" : "N";
     const bool own = recipe.target.kind == Target::Kind::own;
     answer.used = !own && (recipe.mode == Mode::linearize || recipe.mode == Mode::audition);

@@ -85,6 +85,7 @@ std::string wordsOf(const TargetForecast& told, const std::string& unit, bool us
     const auto& pink = told.targetPink;
     const bool lower = told.lowGainDb >= 0.0;
     std::string text = used ? "In use: " : "Not in use: ";
+    using First = TargetForecast::Peaks::First;
     if (told.equalizes)
         text += "equalized, which takes " + decibels(told.mostGainDb) + " more voltage at most, at "
                 + engineering(told.mostGainFrequency, "Hz", 2) + ".";
@@ -99,7 +100,7 @@ std::string wordsOf(const TargetForecast& told, const std::string& unit, bool us
         text += " Pink noise at 0 dBFS moves the cone " + engineering(pink.displacement, "m", 2)
                 + " (own: " + engineering(told.ownPink.displacement, "m", 2) + ")";
         // Where the cone would go too far the voltage at 0 dBFS is no matter.
-        if (!(pink.roomDb < 0.0 && pink.byDisplacement))
+        if (!(pink.roomDb < 0.0 && pink.first == First::displacement))
             text += " and needs " + engineering(pink.voltage, unit, 2);
     }
     if (!std::isfinite(pink.roomDb))
@@ -107,7 +108,9 @@ std::string wordsOf(const TargetForecast& told, const std::string& unit, bool us
     if (pink.roomDb >= 0.0)
         return text + "; the limits leave room for it.";
     return text + "; above " + plainText(pink.roomDb, 1) + " dBFS the "
-           + (pink.byDisplacement ? "excursion" : "voltage") + " is limited.";
+           + (pink.first == First::displacement ? "excursion is limited."
+              : pink.first == First::voltage    ? "voltage is limited."
+                                                : "region of the fit is kept to.");
 }
 
 }  // namespace excursion::plugin

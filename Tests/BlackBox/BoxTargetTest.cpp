@@ -125,3 +125,37 @@ TEST_CASE("A black box of the current, which is not the sound, is given no targe
     target.curve[10] = 3.0;
     CHECK_NOTHROW(own.require(target));
 }
+
+TEST_CASE("The room that a black box is told is within the region of its fit and its margin", "[target]")
+{
+    const auto stimulus = pinkStimulus(1.5);
+    auto box = boxOf(randomPnlss(24, targetRate, stimulus), stimulus);
+    PredistortionControls controls;
+    controls.margin = 0.15;
+    const RehearsedBox moving(box);
+    controls.displacementLimit = 0.4 * moving.region.farthest;
+    const auto forecast = [&](const RehearsedBox& one, double volts) {
+        return forecastTarget(one.box, one.region, one.rest, one.rehearsal, controls, volts);
+    };
+    const double volts = stimulus.peak, room = forecast(moving, volts).ownSine.roomDb;
+    double within = 0.0, region = 0.0;
+    for (double f = 15.0; f < 400.0; f *= 1.5) {
+        BlackBoxPredistorter predistorter(moving, targetRate, controls);
+        std::vector<double> u(static_cast<std::size_t>(1.5 * targetRate));
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = volts * std::pow(10.0, 0.05 * (room - 0.5))
+                   * std::min(1.0, 2.0 * static_cast<double>(n) / targetRate)
+                   * std::sin(2.0 * std::numbers::pi * f * static_cast<double>(n) / targetRate);
+        predistorter.process(u.data(), u.data(), u.size());
+        const auto meters = predistorter.collectMeters();
+        within = std::max(within, meters.displacementReduction);
+        region = std::max(region, meters.regionReduction);
+    }
+    INFO(room << " dB");
+    CHECK(within < 0.1);
+    CHECK(region < 0.1);
+    box.output = "pressure";
+    const RehearsedBox heard(box);
+    CHECK(forecast(heard, 6.0 * stimulus.peak).ownSine.roomDb < -15.0);
+    CHECK(forecast(heard, 6.0 * stimulus.peak).ownPink.roomDb < -15.0);
+}

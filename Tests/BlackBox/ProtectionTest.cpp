@@ -208,3 +208,91 @@ TEST_CASE("The motion of a black box is foreseen as its linear part has it", "[p
             CHECK(f * moves(f * motion.linear.resonance) < moves(motion.linear.resonance));
     }
 }
+
+TEST_CASE("Controls of what a black box does not have change nothing", "[protection]")
+{
+    const auto played = [](const BlackBox& box, const PredistortionControls& controls) {
+        const auto& one = known(22);
+        BlackBoxPredistorter predistorter({box, one.box.region, one.box.rest, one.box.rehearsal}, protectedRate,
+                                          controls);
+        Draw draw(2);
+        auto u = pinkNoise(draw, 48000);
+        for (auto& sample : u)
+            sample *= box.stimulus.peak;
+        predistorter.process(u.data(), u.data(), u.size());
+        CHECK(predistorter.collectMeters().powerReduction == 0.0);
+        return u;
+    };
+    auto force = known(22).box.box, pressure = force;
+    force.input = "force";
+    PredistortionControls controls, heat;
+    heat.powerLimit = 1e-3;
+    heat.coilResistance = 6.0;
+    CHECK((played(force, heat) == played(force, controls)));
+    pressure.output = "pressure";
+    controls.coilResistance = 6.0;
+    controls.powerLimit = pressure.stimulus.rms * pressure.stimulus.rms / 6.0;
+    const auto cooled = [&](double margin) {
+        BlackBoxPredistorter predistorter({pressure, known(22).box.region, known(22).box.rest, known(22).box.rehearsal},
+                                          protectedRate, controls);
+        controls.margin = margin;
+        predistorter.set(controls);
+        std::vector<double> u(96000);
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = pressure.stimulus.peak * std::sin(0.1 * static_cast<double>(n));
+        predistorter.process(u.data(), u.data(), u.size());
+        CHECK(predistorter.collectMeters().powerReduction > 0.5);
+        return u;
+    };
+    CHECK((cooled(0.3) == cooled(0.0)));
+}
+
+TEST_CASE("A black box that is switched on while it still moves is planned for as it moves", "[protection]")
+{
+    double worst = 0.0;
+    for (const std::uint64_t seed : {23U})
+        for (int turn = 0; turn < 8; ++turn) {
+            const auto& one = known(seed);
+            const double f = one.resonance;
+            const auto period = static_cast<std::size_t>(protectedRate / f);
+            const std::size_t on = 12 * period + static_cast<std::size_t>(turn % 4) * period / 4,
+                              flip = on + 200 + static_cast<std::size_t>(turn / 4) * period / 4;
+            std::vector<double> u(on + 4 * period);
+            for (std::size_t n = 0; n < u.size(); ++n)
+                u[n] = 0.3 * one.box.box.stimulus.peak * (n < flip ? 1.0 : -1.0)
+                       * std::sin(2.0 * std::numbers::pi * f * static_cast<double>(n) / protectedRate);
+            const auto run = [&](double limit) {
+                PredistortionControls controls;
+                controls.displacementLimit = limit;
+                BlackBoxPredistorter predistorter(one.box, protectedRate, controls);
+                predistorter.turn(false);
+                predistorter.reset();
+                std::vector<double> out(u.size());
+                predistorter.process(u.data(), out.data(), on);
+                predistorter.turn(true);
+                predistorter.process(u.data() + on, out.data() + on, u.size() - on);
+                return moved(one.model, out);
+            };
+            const auto before = run(none);
+            const double limit = 1.1 * before.head(static_cast<Eigen::Index>(on)).cwiseAbs().maxCoeff();
+            const double reached = run(limit).cwiseAbs().maxCoeff() / limit;
+            worst = std::max(worst, reached);
+        }
+    INFO(worst);
+    CHECK(worst < 1.01);
+}
+
+TEST_CASE("What is far beyond the fit's peak is turned down, not taken for what is no number", "[protection]")
+{
+    const auto& one = known(22);
+    const double peak = one.box.box.stimulus.peak;
+    BlackBoxPredistorter predistorter(one.box, protectedRate);
+    std::vector<double> u(48000);
+    for (std::size_t n = 0; n < u.size(); ++n)
+        u[n] = 300.0 * peak * std::sin(2.0 * std::numbers::pi * 300.0 * static_cast<double>(n) / protectedRate);
+    auto out = u;
+    predistorter.process(u.data(), out.data(), u.size());
+    CHECK(predistorter.collectMeters().faults == 0);
+    CHECK(peakOf({out.begin() + 24000, out.end()}) > 0.1 * peak);
+    CHECK(peakOf(out) <= 1.5 * peak);
+}

@@ -340,6 +340,9 @@ TEST_CASE("predistort turns around a model without physics, and says what that g
     CHECK(cold.code == 2);
     CHECK(cold.err.find("--coil-resistance") != std::string::npos);
     CHECK(with({"--limit-p", "0.1", "--coil-resistance", "6"}).code == 1);
+    // One that is no control at all takes none of the limits away: nothing is written.
+    CHECK(with({"--limit-p", "0.1", "--coil-resistance", "1e6"}).code == 2);
+    CHECK(with({"--limit-x", "0.001", "--margin", "nan"}).code == 2);
     // Another resonance is put in its place.
     const auto aimed = with({"--target-f0", "50", "--limit-x", "0.1"});
     INFO(aimed.out << aimed.err);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A model that follows what has drifted, as a person asks for it on the last page.
+#include "Engine/Upkeep/Adaptation.h"
 #include "Plugin/Walk.h"
 
 #include <catch2/catch.hpp>
+
+#include <limits>
 
 using namespace excursion;
 using plugin::Editor;
@@ -45,6 +48,7 @@ TEST_CASE("A driver whose coil is warmer than its model follows the take, and th
     processor.session().wait();
     CHECK_FALSE(processor.session().status().trouble);
     editor.update();
+    editor.update();  // what has drifted stays told
     CHECK(processor.model().baseParameter("Re").value == Approx(fitted.baseParameter("Re").value).epsilon(0.01));
     juce::String told;
     for (auto* label : plugin::all<juce::Label>(editor.page(PageName::linearize)))
@@ -56,6 +60,34 @@ TEST_CASE("A driver whose coil is warmer than its model follows the take, and th
     CHECK(told.contains("f0"));
     editor.undo();
     CHECK(processor.model().baseParameter("Re").value == Approx(before.baseParameter("Re").value));
+    editor.update();
+    for (auto* label : plugin::all<juce::Label>(editor.page(PageName::linearize)))
+        CHECK_FALSE(label->getText().startsWith("Since it was fitted"));  // it is of a model that is gone
     // Once; and it is not taken again
     CHECK_FALSE(processor.session().takeAdapted());
+
+    // What a person has loaded meanwhile stays.
+    adapt->onClick();
+    processor.setModel(plugin::modelFromText(plugin::factoryDrivers().back().text, "a driver"));
+    processor.session().wait();
+    editor.update();
+    editor.update();
+    CHECK(processor.model().name == plugin::factoryDrivers().back().title);
+    CHECK(editor.status().contains("loaded meanwhile"));
+    CHECK_FALSE(processor.session().takeAdapted());
+}
+
+TEST_CASE("That nothing has drifted is said only where no parameter moved by more than its errors let it", "[adapt]")
+{
+    Adaptation adapted;
+    for (auto* comparison : {&adapted.before, &adapted.after}) {
+        comparison->noiseKnown = true;
+        comparison->chiSquaredPerValue = 1.1;
+    }
+    adapted.drift.parameters = {{"Re", "ohm", 3.30, 0.01, 3.31, 0.01}};
+    CHECK_THAT(sentenceOn(adapted), Catch::Contains("nothing has drifted"));
+    adapted.drift.parameters.push_back({"K", "N/m", 1850.0, 2.0, 1900.0, 2.0});
+    CHECK_THAT(sentenceOn(adapted), !Catch::Contains("nothing has drifted"));
+    adapted.drift.parameters.back().afterError = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THAT(sentenceOn(adapted), Catch::Contains("nothing has drifted"));
 }

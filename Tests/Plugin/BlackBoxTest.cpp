@@ -9,6 +9,7 @@
 #include "Engine/Signal/Level.h"
 #include "Plugin/Played.h"
 #include "Plugin/Processor.h"
+#include "Plugin/Walk.h"
 
 #include <catch2/catch.hpp>
 
@@ -563,4 +564,25 @@ TEST_CASE("Where a model without physics cannot run the signal goes through, unt
     CHECK_THROWS_AS(processor.setModel(box), Error);  // as another plays, it stays
     CHECK(processor.box() == nullptr);
     CHECK(processor.standstill().empty());
+}
+
+TEST_CASE("Of a model that knows no coil the page shows no heat, whatever its dials say", "[plugin][blackbox]")
+{
+    const auto voltage = boxes().front();
+    auto copy = std::make_shared<plugin::LoadedBox>(*voltage);
+    copy->played.box.input = "force";
+    const plugin::LoadedBoxPointer force = copy;
+    Processor processor;
+    auto recipe = processor.parameters().recipe();
+    recipe.powerLimit = 1.0;
+    recipe.coilResistance = 6.0;
+    processor.parameters().set(recipe);
+    plugin::Editor editor(processor);
+    editor.go(plugin::PageName::linearize);
+    for (const auto& [box, meters] : {std::pair {voltage, 3U}, {force, 2U}}) {
+        processor.setModel(box);
+        editor.update();
+        editor.update();
+        CHECK(plugin::all<plugin::Meter>(editor.page(plugin::PageName::linearize)).size() == meters);
+    }
 }

@@ -114,6 +114,22 @@ TEST_CASE("A person who just turns it on gets no more than the converter can giv
           < 1.01 * measuredDisplacement(processor.model()));
 }
 
+TEST_CASE("Switching effects off leaves the limit of the excursion where the model as it was loaded has it",
+          "[plugin][protection]")
+{
+    Processor processor;
+    const auto model = processor.model();
+    auto recipe = linearizing(40.0, 1000.0);
+    recipe.off = model.effectIds();
+    processor.parameters().set(recipe);
+    processor.prepareToPlay(rate, 256);
+    const auto u = tone(40.0, 1.0, 1.5);
+    const auto out = played(processor, u, [](std::size_t) {});
+    const auto running = withoutOff(model, recipe);
+    CHECK(farthest(running, u, recipe.fullScale) > 1.2 * measuredDisplacement(model));
+    CHECK(farthest(running, out, recipe.fullScale) < 1.01 * measuredDisplacement(model));
+}
+
 TEST_CASE("Turning the excursion down brakes nothing: no voltage above 5 kHz", "[plugin][protection]")
 {
     Processor processor;

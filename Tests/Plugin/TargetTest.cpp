@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A target in the plugin: played, kept, taken back, and told on the last page before it is used.
+#include "BlackBox/EveryClass.h"
 #include "Engine/Predistortion/TargetFilter.h"
 #include "Plugin/Played.h"
 #include "Plugin/Walk.h"
@@ -129,14 +130,27 @@ TEST_CASE("The last page tells what a target costs, also while it is not in use,
     const auto plots = plugin::all<plugin::PlotView>(panel);
     REQUIRE(plots.size() == 3);
     CHECK(plots[1]->plot().series.size() == 3);  // own, target, limit
+    auto without = processor.parameters().recipe();
+    without.off = processor.model().effectIds();
+    processor.parameters().set(without);
+    editor.update();
+    CHECK(told("Not in use: 40.0"));
+    CHECK(plots[1]->plot().series.size() == 3);  // the limit is that of the model as it was loaded
+    without.off.clear();
+    processor.parameters().set(without);
     put(processor, Mode::speaker, {Target::Kind::resonance, 30.0, 0.7, 0.02});
     CHECK(told("Not in use: 30.0"));
     put(processor, Mode::linearize, {Target::Kind::resonance, 30.0, 0.7, 0.02});
     CHECK(told("In use: 30.0"));
     put(processor, Mode::linearize, {Target::Kind::resonance, 5000.0, 0.7, 0.02});
     CHECK(told("out of reach"));
-    // Without a cone there is no target.
-    CHECK(panel.isVisible());
+    // What tells the current does not tell the cone.
+    const auto classes = everyClass();
+    const auto box = plugin::loadedBox(classes[1], "a test");
+    REQUIRE(box->played.box.output == "current");
+    processor.setModel(box);
+    put(processor, Mode::linearize, {Target::Kind::resonance, 30.0, 0.7, 0.02});
+    CHECK(told(box->played.rehearsal ? "cannot be given another resonance" : "not turned around has no target"));
 }
 
 TEST_CASE("A flat band and the response of a file are targets of the last page, told before they are used, kept with "

@@ -393,3 +393,33 @@ TEST_CASE("What a target costs is told as it is then found", "[predistortion][ta
     CHECK_THROWS_AS(forecastTarget(model, towards(2.0, 0.7), 10.0), Error);
     CHECK_THROWS_AS(forecastTarget(model, towards(30.0, 0.7), 0.0), Error);
 }
+
+TEST_CASE("The room that is told is there when it is played, margin and all", "[predistortion][target]")
+{
+    constexpr double rate = 48000.0;
+    const auto model = withStrong(midbass(), effectNamed("stiffness"));
+    auto controls = towards(35.0, 0.9);
+    controls.displacementLimit = xmax;
+    controls.margin = 0.15;
+    constexpr double volts = 10.0;
+    const auto told = forecastTarget(model, controls, volts);
+    const auto reductionAt = [&](const std::vector<double>& u, double db) {
+        Predistorter predistorter(model, {rate, 2}, controls);
+        auto loud = u;
+        for (auto& sample : loud)
+            sample *= volts * std::pow(10.0, 0.05 * db);
+        through(predistorter, loud);
+        return predistorter.collectMeters().displacementReduction;
+    };
+    double within = 0.0, beyond = 0.0;
+    for (const double f : {9.0, 14.0, 20.0, 28.0, 35.0, 50.0, 75.0, 120.0}) {
+        std::vector<double> u(static_cast<std::size_t>(1.5 * rate));
+        for (std::size_t n = 0; n < u.size(); ++n)
+            u[n] = std::min(1.0, 2.0 * static_cast<double>(n) / rate)
+                   * std::sin(2.0 * pi * f * static_cast<double>(n) / rate);
+        within = std::max(within, reductionAt(u, told.targetSine.roomDb - 0.5));
+        beyond = std::max(beyond, reductionAt(u, told.targetSine.roomDb + 1.0));
+    }
+    CHECK(within < 0.1);
+    CHECK(beyond > 0.3);
+}

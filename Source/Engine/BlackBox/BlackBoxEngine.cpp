@@ -35,6 +35,12 @@ void BlackBoxEngine::resetBending()
     std::fill(waiting_.begin(), waiting_.end(), 0.0);
 }
 
+void BlackBoxEngine::warm(double heat)
+{
+    if (bend_)
+        bend_->warm(heat);
+}
+
 void BlackBoxEngine::set(const PredistortionControls& controls)
 {
     if (bend_)

@@ -27,6 +27,8 @@ public:
     void reset() override;
     void resetBending() override;
     void resetPlaying() override { speaker_.reset(); }
+    double heat() const override { return bend_ ? bend_->heat() : 0.0; }
+    void warm(double heat) override;
     void set(const PredistortionControls&) override;
     void turn(bool bends) override;
     void setLinearShareRemoved(double share) override { speaker_.setLinearShareRemoved(share); }

@@ -168,7 +168,7 @@ void BlackBoxPredistorter::process(const double* in, double* out, std::size_t n)
 {
     const FlushSubnormals flush;
     for (std::size_t k = 0; k < n; ++k) {
-        const double u = protection_.step(protection_.sound(in[k]) ? target_.step(in[k]) : in[k]);
+        const double u = protection_.step(protection_.sound(in[k]) ? target_.step(protection_.bounded(in[k])) : in[k]);
         if (protection_.faulty())
             faults_.fetch_add(1, std::memory_order_relaxed);
         near_.aim(protection_.near());

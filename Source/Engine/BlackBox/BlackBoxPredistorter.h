@@ -52,6 +52,9 @@ public:
     /// correction has faded. Switched on again, it hears the signal for 0.1 s, and then the correction fades in.
     void turn(bool on);
 
+    double heat() const { return protection_.heat(); }  ///< W, see BoxProtection
+    void warm(double heat) { protection_.warm(heat); }
+
     /// @param in, out  n samples, may be the same place
     void process(const double* in, double* out, std::size_t n);
 

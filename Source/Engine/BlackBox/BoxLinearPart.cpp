@@ -2,6 +2,8 @@
 #include "Engine/BlackBox/BoxLinearPart.h"
 
 #include "Engine/BlackBox/BoxMotion.h"
+#include "Engine/BlackBox/BoxProtection.h"
+#include "Engine/BlackBox/RegionLimiter.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Predistortion/TargetFilter.h"
 
@@ -124,17 +126,24 @@ TargetForecast forecastTarget(const BlackBox& box, const Region& region, const R
                        level = std::isfinite(loudest) ? loudest : 0.0](double f) {
         return 20.0 * std::log10(std::abs(heard(f))) - level;
     };
+    subject.share = BoxProtection::share(box, rehearsal, controls.margin);
     subject.linearized = [&](const Target& target) -> ForecastSubject::Play {
         auto filter = std::make_shared<TargetFilter>(subject.own, box.linear.sampleRate);
         filter->aim(target);
         auto linearizer = std::make_shared<BlackBoxLinearizer>(box, region, rest, rehearsal.design);
-        return [&, filter, linearizer](const std::vector<double>& signal, std::size_t from, double level) {
+        auto limiter = std::make_shared<RegionLimiter>(box, region, box.linear.sampleRate);
+        return [&, filter, linearizer, limiter](const std::vector<double>& signal, std::size_t from, double level) {
             filter->reset();
             linearizer->reset();
+            limiter->reset();
             ForecastSubject::Peak peak;
             const auto late = static_cast<std::size_t>(linearizer->latency());
             for (std::size_t n = 0; n < signal.size() + late; ++n) {
-                const auto sample = linearizer->step(filter->step(n < signal.size() ? level * signal[n] : 0.0));
+                const double aimed = filter->step(n < signal.size() ? level * signal[n] : 0.0);
+                const auto sample = linearizer->step(aimed);
+                limiter->step(aimed);
+                if (n >= from)
+                    peak.region = std::max(peak.region, limiter->latest());
                 if (n < from + late)
                     continue;
                 const double out = sample.input + controls.amount * sample.correction;

@@ -33,6 +33,8 @@ std::vector<double> bandOf(const BlackBox& box)
 
 bool tellsExcursion(const BlackBox& box) { return box.output == "displacement"; }
 
+bool drivesCoil(const BlackBox& box) { return box.input == "voltage"; }
+
 BoxMotion::BoxMotion(const BlackBox& box)
 {
     linear.ohms = 1.0;

@@ -8,6 +8,8 @@ namespace excursion {
 
 /// Whether the model's output is the excursion, so that it can be limited.
 bool tellsExcursion(const BlackBox&);
+/// Whether its input is that of a coil, so that a limit of the power can be kept.
+bool drivesCoil(const BlackBox&);
 
 /// The motion that protection predicts a black box with: its linear part in continuous time, by the bilinear transform
 ///     z = (k + s)/(k - s),   k = w0/tan(w0/2 rate)

@@ -9,12 +9,18 @@
 namespace excursion {
 namespace {
 
-constexpr double beyondAll = 100.0;                    // of the peak
+constexpr double farBeyond = 100.0, beyondAll = 1e6;   // of the peak
 constexpr double silenceTime = 0.05, riseTime = 0.05;  // s, after a fault
 constexpr double apartTime = 0.2;                      // s
 constexpr double nearFrom = 0.6, nearTo = 0.8;         // of the limit of the excursion
 /// samples from the state of the cone to the next input
 constexpr double coneDelay = 1.0;
+
+/// The transform's error and what is always left of the distortion are never given away.
+double sureShare(const BoxMotion& motion, double apartAfter)
+{
+    return 1.0 / ((1.0 + motion.error) * (1.0 + apartAfter));
+}
 
 double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
 
@@ -31,6 +37,9 @@ BoxProtection::BoxProtection(const BlackBox& box, const Region& region, const Re
       nearness_(late / Protection::tick + 2),
       offset_(motion_.offset.data(), motion_.offset.data() + motion_.offset.size()),
       rest_(rest.q.data(), rest.q.data() + rest.q.size()),
+      moves_(tellsExcursion(box)),
+      coil_(drivesCoil(box)),
+      farBeyond_(farBeyond * box.stimulus.peak),
       beyondAll_(beyondAll * box.stimulus.peak),
       apartBefore_(rehearsal.apartBefore),
       apartAfter_(rehearsal.apartAfter),
@@ -57,13 +66,20 @@ void BoxProtection::reset()
     at_ = plainAt_ = 0;
 }
 
+double BoxProtection::share(const BlackBox& box, const BlackBoxRehearsal& rehearsal, double margin)
+{
+    const BoxMotion motion(box);
+    return Protection::share(motion.linear, margin) * sureShare(motion, rehearsal.apartAfter);
+}
+
 void BoxProtection::set(const PredistortionControls& controls, bool on)
 {
     on_ = on;
-    ohms_ = controls.coilResistance;
+    ohms_ = coil_ ? controls.coilResistance : 0.0;
     auto limits = controls;
-    // The transform's error and what is always left of the distortion are never given away.
-    limits.displacementLimit = controls.displacementLimit / ((1.0 + motion_.error) * (1.0 + apartAfter_));
+    if (!moves_)
+        limits.margin = 0.0;  // it is of the excursion
+    limits.displacementLimit = controls.displacementLimit * sureShare(motion_, apartAfter_);
     limits.powerLimit = ohms_ > 0.0 ? ohms_ * controls.powerLimit : std::numeric_limits<double>::infinity();
     limit_ = std::isfinite(limits.displacementLimit) ? limits.displacementLimit : 0.0;
     protection_.set(limits, on);
@@ -87,6 +103,7 @@ void BoxProtection::decide()
 double BoxProtection::step(double sample)
 {
     faulty_ = !sound(sample);
+    sample = bounded(sample);
     if (faulty_) {
         recovery_.fault();
         sample = 0.0;

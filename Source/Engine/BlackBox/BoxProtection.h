@@ -7,6 +7,7 @@
 #include "Engine/Predistortion/Protection.h"
 #include "Engine/Predistortion/Recovery.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -20,17 +21,23 @@ namespace excursion {
 ///    below 1. It is no less than the deviation in the rehearsal;
 ///  - the region of the fit and the peak of its input, which no signal may exceed: RegionLimiter;
 ///  - a coil, if its resistance is given, that is assumed to take all of the voltage.
-/// A sample that is not a number, or beyond 100 times the peak, is played as silence, and so is the signal around it.
+/// A sample that is not a number, or beyond any amplifier, is played as silence, and so is the signal around it. What
+/// is beyond 100 times the peak is clamped to that and turned down.
 class BoxProtection {
 public:
     /// @param late  samples from here to the output; a decision must last that long
     BoxProtection(const BlackBox&, const Region&, const Rest&, const BlackBoxRehearsal&, double sampleRate, int late);
+
+    /// What of a limit of the excursion is left to the signal.
+    static double share(const BlackBox&, const BlackBoxRehearsal&, double margin);
 
     int latency() const { return static_cast<int>(delayed_.size()) + Protection::latency; }
     void reset();
     void set(const PredistortionControls&, bool on);
 
     bool sound(double sample) const { return std::abs(sample) < beyondAll_; }  ///< not NaN, and not far too large
+
+    double bounded(double sample) const { return std::clamp(sample, -farBeyond_, farBeyond_); }
 
     /// @returns the sample of latency() ago, turned down if switched on
     double step(double sample);
@@ -47,6 +54,7 @@ public:
     double near() const { return near_; }  ///< 1: so near the excursion limit that all of the correction is needed
     double effort() const { return protection_.effort(); }  ///< factor of the power limit on the correction
     double heat() const { return ohms_ > 0.0 ? protection_.heat() / ohms_ : 0.0; }  ///< W
+    void warm(double heat) { protection_.warm(ohms_ * heat); }                      ///< W, that is there from before
     struct Reductions {  ///< factors, since the latest decision
         double region = 1.0;
         Protection::Factors factors;
@@ -63,7 +71,8 @@ private:
     Recovery recovery_;
     PeakHold apart_, nearness_;
     std::vector<double> offset_, rest_;  ///< m per q; q at rest
-    double beyondAll_, apartBefore_, apartAfter_;
+    bool moves_, coil_;
+    double farBeyond_, beyondAll_, apartBefore_, apartAfter_;
     bool on_ = true, faulty_ = false, decided_ = false;
     double ohms_ = 0.0, limit_ = 0.0;  ///< limit_: m, the limit for protection_; 0: none
     double region_ = 1.0, least_ = 1.0, amount_ = 1.0, near_ = 0.0, squares_ = 0.0;

@@ -54,7 +54,7 @@ double measuredDisplacement(const PlayedBox& played)
 
 std::string protectionOf(const PlayedBox& played, double coilResistance)
 {
-    const bool moves = tellsExcursion(played.box), coil = played.box.input == "voltage";
+    const bool moves = tellsExcursion(played.box), coil = drivesCoil(played.box);
     const std::string power = coil && coilResistance > 0.0 ? " and power" : "";
     std::string text = moves ? "Excursion, voltage" + power : "Voltage" + power;
     text += " and the region of the fit are limited";

@@ -42,7 +42,7 @@ void RegionLimiter::reset()
     std::fill(x_.begin(), x_.end(), 0.0);
     hold_.reset();
     level_ = 1.0;
-    out_ = 0.0;
+    out_ = latest_ = 0.0;
 }
 
 /// What the sample is of the most that may be: of the peak, or of the way to the region's border.
@@ -65,7 +65,8 @@ double RegionLimiter::levelOf(double sample)
 
 double RegionLimiter::step(double sample)
 {
-    const double held = hold_.step(levelOf(sample));
+    latest_ = levelOf(sample);
+    const double held = hold_.step(latest_);
     level_ = std::max({1.0, held, 1.0 + decay_ * (level_ - 1.0)});
     return 1.0 / level_;
 }

@@ -23,6 +23,7 @@ public:
     /// @param sample  finite
     /// @returns the factor, 0 to 1, of the sample of reach() ago and those around it
     double step(double sample);
+    double latest() const { return latest_; }  ///< what the latest sample is of the most that may be
 
 private:
     double levelOf(double sample);
@@ -34,7 +35,7 @@ private:
     PaddedMatrix whiten_;
     double out_ = 0.0;  ///< how far out the latest place is
     PeakHold hold_;
-    double level_ = 1.0;
+    double level_ = 1.0, latest_ = 0.0;
 };
 
 }  // namespace excursion

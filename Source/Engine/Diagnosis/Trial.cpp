@@ -94,15 +94,20 @@ FitSummary quickFit(Model& model, const Record& record, const std::vector<std::s
     return fit(model, record, sections, played, progress.part(0.2, 1.0));
 }
 
+/// Fed laws never run away: a law that leaves the coil no inductance looks like any other.
+bool canBeSimulated(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                    const FitOptions& options)
+{
+    return std::isfinite(costOf(model, outputError(model, record, sections, {}, withoutGradient(options))));
+}
+
 FitSummary fitFed(Model& model, const Record& record, const std::vector<std::size_t>& sections, FitOptions options,
                   const Progress& progress)
 {
     auto found = model;
     const auto summary = quickFit(found, record, sections, options, progress);
     options.fed = false;
-    if (hasPeriods(record)
-        && !(summary.usable()
-             && std::isfinite(costOf(found, outputError(found, record, sections, {}, withoutGradient(options))))))
+    if (hasPeriods(record) && !(summary.usable() && canBeSimulated(found, record, sections, options)))
         return fit(model, record, sections, options, progress);
     model = std::move(found);
     return summary;
@@ -118,10 +123,10 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     const auto left = [&](const Model& candidate) { return quickCost(candidate, record, sections, chosen); };
     Model best = newestScaled(model, 0.0);
     double lowest = left(best);
-    for (const double factor : {1.0, 0.5, 0.2}) {
+    for (const double factor : {1.0, 0.5, 0.2, 0.05}) {
         const Model candidate = newestScaled(model, factor);
         const double cost = left(candidate);
-        if (cost < lowest) {
+        if (cost < lowest && canBeSimulated(candidate, record, sections, chosen)) {
             lowest = cost;
             best = candidate;
             break;

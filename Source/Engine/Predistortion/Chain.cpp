@@ -23,6 +23,7 @@ Chain::Chain(const Model& model, const RealTimeOptions& options, const ChainCont
 
 Chain::Chain(std::unique_ptr<ChainEngine> engine, double sampleRate, const ChainControls& controls)
     : engine_(std::move(engine)),
+      rate_(sampleRate),
       wet_(static_cast<int>(fadeTime * sampleRate), engine_->latency()),
       played_(static_cast<int>(fadeTime * sampleRate), 0),
       fullScale_(levelTime, sampleRate),
@@ -41,8 +42,11 @@ void Chain::set(const ChainControls& controls)
     const bool bends = mode == Mode::linearize || mode == Mode::audition,
                plays = mode != Mode::bypass && mode != Mode::linearize;
     if (mode != Mode::bypass) {
-        if (!wet_.runs()) {  // what is switched in finds nothing of before
+        if (!wet_.runs()) {  // what is switched in finds nothing of before but the coil's heat
+            const double left = heat();
             engine_->resetBending();
+            engine_->warm(left);
+            rest_ = 0.0;
             played_.turn(plays);
             played_.jump();
         }
@@ -71,9 +75,22 @@ void Chain::set(const ChainControls& controls)
     }
 }
 
+/// W, of the coil, which cools while the engine rests.
+double Chain::heat() const
+{
+    return engine_->heat() * std::exp(-rest_ / (rate_ * PredistortionControls::averagingTime));
+}
+
+void Chain::takeOver(const Chain& before)
+{
+    engine_->warm(before.heat());
+    rest_ = 0.0;
+}
+
 void Chain::reset()
 {
     engine_->reset();
+    rest_ = 0.0;
     wet_.jump();
     played_.jump();
     for (auto* level : {&fullScale_, &before_, &after_})
@@ -112,6 +129,8 @@ void Chain::process(const double* in, double* out, std::size_t n)
         }
         if (runs)
             engine_->process(block_.data(), taken, played_);
+        else
+            rest_ += static_cast<double>(taken);
         for (std::size_t k = 0; k < taken; ++k) {
             if (!runs && !std::isfinite(in[k]))
                 faults_.fetch_add(1, std::memory_order_relaxed);

@@ -37,6 +37,8 @@ public:
     int latency() const { return engine_->latency(); }  ///< samples; fixed
     void reset();
     void set(const ChainControls&);
+    /// The coil is as warm as another chain left it that played until now.
+    void takeOver(const Chain& before);
     void process(const double* in, double* out, std::size_t n);
 
     using Meters = ChainEngine::Meters;  ///< faults: includes samples that were not finite
@@ -44,8 +46,11 @@ public:
 
 private:
     double delayed(double sample, double& scale);
+    double heat() const;
 
     std::unique_ptr<ChainEngine> engine_;
+    double rate_;        ///< Hz
+    double rest_ = 0.0;  ///< samples for which the engine has not run
     Fade wet_, played_;  ///< weight of the processed signal; within it, weight of the loudspeaker
     /// before_, after_: the two places of the trim; plainGain_: keeps the unprocessed signal within the limit while it
     /// fades

@@ -25,6 +25,9 @@ public:
     virtual void resetBending() = 0;  ///< the predistorter is off, and its memory is cleared
     virtual void resetPlaying() = 0;  ///< the loudspeaker is at rest
 
+    virtual double heat() const = 0;     ///< W, running mean of the coil's heat; 0 if not known
+    virtual void warm(double heat) = 0;  ///< W, the heat that is there from before
+
     virtual void set(const PredistortionControls&) = 0;  ///< new targets; a class ignores those that it lacks
     virtual void turn(bool bends) = 0;                   ///< if off, the predistorter passes the signal unchanged
     /// @param share  how much of the linear loudspeaker's output is subtracted, 0 to 1; followed smoothly

@@ -12,7 +12,8 @@ namespace excursion {
 
 /// Plays the engine that was handed over last. When a new one comes, both run. The new one is silent at first, until
 /// its memory of the signal is filled. Then the old one fades into the new. A third one that is offered meanwhile
-/// waits. Before the first engine comes, the signal passes unchanged. Engines have process(const double* in, double*
+/// waits. Before the first engine comes, the signal passes unchanged. Engines with
+/// takeOver(const Engine& before) are given the old one as they come in. Engines have process(const double* in, double*
 /// out, std::size_t n). If their latencies differ, the signal fades from one delay to the other.
 template <class Engine>
 class Crossfade {
@@ -61,6 +62,9 @@ public:
                 if (auto* parcel = handover_.accept()) {
                     old_ = now_;
                     now_ = parcel;
+                    if constexpr (requires(Engine & next, const Engine& before) { next.takeOver(before); })
+                        if (old_)
+                            now_->engine->takeOver(*old_->engine);
                     unheard_ = warm_ + std::max(parcel->warm, 0);
                     left_ = unheard_ + length_;
                     fade_.turn(false);

@@ -21,6 +21,8 @@ public:
     void reset() override;
     void resetBending() override;
     void resetPlaying() override { cone_.reset(); }
+    double heat() const override { return bend_.heat(); }
+    void warm(double heat) override { bend_.warm(heat); }
     void set(const PredistortionControls& controls) override { bend_.set(controls); }
     void turn(bool bends) override { bend_.turn(bends); }
     void setLinearShareRemoved(double share) override { cone_.setLinearShareRemoved(share); }

@@ -33,6 +33,12 @@ public:
     double factor() const { return factor_.value(); }
     double effort() const { return effort_.value(); }  ///< factor on the amount of linearization
     double mean() const { return mean_; }              ///< y, W
+    /// The coil is that warm already: y, W. Where that is above the limit it is led down to it.
+    void warm(double mean)
+    {
+        mean_ = mean;
+        leads_ = true;
+    }
 
 private:
     double ohms_, byInput_, share_, forgetting_;

@@ -59,6 +59,9 @@ public:
     std::size_t room() const { return protection_.left(); }  ///< 1 to longestPart samples
     void publish();                                          ///< makes the latest output visible to collectMeters()
 
+    double heat() const { return protection_.heat(); }  ///< W, the running mean of the coil's heat
+    void warm(double heat) { protection_.warm(heat); }  ///< so much of it is there from before, W
+
     /// Since the last call of collectMeters(); may be read from another thread.
     struct Meters {
         double displacement = 0.0;  ///< peak of a cone driven by the output, m

@@ -39,6 +39,9 @@ Eigen::VectorXd planTimes(double f0, double rate, int known, int planStep)
     return times;
 }
 
+/// What a margin leaves of the limit.
+double leftBy(double uncertainty, double margin) { return std::exp(-uncertainty * margin); }
+
 int roundedUp(double samples, int step) { return static_cast<int>(std::ceil(samples / step)) * step; }
 
 }  // namespace
@@ -121,12 +124,14 @@ void Protection::reset()
     factors_ = {};
 }
 
+double Protection::share(const LinearMotion& motion, double margin) { return leftBy(motion.uncertainty, margin); }
+
 void Protection::set(const PredistortionControls& controls, bool on)
 {
     // What is switched on holds at once, for all that comes from now on.
     const bool fresh = on && !on_;
     on_ = on;
-    displacement_.aim(on ? std::exp(uncertainty_ * controls.margin) * reciprocal(controls.displacementLimit) : 0.0);
+    displacement_.aim(on ? reciprocal(controls.displacementLimit) / leftBy(uncertainty_, controls.margin) : 0.0);
     voltage_.aim(on ? reciprocal(controls.voltageLimit) : 0.0);
     power_.aim(on && heated_ ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin))
                              : 0.0);
@@ -136,6 +141,7 @@ void Protection::set(const PredistortionControls& controls, bool on)
         std::fill(past_.begin(), past_.end(), Limits {displacement_.value(), voltage_.value()});
         for (auto& wish : wish_)
             wish.reset();
+        undiminished_ = 0;  // the cone may still move, of which the wish knows nothing
     }
 }
 
@@ -171,11 +177,11 @@ void Protection::plan(const Eigen::Map<const Eigen::VectorXd>& cone, bool astray
 {
     const double limit = displacementNow_;
     share_ = 0.0;
-    if (!(limit > 0.0))
-        return;
     // As long as nothing is turned down the cone is where the wish was, and what it will do has been looked at there.
     const bool undiminished = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
     undiminished_ = undiminished && !astray ? std::min(undiminished_ + 1, settled_) : 0;
+    if (!(limit > 0.0))
+        return;
     if (undiminished_ == settled_) {
         share_ = reach_;
         return;

@@ -48,6 +48,9 @@ public:
 
     void reset();
 
+    /// The share of an excursion limit that the margin leaves to the signal.
+    static double share(const LinearMotion&, double margin);
+
     /// New limits from the controls, or none.
     void set(const PredistortionControls&, bool on);
 
@@ -71,6 +74,7 @@ public:
 
     double voltageLimit() const { return voltageNow_; }  ///< V, of the output at the moment
     double heat() const { return cool_.mean(); }         ///< W, the running mean
+    void warm(double heat) { cool_.warm(heat); }         ///< W, running mean from before
     /// factor of the power limit on the amount of linearization
     double effort() const { return cool_.effort(); }
     /// How close the cone will come to its limit, by the latest plan; 0: there is no limit.

@@ -27,7 +27,7 @@ bool PredistortionControls::isValid(std::string* reason) const
     if (!(margin >= 0.0 && margin <= 0.3))
         return refuse(reason, "the margin must lie between 0 and 0.3");
     if (!(coilResistance >= 0.0 && coilResistance < 1e6))
-        return refuse(reason, "the resistance of a coil cannot be negative");
+        return refuse(reason, "the resistance of a coil must lie between 0 and 1e6 ohm");
     return target.isValid(reason);
 }
 

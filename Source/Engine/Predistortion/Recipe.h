@@ -66,6 +66,7 @@ Model withoutOff(const Model&, const Recipe&);
 
 /// The controls of a predistorter. Its output never exceeds full scale, as no converter gives more. The first function
 /// is safe on an audio thread.
+/// The second is of a model as it was loaded, with the effects that are switched off: they say how far it was measured.
 PredistortionControls controlsOf(const Settings&, double measuredDisplacement);
 PredistortionControls controlsOf(const Recipe&, const Model&);
 

@@ -3,7 +3,9 @@
 
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Predistortion/DriverMotion.h"
 #include "Engine/Predistortion/Linearizer.h"
+#include "Engine/Predistortion/Protection.h"
 #include "Engine/Predistortion/Speaker.h"
 #include "Engine/Predistortion/TargetFilter.h"
 #include "Engine/Signal/Level.h"
@@ -14,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <tuple>
 
 namespace excursion {
 namespace {
@@ -50,7 +53,7 @@ public:
             if (!std::isfinite(out))
                 peak.voltage = none;
             if (!std::isfinite(x))
-                return {none, none};
+                return {none, none, 0.0};
             if (n < from)
                 continue;
             peak.displacement = std::max(peak.displacement, std::abs(x));
@@ -65,27 +68,45 @@ private:
     double amount_;
 };
 
-/// @param signal  V, peak of `volts`; what comes before `from` is not judged
-TargetForecast::Peaks judged(const ForecastSubject::Play& play, const PredistortionControls& controls,
-                             const std::vector<double>& signal, std::size_t from)
+/// By how much a signal with that peak may be louder, and what comes first.
+struct Room {
+    double factor = none;
+    TargetForecast::Peaks::First first = TargetForecast::Peaks::First::displacement;
+};
+
+Room roomOf(const Peak& peak, double displacementLimit, double voltageLimit)
 {
+    using First = TargetForecast::Peaks::First;
+    Room room;
+    for (const auto& [value, limit, which] : {std::tuple {peak.displacement, displacementLimit, First::displacement},
+                                              {peak.voltage, voltageLimit, First::voltage},
+                                              {peak.region, 1.0, First::region}})
+        if (value > 0.0 && limit / value < room.factor)
+            room = {limit / value, which};
+    return room;
+}
+
+/// @param signal  V, peak of `volts`; what comes before `from` is not judged
+TargetForecast::Peaks judged(const ForecastSubject& subject, const ForecastSubject::Play& play,
+                             const PredistortionControls& controls, const std::vector<double>& signal, std::size_t from)
+{
+    const double limit = subject.share * controls.displacementLimit;
     auto peak = play(signal, from, 1.0);
-    TargetForecast::Peaks peaks {peak.displacement, peak.voltage, 0.0, true};
-    if (const double room = controls.displacementLimit / peak.displacement; room < 1.0)
+    TargetForecast::Peaks peaks {peak.displacement, peak.voltage, 0.0, {}};
+    if (const double room = roomOf(peak, limit, none).factor; room < 1.0)
         peaks.voltage = play(signal, from, room).voltage;
-    if (std::isinf(controls.displacementLimit) && std::isinf(controls.voltageLimit)) {
-        peaks.roomDb = none;
-        return peaks;
-    }
     // How far a linearized driver goes is proportional to the signal, what voltage that takes is nearly so.
     double level = 1.0;
     for (int k = 0; k < 10; ++k) {
-        const double byMotion = peak.displacement > 0.0 ? controls.displacementLimit / peak.displacement : none,
-                     byVoltage = controls.voltageLimit / peak.voltage, room = std::min(byMotion, byVoltage);
-        peaks.byDisplacement = byMotion < byVoltage;
-        if (room >= 1.0 && (room < 1.003 || level >= mostRoom))
+        const auto room = roomOf(peak, limit, controls.voltageLimit);
+        peaks.first = room.first;
+        if (std::isinf(room.factor)) {
+            peaks.roomDb = none;
+            return peaks;
+        }
+        if (room.factor >= 1.0 && (room.factor < 1.003 || level >= mostRoom))
             break;
-        level = std::min(level * std::clamp(0.999 * room, 0.1, mostRoom), mostRoom);
+        level = std::min(level * std::clamp(0.999 * room.factor, 0.1, mostRoom), mostRoom);
         peak = play(signal, from, level);
     }
     peaks.roomDb = inDecibels(level);
@@ -109,10 +130,11 @@ std::vector<double> pink(const ForecastSubject& subject, double low, double volt
     return signal;
 }
 
-TargetForecast::Peaks worstSine(const ForecastSubject::Play& play, const PredistortionControls& controls, double rate,
-                                double low, double high, double volts)
+TargetForecast::Peaks worstSine(const ForecastSubject& subject, const ForecastSubject::Play& play,
+                                const PredistortionControls& controls, double low, double high, double volts)
 {
-    TargetForecast::Peaks worst {0.0, 0.0, none, true};
+    const double rate = subject.sampleRate;
+    TargetForecast::Peaks worst {0.0, 0.0, none, {}};
     for (int k = 0; k < sines; ++k) {
         const double f = low * std::pow(high / low, static_cast<double>(k) / (sines - 1));
         const auto from = static_cast<std::size_t>((0.15 + 4.0 / f) * rate),
@@ -120,12 +142,12 @@ TargetForecast::Peaks worstSine(const ForecastSubject::Play& play, const Predist
         std::vector<double> signal(length);
         for (std::size_t n = 0; n < length; ++n)
             signal[n] = volts * std::sin(2.0 * pi * f * static_cast<double>(n) / rate);
-        const auto peaks = judged(play, controls, signal, from);
+        const auto peaks = judged(subject, play, controls, signal, from);
         worst.displacement = std::max(worst.displacement, peaks.displacement);
         worst.voltage = std::max(worst.voltage, peaks.voltage);
         if (peaks.roomDb < worst.roomDb) {
             worst.roomDb = peaks.roomDb;
-            worst.byDisplacement = peaks.byDisplacement;
+            worst.first = peaks.first;
         }
     }
     return worst;
@@ -181,9 +203,9 @@ TargetForecast forecastTarget(const ForecastSubject& subject, const Predistortio
     const auto signal = pink(subject, std::min(20.0, lower / 3.0), volts);
     const auto judge = [&](const Target& target, TargetForecast::Peaks& byPink, TargetForecast::Peaks& bySine) {
         const auto play = subject.linearized(target);
-        byPink = judged(play, controls, signal, signal.size() / 2);
-        bySine = worstSine(play, controls, subject.sampleRate, lower / 4.0,
-                           std::min(4.0 * higher, 0.4 * subject.sampleRate), volts);
+        byPink = judged(subject, play, controls, signal, signal.size() / 2);
+        bySine = worstSine(subject, play, controls, lower / 4.0, std::min(4.0 * higher, 0.4 * subject.sampleRate),
+                           volts);
     };
     judge({}, told.ownPink, told.ownSine);
     if (controls.target.kind == Target::Kind::own) {
@@ -216,6 +238,7 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
             return inDecibels(w * w * std::abs(motion(f)) / flat);
         };
     }
+    subject.share = Protection::share(linearMotion(undonePart(model), rate), controls.margin);
     subject.linearized = [&model, &own = subject.own, amount = controls.amount](const Target& target) {
         auto driver = std::make_shared<Rehearsed>(model, own, amount, target);
         return [driver](const std::vector<double>& signal, std::size_t from, double level) {

@@ -13,6 +13,7 @@ namespace excursion {
 struct ForecastSubject {
     struct Peak {
         double displacement = 0.0, voltage = 0.0;  ///< m, V (or N)
+        double region = 0.0;                       ///< of where a model without physics was fitted, 1: all of that
     };
     /// Plays a signal, V, scaled by level, and gives the peaks after sample `from`. An infinite peak means that the
     /// motion ran away.
@@ -25,6 +26,7 @@ struct ForecastSubject {
     std::function<std::complex<double>(double)> motion;  ///< m per V (or N) at a frequency; none: not known
     std::function<double(double)> soundDb;               ///< response of the sound; its level does not matter
     std::function<Play(const Target&)> linearized;       ///< linearized to a target, without limits
+    double share = 1.0;  ///< of the excursion limit that the protection leaves to a signal
 };
 
 /// What a target costs a loudspeaker, predicted before it is used.
@@ -47,9 +49,10 @@ struct TargetForecast {
         double displacement = 0.0;  ///< m
         double voltage = 0.0;       ///< V (or N)
         /// dB: how much louder the signal may be (or softer it must be) for excursion and voltage to stay within the
-        /// limits; infinite without any. No more than 40.
+        /// limits, margin included, and a model without physics within the region of its fit; infinite without any. No
+        /// more than 40.
         double roomDb = 0.0;
-        bool byDisplacement = true;  ///< the excursion limit comes first
+        enum class First { displacement, voltage, region } first = First::displacement;  ///< what is met first
     };
     Peaks ownPink, targetPink;  ///< pink, of random phases, from 20 Hz (or a third of the lower resonance) to 5 kHz
     Peaks ownSine, targetSine;  ///< the worst sine from a quarter of the lower resonance to four times the higher one

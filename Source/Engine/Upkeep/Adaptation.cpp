@@ -5,6 +5,7 @@
 #include "Engine/Error.h"
 #include "Engine/Predistortion/RealTime.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace excursion {
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double farther = 1.05;   // than was measured, which is of no matter
 constexpr double explained = 4.0;  // misfit up to which drift is all there is
+constexpr double certain = 3.0;    // standard errors, from which on a parameter has drifted
 
 void requireSameKind(const Model& model, const PreparedTake& take)
 {
@@ -23,6 +25,13 @@ void requireSameKind(const Model& model, const PreparedTake& take)
     throw Error(Error::Kind::data,
                 coil ? "The model has no coil, but the take drives one by a voltage; fit a model to this take."
                      : "The model has a coil, but the take drives the cone by a force; fit a model to this take.");
+}
+
+/// Whether any parameter moved by more than its errors let it.
+bool drifted(const Drift& drift)
+{
+    return std::any_of(drift.parameters.begin(), drift.parameters.end(),
+                       [](const Drifted& one) { return one.certainty() > certain; });
 }
 
 }  // namespace
@@ -53,7 +62,7 @@ std::string sentenceOn(const Adaptation& adapted)
     if (!after.noiseKnown)
         return {};
     if (after.chiSquaredPerValue <= explained)
-        return before.chiSquaredPerValue <= explained
+        return before.chiSquaredPerValue <= explained && !drifted(adapted.drift)
                    ? "The model was right before: nothing has drifted that this take can see."
                    : "That is all that has changed: what is left is the noise.";
     if (adapted.beyond)
