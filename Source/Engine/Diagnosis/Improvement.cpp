@@ -147,10 +147,10 @@ std::vector<Rung> Improvement::rungsTogether(const Record& record, const Progres
     if (!hasPeriods(record) || base.diagnosis.verdict == Verdict::complete || (backed < 2 && oneIsKnown))
         return {};
     const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
-    if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown) || !tryCompare(whole.model, record))
+    if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown))
         return {};
     auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
-    if (!(rungs.back().comparison.chiSquaredPerValue < base.comparison.chiSquaredPerValue))
+    if (rungs.empty() || !(rungs.back().comparison.chiSquaredPerValue < base.comparison.chiSquaredPerValue))
         return {};
     return rungs;
 }

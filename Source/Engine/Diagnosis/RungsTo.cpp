@@ -93,6 +93,9 @@ Diagnosis diagnosisOf(const Rung& rung, const Rung& next, const std::vector<Scor
 std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, const DiagnoseOptions& options,
                           const Progress& progress)
 {
+    const auto reached = tryCompare(whole.model, record);
+    if (!reached)
+        return {};
     const auto count = static_cast<double>(whole.model.components.size() - base.model.components.size());
     ScoreOptions test;
     test.threads = options.fit.threads;
@@ -115,13 +118,14 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
             if (trial.model.components.size() == whole.model.components.size()) {
                 trial.model = whole.model;
                 trial.fit = whole.fit;
+                trial.comparison = *reached;
             } else {
                 trial.fit = fitFed(trial.model, record, estimationSections(record), brief, part.part(0.4, 0.9));
+                auto comparison = tryCompare(trial.model, record);
+                if (!comparison)
+                    continue;
+                trial.comparison = std::move(*comparison);
             }
-            auto comparison = tryCompare(trial.model, record);
-            if (!comparison)
-                continue;
-            trial.comparison = std::move(*comparison);
             if (next.added.empty() || trial.comparison.chiSquaredPerValue < next.comparison.chiSquaredPerValue)
                 next = std::move(trial);
             if (next.comparison.chiSquaredPerValue < rung.comparison.chiSquaredPerValue)

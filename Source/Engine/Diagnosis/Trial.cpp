@@ -121,12 +121,13 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     if (chosen.substeps == 0)
         chosen.substeps = substepsFor(model, record, options.simulationTolerance);
     const auto left = [&](const Model& candidate) { return quickCost(candidate, record, sections, chosen); };
+    const bool simulated = chosen.fedGradient || !hasPeriods(record);  // what left() tells
     Model best = newestScaled(model, 0.0);
     double lowest = left(best);
     for (const double factor : {1.0, 0.5, 0.2, 0.05}) {
         const Model candidate = newestScaled(model, factor);
         const double cost = left(candidate);
-        if (cost < lowest && canBeSimulated(candidate, record, sections, chosen)) {
+        if (cost < lowest && (simulated || canBeSimulated(candidate, record, sections, chosen))) {
             lowest = cost;
             best = candidate;
             break;
