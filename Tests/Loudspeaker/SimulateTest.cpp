@@ -173,6 +173,25 @@ TEST_CASE("The simulation is that of the classical Runge-Kutta method at a fine 
     CHECK(largest(run.acceleration, acceleration) < 1e-5 * peakIn(acceleration));
 }
 
+TEST_CASE("A coil keeps an inductance where a law leaves it none", "[simulate]")
+{
+    constexpr double sampleRate = 48000.0;
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("inductance-position"), someOperatingRange(1.0));
+    model.components.back().parameters.front().value = -3.0 * model.baseParameter("Le").value;
+    const auto u = burst(sampleRate, 0.1, 12.0);
+    Trajectory run;
+    REQUIRE(integrate(model, Drive(u, sampleRate, 8), 0, run));
+    const double x = *std::max_element(run.displacement.begin(), run.displacement.end());
+    const double Le = model.baseParameter("Le").value;
+    const auto& law = model.components.back();
+    CHECK(law.effect->lawAt(law.operatingRange, valuesOf(law).data(), x) < -Le);  // the law says less than none there
+    const Dynamics<double> dynamics(model, values(model));
+    std::vector<double> z(static_cast<std::size_t>(dynamics.order()), 0.0), rate = z;
+    z[1] = x;
+    dynamics.rates(z.data(), 1.0, rate.data());
+    CHECK(rate[0] == Approx(1.0 / (Le / 40.0)));
+}
+
 TEST_CASE("Energy in is energy lost and energy stored, at any time", "[simulate]")
 {
     constexpr double sampleRate = 48000.0, h = 1.0 / sampleRate;

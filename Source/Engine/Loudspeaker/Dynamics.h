@@ -9,7 +9,8 @@ namespace excursion {
 
 /// The differential equations of a model, generic in the number type. State z = (i, x, v, memories of the components in
 /// order); the input is the voltage, or the force for a mechanical-only driver.
-///     di/dt = (u - drop - fluxSlope v) / inductance,   dx/dt = v,   dv/dt = force / mass
+///     di/dt = (u - drop - fluxSlope v) / keptInductance(inductance, inductance(0)),   dx/dt = v,
+///     dv/dt = force / mass
 /// The model must outlive the dynamics.
 template <class T>
 class Dynamics {
@@ -35,6 +36,9 @@ public:
         path_.assign(static_cast<std::size_t>(model.path.effect->coefficientCount(model.path.operatingRange)), T(0.0));
         model.path.effect->prepare(model.path.operatingRange, parameters.data() + offset, path_.data());
         radiation_ = &model.path;
+        const std::vector<T> rest(static_cast<std::size_t>(order_), T(0.0));
+        auto unused = rest;
+        inductanceAtRest_ = balance(rest.data(), unused.data()).inductance;
     }
 
     int order() const { return order_; }
@@ -42,14 +46,10 @@ public:
     /// dz/dt at state z under input u, and a force on the cone.
     void rates(const T* z, const T& u, T* dz, const T& push = T(0.0)) const
     {
-        const Motion<T> at {z[0], z[1], z[2]};
-        Balance<T> sum;
-        for (const auto& part : parts_)
-            part.effect->contribute(*part.operatingRange, coefficients_.data() + part.coefficients, at, z + part.memory,
-                                    dz + part.memory, sum);
-        dz[1] = at.v;
+        const auto sum = balance(z, dz);
+        dz[1] = z[2];
         if (electrical_) {
-            dz[0] = (u - sum.drop - sum.fluxSlope * at.v) / sum.inductance;
+            dz[0] = (u - sum.drop - sum.fluxSlope * z[2]) / keptInductance(sum.inductance, inductanceAtRest_);
             dz[2] = (sum.force + push) / sum.mass;
         } else {
             dz[0] = T(0.0);
@@ -70,6 +70,16 @@ public:
     }
 
 private:
+    /// The sum of all contributions at a state; sets the rates of the memories.
+    Balance<T> balance(const T* z, T* dz) const
+    {
+        Balance<T> sum;
+        for (const auto& part : parts_)
+            part.effect->contribute(*part.operatingRange, coefficients_.data() + part.coefficients, {z[0], z[1], z[2]},
+                                    z + part.memory, dz + part.memory, sum);
+        return sum;
+    }
+
     struct Part {
         const Effect* effect;
         const OperatingRange* operatingRange;
@@ -81,6 +91,7 @@ private:
     int order_ = 3;
     std::vector<Part> parts_;
     std::vector<T> coefficients_, path_;
+    T inductanceAtRest_ {0.0};
     const Component* radiation_;
 };
 

@@ -36,6 +36,20 @@ struct Balance {
     T mass {0.0};        ///< kg
 };
 
+/// What a coil keeps of its inductance L = d(phi)/di, with L0 at rest and l = L0/40, the share of air:
+///     L from 2 l on,   l + L^2/(4 l) from 0 to 2 l,   l below.
+/// Iron can be saturated or left, no more. A law that says less has been bent where the take seldom was; without this
+/// bound its current would run away.
+template <class T>
+T keptInductance(const T& L, const T& L0)
+{
+    constexpr double air = 1.0 / 40.0;
+    const T l = air * L0;
+    if (L > 2.0 * l)
+        return L;
+    return L > T(0.0) ? l + L * L / (4.0 * l) : l;
+}
+
 /// The output of the driver at an instant, from the base's motion and the effects. The microphone at distance d
 /// measures
 ///     p(t + lateness) = rho/(2 pi d) area acceleration     (a half space; rho = 1.2 kg/m^3),

@@ -176,8 +176,8 @@ void ExponentialStep::ask(double u, double* N)
                                           y_.data() + motions + law.memory, N + rates + law.memory, sum);
     // The linear part's drop is u - L A_i z - u, its force m A_v z; the whole drop and force act on the whole
     // inductance and mass.
-    N[0] = electrical_ ? (inductance_ * y_[3] + u - sum.drop - sum.fluxSlope * y_[2]) / (inductance_ + sum.inductance)
-                             - y_[3] - u * byVoltage_
+    const double L = keptInductance(inductance_ + sum.inductance, inductance_);
+    N[0] = electrical_ ? (inductance_ * y_[3] + u - sum.drop - sum.fluxSlope * y_[2]) / L - y_[3] - u * byVoltage_
                        : 0.0;
     const double force = mass_ * (y_[4] + motion(u));
     N[1] = (force + sum.force) / (mass_ + sum.mass) - y_[4] - motion(u);

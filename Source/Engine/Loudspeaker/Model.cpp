@@ -115,6 +115,11 @@ Model withEffect(Model model, const Effect& effect, const OperatingRange& visite
         component.parameters[k].value = values[k];
     for (auto& p : component.parameters)
         p.free = movable(model, effect, p);
+    return withComponent(std::move(model), std::move(component));
+}
+
+Model withComponent(Model model, Component component)
+{
     model.components.push_back(std::move(component));
     model.covariance.resize(0, 0);
     return model;
@@ -147,7 +152,8 @@ Model withoutEffect(Model model, std::string_view effectId)
 
 Model linearPart(Model model)
 {
-    std::erase_if(model.components, [](const Component& c) { return !c.effect->linear(); });
+    if (std::erase_if(model.components, [](const Component& c) { return !c.effect->linear(); }) > 0)
+        model.covariance.resize(0, 0);
     return model;
 }
 

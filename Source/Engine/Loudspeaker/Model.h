@@ -75,6 +75,8 @@ Model makeModel(std::string_view baseId);
 bool movable(const Model&, const Effect&, const Parameter&);
 /// The model with this effect at zero strength (its first start unless another is given).
 Model withEffect(Model, const Effect&, const OperatingRange&, std::size_t start = 0);
+/// The model with one more component as it is. The covariance goes: it tells nothing of the new parameters.
+Model withComponent(Model, Component);
 /// Adjusts every component to the others: OperatingRange::scale of an effect follows its base parameter. Parameters
 /// that have a meaning only with other effects are free if these are present, or else zero.
 void followOthers(Model&);

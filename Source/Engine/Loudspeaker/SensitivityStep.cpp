@@ -214,7 +214,11 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
     }
     // Rates g of the linear part and f of the whole.
     const double L0 = motion_.inductance_, m0 = motion_.mass_, m = m0 + sum.mass, v = y_[2];
-    const double L = motion_.electrical_ ? L0 + sum.inductance : 1.0;
+    // what is kept of the inductance, with its slopes by what laws add and by that at rest
+    const auto kept = motion_.electrical_ ? keptInductance(Tangent(L0 + sum.inductance, Eigen::Vector2d(1.0, 1.0)),
+                                                           Tangent(L0, Eigen::Vector2d(0.0, 1.0)))
+                                          : Tangent(1.0);
+    const double L = kept.a, byLaw = kept.v[0], byRest = kept.v[1];
     const double gi = motion_.electrical_ ? y_[3] + u / L0 : 0.0, gv = y_[4] + motion_.motion(u);
     const double fi = motion_.electrical_ ? (L0 * gi - sum.drop - sum.fluxSlope * v) / L : 0.0,
                  fv = (m0 * gv + sum.force) / m;
@@ -230,7 +234,8 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
             auto row = chunk.output[lane] != none ? at.Ny.row(chunk.output[lane])
                                                   : at.Ntheta.row(chunk.parameter[lane]);
             if (motion_.electrical_)
-                row[0] -= (chunk.sum.drop.v[k] + chunk.sum.fluxSlope.v[k] * v + fi * chunk.sum.inductance.v[k]) / L;
+                row[0] -= (chunk.sum.drop.v[k] + chunk.sum.fluxSlope.v[k] * v + fi * byLaw * chunk.sum.inductance.v[k])
+                          / L;
             row[1] += (chunk.sum.force.v[k] - fv * chunk.sum.mass.v[k]) / m;
             for (std::size_t j = 0; j < chunk.rate.size(); ++j)
                 row[ExponentialStep::rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] +=
@@ -253,7 +258,7 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
             at.memory(entry.parameter, place_[static_cast<std::size_t>(entry.row)]) += rate;
     }
     for (const auto c : linearParameters_) {
-        at.Ntheta(c, 0) += (gi - fi) * dInductance_[c] / L;
+        at.Ntheta(c, 0) += (gi - byRest * fi) * dInductance_[c] / L;
         at.Ntheta(c, 1) += (gv - fv) * dMass_[c] / m;
     }
 }

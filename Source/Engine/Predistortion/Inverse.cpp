@@ -207,7 +207,8 @@ double Inverse::solve(const MotionPoint& to, double guess)
     ahead = weak ? std::array {difference, difference, difference} : std::array {difference, ahead[0], ahead[1]};
     ease_ = forcePerCurrent_ / perCurrent;
     const auto corrected = [off](const Tangent& t) { return t.a + byCurrent(t) * off; };
-    return corrected(sum.drop) + corrected(sum.inductance) * slope + corrected(sum.fluxSlope) * to.v;
+    const double L = keptInductance(corrected(sum.inductance), linear_.inductance);
+    return corrected(sum.drop) + L * slope + corrected(sum.fluxSlope) * to.v;
 }
 
 }  // namespace excursion
