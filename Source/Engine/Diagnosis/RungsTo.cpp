@@ -31,9 +31,7 @@ Rung atRest(const Rung& rung, const std::vector<Score>& scores, const Whole& who
     Rung next;
     next.added = candidate.effect->id();
     next.predictedErrorDb = candidate.errorDb;
-    next.model = rung.model;
-    next.model.components.push_back(scaled(candidate.model.components.back(), 0.0));
-    next.model.covariance.resize(0, 0);
+    next.model = withComponent(rung.model, scaled(candidate.model.components.back(), 0.0));
     next.fit = rung.fit;
     next.comparison = rung.comparison;
     return next;

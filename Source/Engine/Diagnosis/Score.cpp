@@ -78,7 +78,7 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
     };
     std::vector<Entry> entries;
     const auto consider = [&](Model candidate, Model byResponse) {
-        augmented.components.push_back(candidate.components.back());
+        augmented = withComponent(std::move(augmented), candidate.components.back());
         entries.push_back({std::move(candidate), std::move(byResponse), augmented.components.size() - 1});
     };
     const auto seen = seenIn(record);

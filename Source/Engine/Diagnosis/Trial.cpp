@@ -177,6 +177,22 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);
 }
 
+bool findAnew(Model& model, const Record& still, const std::function<bool(const Component&)>& which,
+              const std::function<bool(Model& anew)>& keeps)
+{
+    bool found = false;
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        if (!model.components[k].effect->linear() || !which(model.components[k]))
+            continue;
+        auto anew = model;
+        if (!fitByResponse(anew, k, still).usable() || !keeps(anew))
+            continue;
+        model = std::move(anew);
+        found = true;
+    }
+    return found;
+}
+
 bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections,
                    const FitOptions& options)
 {
@@ -186,24 +202,20 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     constexpr double worthIt = 0.95;
     auto glance = options;
     glance.search = {3, 1e-2};
-    const auto still = withoutLaws(model, record, options.threads);
     double now = quickCost(model, record, sections, options);
-    bool found = false;
-    for (std::size_t k = 1; k < model.components.size(); ++k) {
-        const auto& component = model.components[k];
-        if (!component.effect->linear() || component.effect->parts(component.operatingRange).empty())
-            continue;
-        auto anew = model;
-        if (!fitByResponse(anew, k, still).usable() || !quickFit(anew, record, sections, glance).usable()
-            || quickCost(anew, record, sections, options) > now || !quickFit(anew, record, sections, options).usable())
-            continue;
-        if (const double then = quickCost(anew, record, sections, options); then < worthIt * now) {
-            model = std::move(anew);
-            now = then;
-            found = true;
-        }
-    }
-    return found;
+    return findAnew(
+        model, withoutLaws(model, record, options.threads),
+        [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
+        [&](Model& anew) {
+            if (!quickFit(anew, record, sections, glance).usable() || quickCost(anew, record, sections, options) > now
+                || !quickFit(anew, record, sections, options).usable())
+                return false;
+            const double then = quickCost(anew, record, sections, options);
+            const bool helps = then < worthIt * now;
+            if (helps)
+                now = then;
+            return helps;
+        });
 }
 
 void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options,

@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/Score.h"
 #include "Engine/Loudspeaker/Fit.h"
 
+#include <functional>
 #include <vector>
 
 namespace excursion {
@@ -31,6 +32,14 @@ void chooseResiduals(FitOptions&, ScoreOptions&, const Model&, const Record&, co
 /// @param model  the result; with zero strength if nothing helps
 FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std::vector<std::size_t>& sections,
                   const FitOptions&, const Progress& = {});
+
+/// Finds linear effects of a model anew, one after the other, on the responses of the record without laws: no small
+/// step leads from a wrong shape to the right one. True if one is kept.
+/// @param still  the record without the model's laws
+/// @param which  the effects to find
+/// @param keeps  fits what was found with all the rest, and tells whether it stays
+bool findAnew(Model&, const Record& still, const std::function<bool(const Component&)>& which,
+              const std::function<bool(Model& anew)>& keeps);
 
 /// Searches again for linear effects that have several parts, as newly known effects may have uncovered more parts.
 /// True if that leaves less; the model then had a quick fit. Does nothing for a record without periods.

@@ -25,15 +25,14 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
     for (const auto& s : scores) {  // lowest first
         if (!s.vote.backs() || without.contains(s.effect->id()))
             continue;
-        auto next = fuller;
-        next.components.push_back(s.model.components.back());
+        auto next = withComponent(fuller, s.model.components.back());
         if (s.effect->linear() && fitNewestByResponse(next, still).usable())
             if (const double then = search.left(next).chiSquaredPerValue; then < now) {
                 fuller = std::move(next);
                 now = then;
                 continue;
             }
-        fuller.components.push_back(scaled(s.model.components.back(), 0.0));
+        fuller = withComponent(std::move(fuller), scaled(s.model.components.back(), 0.0));
     }
     return fuller;
 }
@@ -42,7 +41,7 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
 Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
 {
     Whole whole {base, {}, {}};
-    constexpr int rounds = 4;
+    constexpr int rounds = 8;
     constexpr double worthARound = 1.0;  // dB
     search.chooseResiduals(base);
     auto now = search.left(whole.model);
@@ -113,8 +112,16 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     }
     if (!whole.fit.usable())
         return whole;
-    whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.85));
+    whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.8));
     search.chooseResiduals(whole.model);
+    if (!search.left(whole.model).isNoise()) {  // laws of a higher degree may have laid bare what is small
+        auto more = grown(whole.model, record, search, progress.part(0.8, 0.82));
+        if (more.fit.usable()) {
+            more.fit = refine(more.model, record, options, progress.part(0.82, 0.85));
+            whole = std::move(more);
+        }
+        search.chooseResiduals(whole.model);
+    }
     const auto keeps = [&](const Removal& one) {
         const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)

@@ -4,7 +4,6 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
-#include "Engine/Loudspeaker/FitResponse.h"
 
 #include <cmath>
 
@@ -229,22 +228,20 @@ std::set<std::string> WholeSearch::takeOutImplausible(Model& model) const
 bool WholeSearch::reshape(Model& model, const Left& now, const Left& enough, const Record& still) const
 {
     auto best = now;
-    bool helped = false;
-    for (std::size_t k = 1; k < model.components.size() && lost(best, enough) > hardlyNeeded; ++k) {
-        const auto& effect = *model.components[k].effect;
-        if (!effect.linear() || base_.has(effect.id()))
-            continue;
-        auto anew = model;
-        if (!fitByResponse(anew, k, still).usable() || !fit(anew, brief).usable())
-            continue;
-        if (auto then = left(anew);
-            lost(best, then) > hardlyNeeded && then.chiSquaredPerValue < best.chiSquaredPerValue) {
-            model = std::move(anew);
-            best = std::move(then);
-            helped = true;
-        }
-    }
-    return helped;
+    return findAnew(
+        model, still,
+        [&](const Component& component) {
+            return !base_.has(component.effect->id()) && lost(best, enough) > hardlyNeeded;
+        },
+        [&](Model& anew) {
+            if (!fit(anew, brief).usable())
+                return false;
+            auto then = left(anew);
+            const bool helps = lost(best, then) > hardlyNeeded && then.chiSquaredPerValue < best.chiSquaredPerValue;
+            if (helps)
+                best = std::move(then);
+            return helps;
+        });
 }
 
 }  // namespace excursion
