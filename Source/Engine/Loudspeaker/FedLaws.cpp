@@ -122,8 +122,12 @@ LawHistories lawHistories(const Model& model, const Record& record, const std::v
 }
 
 Fed feed(const Model& model, const Record& record, const Section& section, const ShownMotion& motion,
-         const LawHistories& histories, std::size_t place, const std::vector<std::vector<bool>>& wanted)
+         const LawHistories& histories, std::size_t place, const std::vector<std::vector<bool>>& wanted,
+         KnownSlopes* known)
 {
+    const std::size_t lines = record.lineRange(section).second + 1;
+    if (known)
+        known->resize(model.components.size());
     Fed fed;
     fed.voltage = fft(section.input);
     fed.force.assign(fed.voltage.size(), 0.0);
@@ -132,7 +136,13 @@ Fed feed(const Model& model, const Record& record, const Section& section, const
         if (!isLaw(law))
             continue;
         const auto start = law.effect->slow() ? histories[k][place] : startOf(law, section, motion, record.sampleRate);
-        auto drive = driveOf(law, motion, start, record.sampleRate, wanted.empty() ? std::vector<bool> {} : wanted[k]);
+        const bool isKnown = known && (*known)[k];
+        auto drive = driveOf(law, motion, start, record.sampleRate,
+                             wanted.empty() || isKnown ? std::vector<bool> {} : wanted[k], lines);
+        if (isKnown)
+            drive.slopes = (*known)[k];
+        else if (known && drive.slopes && hasConstantSlopes(law))
+            (*known)[k] = drive.slopes;
         for (std::size_t n = 0; n < fed.voltage.size(); ++n) {
             if (model.electrical())
                 fed.voltage[n] -= drive.voltage[n];

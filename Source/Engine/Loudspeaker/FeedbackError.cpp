@@ -2,7 +2,6 @@
 #include "Engine/Loudspeaker/FeedbackError.h"
 
 #include "Engine/Loudspeaker/Arrival.h"
-#include "Engine/Loudspeaker/FedLaws.h"
 #include "Engine/Numerics/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
@@ -141,15 +140,16 @@ private:
                 fill(column);
                 continue;
             }
-            const auto& drive = fed_.laws[law];
-            const auto &U = drive.voltageSlopes[own], &F = drive.forceSlopes[own];
-            if (U.empty())
+            const auto& slopes = *fed_.laws[law].slopes;
+            const auto &U = slopes.voltage[own], &F = slopes.force[own];
+            const auto& lateness = slopes.lateness[own];
+            if (U.empty() && F.empty() && lateness.empty())
                 continue;
             add(byForce.value, 1.0, F);
             if (model_.electrical())
                 add(byVoltage.value, -1.0, U);
-            if (heard && !drive.latenessSlopes[own].empty()) {
-                auto change = drive.latenessSlopes[own];
+            if (heard && !lateness.empty()) {
+                auto change = lateness;
                 for (std::size_t n = 0; n < change.size(); ++n)
                     change[n] *= -byLeaving_[n];
                 const auto late = later(change);
@@ -176,7 +176,8 @@ private:
 std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
                                       const std::vector<std::size_t>& sections, const ShownMotions& motions,
                                       const std::vector<Eigen::Index>& active, const OutputErrorOptions& options,
-                                      const Progress& progress, const std::vector<SectionFit>* played)
+                                      const Progress& progress, const std::vector<SectionFit>* played,
+                                      std::vector<KnownSlopes>* known)
 {
     const bool gradient = options.gradient && !active.empty();
     std::vector<std::vector<bool>> wanted;
@@ -198,7 +199,8 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t s) {
         const auto& section = record.sections[sections[s]];
-        const auto fed = feed(model, record, section, motions[s], histories, s, wanted);
+        const auto fed = feed(model, record, section, motions[s], histories, s, wanted,
+                              known && gradient ? &(*known)[s] : nullptr);
         fits[s] = FedSection(model, record, section, fed, paths.at(section.window))
                       .run(active, options, played ? &(*played)[s] : nullptr);
         return fits[s].finite;
@@ -231,7 +233,8 @@ Record withoutLaws(const Model& model, const Record& record, unsigned threads)
 
 std::vector<SectionFit> playedError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                                     const ShownMotions& motions, const std::vector<Eigen::Index>& active,
-                                    const OutputErrorOptions& options, const Progress& progress)
+                                    const OutputErrorOptions& options, const Progress& progress,
+                                    std::vector<KnownSlopes>* known)
 {
     auto simulated = options;
     simulated.gradient = false;
@@ -239,7 +242,7 @@ std::vector<SectionFit> playedError(const Model& model, const Record& record, co
     auto played = outputError(model, record, sections, active, simulated, progress);
     const bool finite = std::all_of(played.begin(), played.end(), [](const SectionFit& fit) { return fit.finite; });
     return options.gradient && finite
-               ? feedbackError(model, record, sections, motions, active, options, progress, &played)
+               ? feedbackError(model, record, sections, motions, active, options, progress, &played, known)
                : played;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Loudspeaker/FedLaws.h"
 #include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Loudspeaker/ShownMotions.h"
 
@@ -22,15 +23,19 @@ namespace excursion {
 ///                 only the slopes are those of fed laws. These differ from a simulation's by the effect of a law's
 ///                 change on the motion that it is fed. As the residuals are exact, the search still arrives where they
 ///                 are noise.
+/// @param known  if given, one per section: slopes that depend on the motion alone, kept from one call to the next as
+///               long as motions and `active` stay the same
 std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                       const ShownMotions& motions, const std::vector<Eigen::Index>& active,
                                       const OutputErrorOptions& options, const Progress& = {},
-                                      const std::vector<SectionFit>* played = nullptr);
+                                      const std::vector<SectionFit>* played = nullptr,
+                                      std::vector<KnownSlopes>* known = nullptr);
 
 /// outputError() of a record with periods, with the slopes of fed laws if slopes are asked for: in a tenth of the time.
 std::vector<SectionFit> playedError(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                     const ShownMotions& motions, const std::vector<Eigen::Index>& active,
-                                    const OutputErrorOptions&, const Progress& = {});
+                                    const OutputErrorOptions&, const Progress& = {},
+                                    std::vector<KnownSlopes>* known = nullptr);
 
 /// Whether a simulation leaves less than fed laws: then the noise of the fed motion exceeds the model's error. Always
 /// false for a record without periods and for a model without laws.

@@ -269,9 +269,10 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     if (options.fed && hasPeriods(record)) {
         FitSummary summary;
         auto motions = settledMotions(model, record, sections, options.threads);
+        std::vector<KnownSlopes> known(sections.size());
         const ErrorOf errorOf = [&](const std::vector<Eigen::Index>& active, bool gradient) {
             run.gradient = gradient;
-            return feedbackError(model, record, sections, motions, active, run, progress);
+            return feedbackError(model, record, sections, motions, active, run, progress, nullptr, &known);
         };
         // What the take does not show is expected better from the model that has been found.
         constexpr int mostRounds = 4;
@@ -280,6 +281,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         for (int n = 0; n < mostRounds; ++n) {
             if (n > 0)
                 motions = shownMotions(model, record, sections, motions, options.threads);
+            known.assign(sections.size(), {});
             const auto round = search(model, errorOf, record.noiseKnown, options, progress);
             if (n > 0 && !round.usable())
                 break;
@@ -297,11 +299,12 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
         run.gradientSubsteps = run.substeps;
     const bool slopesFed = options.fedGradient && hasPeriods(record);
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
+    std::vector<KnownSlopes> known(sections.size());
     auto summary = search(
         model,
         [&](const std::vector<Eigen::Index>& active, bool gradient) {
             run.gradient = gradient;
-            return slopesFed ? playedError(model, record, sections, motions, active, run, progress)
+            return slopesFed ? playedError(model, record, sections, motions, active, run, progress, &known)
                              : outputError(model, record, sections, active, run, progress);
         },
         record.noiseKnown, options, progress);

@@ -247,6 +247,37 @@ std::vector<double> series(const std::vector<T>& samples, const Read& read)
     return result;
 }
 
+/// The first lines of a spectrum; none of what is zero.
+Spectrum firstLines(const std::vector<double>& samples, std::size_t lines)
+{
+    if (std::all_of(samples.begin(), samples.end(), [](double sample) { return sample == 0.0; }))
+        return {};
+    auto spectrum = fft(samples);
+    spectrum.resize(std::min(lines, spectrum.size()));
+    spectrum.shrink_to_fit();
+    return spectrum;
+}
+
+/// The derivatives of what a law without memory adds to the two equations, by its parameters, somewhere in its range.
+std::vector<double> slopesAt(const Component& law, std::vector<Jet> parameters, double i, double x, double v)
+{
+    const auto& e = law.operatingRange;
+    const Motion<Jet> at {Jet(i * e.current), Jet(x * e.displacement), Jet(v * e.velocity)};
+    std::vector<double> slopes;
+    for (std::size_t first = 0; first < parameters.size(); first += jetWidth) {
+        const auto width = std::min<std::size_t>(jetWidth, parameters.size() - first);
+        auto seeded = parameters;
+        for (std::size_t k = 0; k < width; ++k)
+            seeded[first + k].v[static_cast<Eigen::Index>(k)] = 1.0;
+        Balance<Jet> sum;
+        law.effect->contribute(e, coefficientsOf(law, seeded).data(), at, nullptr, nullptr, sum);
+        for (const auto* part : {&sum.inductance, &sum.fluxSlope, &sum.drop, &sum.force, &sum.mass})
+            for (std::size_t k = 0; k < width; ++k)
+                slopes.push_back(part->v[static_cast<Eigen::Index>(k)]);
+    }
+    return slopes;
+}
+
 }  // namespace
 
 bool forgetsInAQuarter(const Component& law, const ShownMotion& motion, double sampleRate)
@@ -254,8 +285,28 @@ bool forgetsInAQuarter(const Component& law, const ShownMotion& motion, double s
     return paceOf(law, motion, sampleRate).quarterForgets;
 }
 
+bool hasConstantSlopes(const Component& law)
+{
+    if (law.effect->memorySize(law.operatingRange) > 0 || law.effect->emits())
+        return false;
+    const auto here = valuesOf<Jet>(law);
+    auto there = here;
+    for (std::size_t k = 0; k < there.size(); ++k) {
+        const auto& p = law.parameters[k];
+        there[k] += 0.01 * (1.0 + static_cast<double>(k % 3))
+                    * (std::isfinite(p.prior) ? p.prior : law.operatingRange.scale);
+    }
+    constexpr double places[][3] = {{0.3, -0.6, 0.5}, {-0.8, 0.7, -0.2}, {0.9, 0.2, -0.9}};
+    constexpr double same = 1e-10;
+    return std::all_of(std::begin(places), std::end(places), [&](const auto& at) {
+        const auto a = slopesAt(law, here, at[0], at[1], at[2]), b = slopesAt(law, there, at[0], at[1], at[2]);
+        return std::equal(a.begin(), a.end(), b.begin(),
+                          [](double one, double other) { return std::abs(one - other) <= same * std::abs(one); });
+    });
+}
+
 LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemoryStart& start, double sampleRate,
-                 const std::vector<bool>& wanted)
+                 const std::vector<bool>& wanted, std::size_t lines)
 {
     const auto count = law.parameters.size();
     const auto size = static_cast<std::size_t>(start.value.size());
@@ -269,9 +320,10 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
     drive.lateness = plain.lateness;
     if (std::none_of(wanted.begin(), wanted.end(), [](bool w) { return w; }))
         return drive;
-    drive.voltageSlopes.resize(count);
-    drive.forceSlopes.resize(count);
-    drive.latenessSlopes.resize(count);
+    auto slopes = std::make_shared<LawSlopes>();
+    slopes->voltage.resize(count);
+    slopes->force.resize(count);
+    slopes->lateness.resize(count);
     // A start of a slow part knows nothing of the parameters: a whole period, which begins as the window does, forgets
     // more of that than a quarter.
     const bool whole = !pace.quarterForgets && !law.effect->slow();
@@ -290,9 +342,9 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
         const auto jets = ask<Jet>(law, parameters, motion, memory, whole ? length : quarter, pace, sampleRate);
         for (std::size_t j = 0; j < own.size(); ++j) {
             const auto slope = [slot = static_cast<Eigen::Index>(j)](const Jet& value) { return value.v[slot]; };
-            drive.voltageSlopes[own[j]] = fft(series(jets.voltage, slope));
-            drive.forceSlopes[own[j]] = fft(series(jets.force, slope));
-            drive.latenessSlopes[own[j]] = series(jets.lateness, slope);
+            slopes->voltage[own[j]] = firstLines(series(jets.voltage, slope), lines);
+            slopes->force[own[j]] = firstLines(series(jets.force, slope), lines);
+            slopes->lateness[own[j]] = series(jets.lateness, slope);
         }
         own.clear();
     };
@@ -302,6 +354,7 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
         if (own.size() == static_cast<std::size_t>(jetWidth) || (k + 1 == count && !own.empty()))
             differentiate();
     }
+    drive.slopes = std::move(slopes);
     return drive;
 }
 

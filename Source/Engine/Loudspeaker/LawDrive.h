@@ -6,19 +6,29 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace excursion {
 
-/// The contribution of a law for a given motion of one section, as spectra of its window, with derivatives by the law's
-/// own parameters.
-struct LawDrive {
-    Spectrum voltage;                                  ///< drop + fluxSlope v + inductance di/dt, V
-    Spectrum force;                                    ///< force - mass dv/dt, N
-    std::vector<double> lateness;                      ///< s, one value per sample; empty if the law adds no lateness
-    std::vector<Spectrum> voltageSlopes, forceSlopes;  ///< by parameter of the law; empty unless asked for
-    std::vector<std::vector<double>> latenessSlopes;
+/// The derivatives of a law's contribution by its own parameters, one entry each. Empty if not asked for or zero.
+struct LawSlopes {
+    std::vector<Spectrum> voltage, force;  ///< the first lines, as many as asked for
+    std::vector<std::vector<double>> lateness;
 };
+
+/// The contribution of a law for a given motion of one section, as spectra of its window.
+struct LawDrive {
+    Spectrum voltage;                         ///< drop + fluxSlope v + inductance di/dt, V
+    Spectrum force;                           ///< force - mass dv/dt, N
+    std::vector<double> lateness;             ///< s, one value per sample; empty if the law adds no lateness
+    std::shared_ptr<const LawSlopes> slopes;  ///< none unless asked for
+};
+
+/// Whether the slopes of a law depend on the motion alone: it is linear in its parameters and has no memory. Tried at
+/// a few points, so no effect has to declare it.
+bool hasConstantSlopes(const Component&);
 
 /// Whether a law's memory has forgotten its start value after a quarter of the motion's period.
 bool forgetsInAQuarter(const Component&, const ShownMotion&, double sampleRate);
@@ -27,8 +37,9 @@ bool forgetsInAQuarter(const Component&, const ShownMotion&, double sampleRate);
 /// its start: exactly along parabolas between half samples if each state decays at a constant rate, else by the
 /// fourth-order Runge-Kutta method.
 /// @param start      start value of its memory, a quarter of a period before the window
-/// @param wanted     parameters to differentiate by: one flag each
+/// @param wanted     parameters to differentiate by: one flag each, or none
+/// @param lines      of the slopes' spectra, from 0 Hz
 LawDrive driveOf(const Component&, const ShownMotion&, const MemoryStart& start, double sampleRate,
-                 const std::vector<bool>& wanted);
+                 const std::vector<bool>& wanted, std::size_t lines);
 
 }  // namespace excursion
