@@ -46,7 +46,12 @@ and Excursion::engine.")
 # What Debian asks of every package: a copyright file, and a changelog of the package beside that of the program.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)   # SOURCE_DATE_EPOCH where it is set
 file(CONFIGURE OUTPUT changelog.Debian CONTENT
-    "excursion (${PROJECT_VERSION}-1) unstable; urgency=medium\n\n  * See changelog.gz.\n\n -- ${EXCURSION_MAINTAINER}  ${date}\n")
+"excursion (${PROJECT_VERSION}-1) unstable; urgency=medium
+
+  * See changelog.gz.
+
+ -- ${EXCURSION_MAINTAINER}  ${date}
+")
 if(GZIP)
     add_custom_command(OUTPUT changelog.gz changelog.Debian.gz
         COMMAND ${GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > changelog.gz

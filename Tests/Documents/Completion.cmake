@@ -14,7 +14,8 @@ function(offered)
     math(EXPR last "${words} - 1")
     list(JOIN ARGN "' '" line)
     execute_process(COMMAND ${BASH} --norc -c
-        "source '${SCRATCH}/completion' && COMP_WORDS=('${line}') COMP_CWORD=${last} && { _excursion 2>/dev/null || :; } && echo \"\${COMPREPLY[*]}\""
+        "source '${SCRATCH}/completion' && COMP_WORDS=('${line}') COMP_CWORD=${last} \
+            && { _excursion 2>/dev/null || :; } && echo \"\${COMPREPLY[*]}\""
         OUTPUT_VARIABLE out OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
     string(REPLACE " " ";" out "${out}")
     list(SORT out)

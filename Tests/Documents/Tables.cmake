@@ -125,5 +125,5 @@ endforeach()
 if(faults)
     message(FATAL_ERROR "Docs/Dissertation.md:${faults}")
 endif()
-message(STATUS
-    "${count} paths, all effects, all chapters; ${named} paths, all sections, equations and listings of the dissertation")
+message(STATUS "${count} paths, all effects, all chapters; "
+    "${named} paths, all sections, equations and listings of the dissertation")

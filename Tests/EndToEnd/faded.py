@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""faded.py HEARD: what a loudspeaker was played last, 32-bit floats at 48 kHz, must have been faded out, not cut off."""
+"""faded.py HEARD: what a loudspeaker was played last, 32-bit floats at 48 kHz, must have been faded out, not cut
+off."""
 import array
 import sys
 

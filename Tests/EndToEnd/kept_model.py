@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""kept_model.py SETTINGS EFFECT: the model that the app has kept must have that effect and no other, and the stiffness at rest that was hidden."""
+"""kept_model.py SETTINGS EFFECT: the model that the app has kept must have that effect and no other, and the stiffness
+at rest that was hidden."""
 import json
 import sys
 import xml.etree.ElementTree as ElementTree

@@ -153,7 +153,8 @@ def missed_in(log):
         text = file.read_text()
         begin = sum(len(row) + 1 for row in text.split("\n")[: at - 1])
         for place in places(file):
-            if begin <= place[1] < begin + len(text.split("\n")[at - 1]) and text[place[1] : place[2]] == old and place[3] == new:
+            on_line = begin <= place[1] < begin + len(text.split("\n")[at - 1])
+            if on_line and text[place[1] : place[2]] == old and place[3] == new:
                 yield place
                 break
 
@@ -175,7 +176,8 @@ def main():
     if options.again:
         chosen = list(missed_in(options.again))
     else:
-        drawn = [[p for file in sorted((ENGINE / name).rglob("*.cpp")) for p in places(file)] for name in options.libraries]
+        drawn = [[p for file in sorted((ENGINE / name).rglob("*.cpp")) for p in places(file)]
+                 for name in options.libraries]
         for pool in drawn:
             rng.shuffle(pool)
         chosen = [pool[k] for k in range(options.places) for pool in drawn if k < len(pool)][: options.places]
@@ -195,7 +197,8 @@ def main():
             one = results[-1]
             print(f"{told:12} {one['file']}:{line}: '{one['from']}' -> '{new}': {one['text']}", flush=True)
     tried = count.get("noticed", 0) + count.get("missed", 0)
-    print(f"{count.get('noticed', 0)} of {tried} noticed", {k: v for k, v in count.items() if k not in ("noticed", "missed")})
+    print(f"{count.get('noticed', 0)} of {tried} noticed",
+          {k: v for k, v in count.items() if k not in ("noticed", "missed")})
     if options.json:
         Path(options.json).write_text(json.dumps(results, indent=1) + "\n")
 

@@ -58,8 +58,8 @@ class Comparison(Result):
         return problems(self.document.get("problems"))
 
     def table(self) -> pd.DataFrame:
-        """Over channel and level (V rms): error ``db`` and ``noiseFloorDb`` in dB of the channel, ``chiSquaredPerValue``,
-        and the error on ``linear``, ``odd`` and ``even`` lines in dB."""
+        """Over channel and level (V rms): error ``db`` and ``noiseFloorDb`` in dB of the channel,
+        ``chiSquaredPerValue``, and the error on ``linear``, ``odd`` and ``even`` lines in dB."""
         rows = []
         for channel in self.document["channels"]:
             for level in channel["levels"]:

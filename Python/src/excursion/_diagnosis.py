@@ -54,7 +54,8 @@ class Diagnosis(Judgement):
 
     @property
     def error(self) -> pd.DataFrame:
-        """Of the model as it is, by channel: ``db``, ``noiseFloorDb`` in dB of it, ``chiSquaredPerValue`` (1: noise)."""
+        """Of the model as it is, by channel: ``db``, ``noiseFloorDb`` in dB of it, ``chiSquaredPerValue``
+        (1: noise)."""
         return errors(self.document["error"])
 
     @property

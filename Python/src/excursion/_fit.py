@@ -29,7 +29,8 @@ def known(error: dict[str, Any]) -> dict[str, Any]:
 
 
 def errors(found: dict[str, Any] | None) -> pd.DataFrame:
-    """The error by channel: ``db`` and ``noiseFloorDb`` in dB of the channel, ``chiSquaredPerValue`` (1: only noise)."""
+    """The error by channel: ``db`` and ``noiseFloorDb`` in dB of the channel, ``chiSquaredPerValue``
+    (1: only noise)."""
     rows = [{"channel": channel, **known(error)} for channel, error in (found or {}).items()]
     return table(rows, "channel")
 
@@ -44,7 +45,8 @@ class Fit(Result):
 
     @property
     def error(self) -> pd.DataFrame:
-        """By channel, on data that no fit saw: ``db``, ``noiseFloorDb`` in dB of it, ``chiSquaredPerValue`` (1: noise)."""
+        """By channel, on data that no fit saw: ``db``, ``noiseFloorDb`` in dB of it, ``chiSquaredPerValue``
+        (1: noise)."""
         return errors(self.document["error"])
 
     @property

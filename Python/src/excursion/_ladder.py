@@ -87,8 +87,8 @@ class Ladder(Judgement):
         return WhatIf(found) if found else None
 
     def table(self) -> pd.DataFrame:
-        """One row a rung: what was ``added``, the error by channel in dB, and ``chiSquaredPerValue``; "noise" is the last
-        row, where it is known."""
+        """One row a rung: what was ``added``, the error by channel in dB, and ``chiSquaredPerValue``; "noise" is the
+        last row, where it is known."""
         rows: list[dict[str, Any]] = []
         for number_, rung in enumerate(self.rungs):
             error = {f"{channel} dB": one["db"] for channel, one in rung.document["error"].items()}

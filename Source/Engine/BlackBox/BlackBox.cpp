@@ -3,10 +3,9 @@
 
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
+#include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -167,11 +166,11 @@ BlackBox blackBoxOf(const ParallelHammerstein& model, const Stimulus& stimulus)
             W(i, j) = taps.row(i + 1).dot(taps.row(j + 1)) + (j + 1 < K ? W(i + 1, j + 1) : 0.0);
             W(j, i) = W(i, j);
         }
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> reached(W);
+    const auto reached = symmetricEigenvectors(W);
     BlackBox box;
     double error = 1.0;
     for (Index order = std::min<Index>(10, K); order <= std::min(mostStates, K); order += std::min<Index>(10, K)) {
-        const MatrixXd U = reached.eigenvectors().rightCols(order);
+        const MatrixXd U = reached.vectors.rightCols(order);
         MatrixXd A = MatrixXd::Zero(order, order);
         A.noalias() = U.topRows(K - 1).transpose() * U.bottomRows(K - 1);
         MatrixXd x = U.transpose() * taps.bottomRows(K), played(K, N);

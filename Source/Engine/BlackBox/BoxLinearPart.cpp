@@ -5,9 +5,8 @@
 #include "Engine/BlackBox/BoxProtection.h"
 #include "Engine/BlackBox/RegionLimiter.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Predistortion/TargetFilter.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +46,7 @@ Curve derived(const Curve& output, int times)
 std::vector<Resonance> pairsOf(const StateSpace& linear)
 {
     std::vector<Resonance> found;
-    const Eigen::VectorXcd poles = linear.A.eigenvalues();
+    const auto poles = eigenvalues(linear.A);
     for (const auto& pole : poles) {
         if (!(pole.imag() > 0.0) || !(std::abs(pole) > 1e-3))
             continue;

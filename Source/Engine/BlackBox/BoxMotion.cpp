@@ -3,8 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
-
-#include <Eigen/LU>
+#include "Engine/Numerics/LuFactors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,15 +61,15 @@ BoxMotion::BoxMotion(const BlackBox& box)
         }
     }
     const double w0 = 2.0 * std::numbers::pi * linear.resonance, K = w0 / std::tan(0.5 * w0 / of.sampleRate);
-    const auto half = (I + of.A).partialPivLu();
+    const RealLu half(I + of.A);
     linear.A = K * half.solve(of.A - I);
     linear.B = half.solve(of.B);
     linear.displacement = 2.0 * K * of.C * half.inverse();
-    offset = of.C * (I - of.A).partialPivLu().solve(box.E) + box.F;
+    offset = of.C * RealLu(I - of.A).solve(box.E) + box.F;
     for (std::size_t k = 0; k < band.size(); ++k) {
         const std::complex<double> s(0.0, 2.0 * std::numbers::pi * band[k]);
         const Eigen::VectorXcd states =
-            (s * I - linear.A.cast<std::complex<double>>()).partialPivLu().solve(linear.B.cast<std::complex<double>>());
+            ComplexLu(s * I - linear.A.cast<std::complex<double>>()).solve(linear.B.cast<std::complex<double>>());
         const std::complex<double> foreseen = linear.displacement.cast<std::complex<double>>() * states;
         error = std::max(error, std::abs(foreseen - responses[k](0, 0)) / most);
     }

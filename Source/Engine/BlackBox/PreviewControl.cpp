@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/BlackBox/PreviewControl.h"
 
-#include <Eigen/LU>
+#include "Engine/Numerics/LuFactors.h"
 
 #include <cmath>
 
@@ -17,7 +17,7 @@ std::optional<MatrixXd> riccati(MatrixXd A, MatrixXd G, MatrixXd H)
 {
     const auto I = MatrixXd::Identity(A.rows(), A.rows());
     for (int k = 0; k < 60; ++k) {
-        const auto solver = (I + G * H).partialPivLu();
+        const RealLu solver(I + G * H);
         const MatrixXd WA = solver.solve(A), WG = solver.solve(G);
         const MatrixXd more = A.transpose() * H * WA;
         G += A * WG * A.transpose();

@@ -2,8 +2,8 @@
 #include "Engine/BlackBox/Region.h"
 
 #include "Engine/Error.h"
-
-#include <Eigen/Eigenvalues>
+#include "Engine/Numerics/Eigenvalues.h"
+#include "Engine/Numerics/LuFactors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +78,7 @@ Rest restOf(const BlackBox& box)
     if (!constant)
         return {run.x, run.q};
     // Newton's method would need slopes; the equation x = (I - A)^-1 E q(x) contracts, as constants are small.
-    const auto solver = (MatrixXd::Identity(n, n) - box.linear.A).partialPivLu();
+    const RealLu solver(MatrixXd::Identity(n, n) - box.linear.A);
     VectorXd before = run.x;
     for (int k = 0; k < 200; ++k) {
         run.x = before;
@@ -135,9 +135,9 @@ Region visitedBy(const BlackBox& box)
     VectorXd scale = moments.diagonal().cwiseMax(0.0).cwiseSqrt();
     for (auto& one : scale)
         one = one > 0.0 ? 1.0 / one : 0.0;  // a place that never moves is not looked at
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(MatrixXd(scale.asDiagonal() * moments * scale.asDiagonal()));
-    const VectorXd variance = axes.eigenvalues().cwiseMax(thinnest * axes.eigenvalues().maxCoeff());
-    region.W = variance.cwiseSqrt().cwiseInverse().asDiagonal() * axes.eigenvectors().transpose() * scale.asDiagonal();
+    const auto axes = symmetricEigenvectors(scale.asDiagonal() * moments * scale.asDiagonal());
+    const VectorXd variance = axes.values.cwiseMax(thinnest * axes.values.maxCoeff());
+    region.W = variance.cwiseSqrt().cwiseInverse().asDiagonal() * axes.vectors.transpose() * scale.asDiagonal();
     double furthest = 0.0;
     for (const auto& place : places)
         furthest = std::max(furthest, region.distance(place));

@@ -2,9 +2,8 @@
 #include "Engine/Check/Labels.h"
 
 #include "Engine/Estimate/Bla.h"
+#include "Engine/Numerics/QrFactors.h"
 #include "Engine/Take/Motion.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +53,7 @@ double relativeErrorOf(const std::vector<std::vector<Complex>>& columns, Eigen::
     one.head(F).setOnes();
     const Eigen::VectorXd size = A.colwise().norm();
     const Eigen::MatrixXd scaled = A * size.cwiseInverse().asDiagonal();
-    c = scaled.colPivHouseholderQr().solve(one);
+    c = pivotedSolveVector(scaled, one);
     const double relativeError = (one - scaled * c).norm() / std::sqrt(static_cast<double>(F));
     c = c.cwiseQuotient(size);
     return relativeError;

@@ -2,10 +2,9 @@
 #include "Engine/Check/Overload.h"
 
 #include "Engine/Estimate/Periods.h"
+#include "Engine/Numerics/QrFactors.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -140,7 +139,7 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
             A(F + i, n) = w * line.powers[static_cast<std::size_t>(n)].imag();
         }
     }
-    const Eigen::VectorXd a = A.colPivHouseholderQr().solve(b);
+    const Eigen::VectorXd a = pivotedSolveVector(A, b);
     // Over a part of the band the motion of a cone is nearly a function of its force; over all of it, it is not.
     const Eigen::VectorXd left = b - A * a;
     std::vector<Eigen::Index> byFrequency(used.size());

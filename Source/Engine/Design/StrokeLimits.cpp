@@ -2,9 +2,8 @@
 #include "Engine/Design/StrokeLimits.h"
 
 #include "Engine/Loudspeaker/Dynamics.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Take/Air.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +100,7 @@ std::complex<double> blockedImpedance(const Model& model, const Dynamics<double>
         }
     }
     system.diagonal().array() += std::complex<double>(0.0, 2.0 * std::numbers::pi * frequency);
-    return 1.0 / system.partialPivLu().solve(drive)[0];
+    return 1.0 / ComplexLu(system).solve(drive)[0];
 }
 
 /// |Z(x) - Z(0)| over |Z(0)|, %; empty where no effect moves it.

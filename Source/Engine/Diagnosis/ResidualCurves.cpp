@@ -5,10 +5,9 @@
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Loudspeaker/StartState.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +57,7 @@ public:
         if (m > 0) {
             const Eigen::MatrixXcd system = s * Eigen::MatrixXcd::Identity(m, m)
                                             - linear_.A.bottomRightCorner(m, m).cast<Complex>();
-            z.tail(m) = system.partialPivLu().solve(linear_.A.bottomLeftCorner(m, 3).cast<Complex>() * z.head(3));
+            z.tail(m) = ComplexLu(system).solve(linear_.A.bottomLeftCorner(m, 3).cast<Complex>() * z.head(3));
         }
         const Eigen::VectorXcd rows = s * z.head(3) - linear_.A.topRows(3).cast<Complex>() * z;
         // B holds 1/inductance for a coil; of a mechanical-only driver 1/mass, in the row of v.

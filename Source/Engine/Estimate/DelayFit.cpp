@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Estimate/DelayFit.h"
 
+#include "Engine/Numerics/QrFactors.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -28,9 +30,7 @@ public:
             A.col(j) = stacked(problem.basis.col(j).array() * weight_);
             A.col(j).normalize();
         }
-        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-        rank_ = qr.rank();
-        orthogonal_ = Eigen::MatrixXd(qr.householderQ() * Eigen::MatrixXd::Identity(A.rows(), rank_));
+        orthogonal_ = spannedBasis(A);
     }
 
     double cost(double tau) const { return residual(rotated(tau)).squaredNorm(); }
@@ -42,7 +42,7 @@ public:
         return residual(stacked(whitened_ * omega_ * (-j) * (-j * omega_ * tau).exp())).squaredNorm();
     }
 
-    Eigen::Index rank() const { return rank_; }
+    Eigen::Index rank() const { return orthogonal_.cols(); }
     double total() const { return whitened_.abs2().sum(); }
 
 private:
@@ -55,7 +55,6 @@ private:
     Eigen::ArrayXd omega_, weight_;
     Eigen::ArrayXcd whitened_;
     Eigen::MatrixXd orthogonal_;
-    Eigen::Index rank_ = 0;
 };
 
 double minimumBetween(const Unexplained& unexplained, double low, double high)

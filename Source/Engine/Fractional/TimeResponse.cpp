@@ -6,9 +6,8 @@
 #include "Engine/Fractional/Operators.h"
 #include "Engine/Linear/LinearHold.h"
 #include "Engine/Linear/Simulation.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "Engine/Numerics/Eigenvalues.h"
+#include "Engine/Numerics/LuFactors.h"
 
 #include <cmath>
 
@@ -59,13 +58,13 @@ std::vector<MatrixXd> modalResponse(const FractionalStateSpace& model, const std
                 A.col(i) *= f;
                 A.row(i) /= f;
             }
-        const Eigen::EigenSolver<MatrixXd> solver(A);
-        const Eigen::PartialPivLU<MatrixXcd> lu(solver.eigenvectors());
+        const auto modes = eigenvectors(A);
+        const ComplexLu lu(modes.vectors);
         if (!(lu.rcond() > 1e-10))
             throw Error(Error::Kind::numerical, "The response in time is computed from eigenvectors, but two of this "
                                                 "model's are the same within rounding.");
-        values = solver.eigenvalues();
-        C = (form.C * scale.asDiagonal()).cast<std::complex<double>>() * solver.eigenvectors();
+        values = modes.values;
+        C = (form.C * scale.asDiagonal()).cast<std::complex<double>>() * modes.vectors;
         B = lu.solve(MatrixXd(scale.cwiseInverse().asDiagonal() * form.B).cast<std::complex<double>>());
     }
     std::vector<MatrixXd> result;
@@ -119,7 +118,7 @@ StateSpace expanded(const FractionalStateSpace& model, const DiffusiveLadderOpti
     if (above)
         X.rightCols(n) = ladder.inductance * I;
     else {
-        const Eigen::PartialPivLU<MatrixXd> lu(I - ladder.inductance * form.A);
+        const RealLu lu(I - ladder.inductance * form.A);
         if (n > 0 && !(lu.rcond() > 1e-14))
             throw Error(Error::Kind::numerical,
                         "The ladder's band ends at an eigenvalue of the model; take a wider one.");
@@ -161,7 +160,7 @@ MatrixXd simulateByDifference(const FractionalStateSpace& model, const MatrixXd&
     const double power = std::pow(sampleRate, model.alpha);
     const auto weights = gruenwaldWeights(model.alpha, static_cast<std::size_t>(N));
     const Eigen::Map<const Eigen::VectorXd> w(weights.data(), N);
-    const Eigen::PartialPivLU<MatrixXd> lu(power * MatrixXd::Identity(n, n) - model.form.A);
+    const RealLu lu(power * MatrixXd::Identity(n, n) - model.form.A);
     MatrixXd past(n, N), output(N, model.form.outputs());  // columns newest last
     for (Index t = 0; t < N; ++t) {
         if (t == 0)

@@ -6,10 +6,9 @@
 #include "Engine/Linear/DelayedFit.h"
 #include "Engine/Linear/PoleZero.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Numerics/LuFactors.h"
+#include "Engine/Numerics/QrFactors.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -54,9 +53,9 @@ StateSpace withMotion(const StateSpace& motor, Index relativeDegree)
     // Lengths first: the rows are apart by the poles' sizes.
     MatrixXd inverse(n, n);
     inverse.topRows(relativeDegree) = derivatives.topRows(relativeDegree).rowwise().normalized();
-    const Eigen::HouseholderQR<MatrixXd> qr(inverse.topRows(relativeDegree).transpose());
-    inverse.bottomRows(n - relativeDegree) = MatrixXd(qr.householderQ()).rightCols(n - relativeDegree).transpose();
-    MatrixXd T = Eigen::PartialPivLU<MatrixXd>(inverse).inverse();
+    const MatrixXd basis = completedBasis(inverse.topRows(relativeDegree).transpose());
+    inverse.bottomRows(n - relativeDegree) = basis.rightCols(n - relativeDegree).transpose();
+    MatrixXd T = RealLu(inverse).inverse();
     for (Index k = 0; k < relativeDegree; ++k)
         T.col(k) /= derivatives.row(k).norm();
     auto result = transformed(motor, T);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Import/PeriodDelays.h"
 
-#include <Eigen/Dense>
+#include "Engine/Numerics/QrFactors.h"
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -222,9 +224,9 @@ LineFit fitLine(const std::vector<PeriodDelays::Period>& periods, std::size_t fr
             A(i, columns - 1) = weight;
         b(i) = weight * p.delay;
     }
-    const auto svd = A.completeOrthogonalDecomposition();
-    const Eigen::VectorXd x = svd.solve(b);
-    const Eigen::MatrixXd inverse = svd.pseudoInverse();
+    const MinimumNorm system(A);
+    const Eigen::VectorXd x = system.solveVector(b);
+    const Eigen::MatrixXd inverse = system.pseudoInverse();
     const Eigen::MatrixXd covariance = inverse * inverse.transpose();
     LineFit fit;
     const auto last = static_cast<Eigen::Index>(periods.back().group), slope = static_cast<Eigen::Index>(groups);
@@ -237,7 +239,7 @@ LineFit fitLine(const std::vector<PeriodDelays::Period>& periods, std::size_t fr
         fit.jumpVariance = covariance(columns - 1, columns - 1);
     }
     fit.chiSquare = (A * x - b).squaredNorm();
-    fit.freedom = static_cast<int>(rows - svd.rank());
+    fit.freedom = static_cast<int>(rows - system.rank());
     return fit;
 }
 

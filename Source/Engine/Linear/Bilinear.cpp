@@ -2,8 +2,7 @@
 #include "Engine/Linear/Bilinear.h"
 
 #include "Engine/Error.h"
-
-#include <Eigen/LU>
+#include "Engine/Numerics/LuFactors.h"
 
 #include <cmath>
 #include <numbers>
@@ -16,7 +15,7 @@ using Eigen::MatrixXd;
 /// M^-1, refused when M is singular to working precision.
 MatrixXd inverse(const MatrixXd& M, const char* pole)
 {
-    const Eigen::PartialPivLU<MatrixXd> lu(M);
+    const RealLu lu(M);
     if (M.rows() > 0 && !(lu.rcond() > 1e-15))
         throw Error(Error::Kind::numerical,
                     std::string("The bilinear transform does not exist: the model has a pole at ") + pole + ".");

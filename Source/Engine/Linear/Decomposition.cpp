@@ -2,13 +2,15 @@
 #include "Engine/Linear/Decomposition.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/QrFactors.h"
+#include "Engine/Numerics/Schur.h"
 #include "Engine/Numerics/Sylvester.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -52,7 +54,7 @@ void exchange(MatrixXd& T, MatrixXd& U, Index at, Index p, Index q)
     const MatrixXd X = solveSylvester(T.block(at, at, p, p), T.block(at + p, at + p, q, q), T.block(at, at + p, p, q));
     MatrixXd span(p + q, q);
     span << -X, MatrixXd::Identity(q, q);
-    const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(span).householderQ();
+    const MatrixXd Q = completedBasis(span);
     T.middleRows(at, p + q) = (Q.transpose() * T.middleRows(at, p + q)).eval();
     T.middleCols(at, p + q) = (T.middleCols(at, p + q) * Q).eval();
     U.middleCols(at, p + q) = (U.middleCols(at, p + q) * Q).eval();
@@ -97,9 +99,9 @@ Decomposition decomposed(const StateSpace& model, double alpha)
     const double shift = model.continuous() ? 0.0 : 1.0;
     if (n > 0) {
         T.diagonal().array() -= shift;
-        const Eigen::RealSchur<MatrixXd> schur(T);
-        T = schur.matrixT();
-        U = schur.matrixU();
+        auto schur = realSchur(T);
+        T = std::move(schur.T);
+        U = std::move(schur.U);
     }
     const auto k = stableToTop(T, U, model.continuous(), alpha), r = n - k;
     const MatrixXd X = solveSylvester(T.topLeftCorner(k, k), T.bottomRightCorner(r, r), -T.topRightCorner(k, r));

@@ -9,8 +9,6 @@
 #include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Validity.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <cmath>
 #include <numbers>
 #include <utility>

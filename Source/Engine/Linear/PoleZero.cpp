@@ -4,9 +4,8 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/SecondOrderSections.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "Engine/Numerics/Eigenvalues.h"
+#include "Engine/Numerics/LuFactors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,15 +91,14 @@ std::vector<Complex> zerosInverted(const StateSpace& model, double place)
 {
     Eigen::MatrixXd A = model.A;
     A.diagonal().array() -= place;
-    const Eigen::MatrixXd N = Eigen::PartialPivLU<Eigen::MatrixXd>(A).inverse();
+    const Eigen::MatrixXd N = RealLu(A).inverse();
     const Eigen::RowVectorXd CN = model.C * N;
     const double direct = model.D(0, 0) - (CN * model.B)(0, 0);
     const Eigen::MatrixXd Z = N + model.B * (CN * N) / direct;
     std::vector<Complex> roots;
     if (!Z.allFinite() || Z.rows() == 0)
         return roots;
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(Z, false);
-    for (const auto& w : solver.eigenvalues())
+    for (const auto& w : eigenvalues(Z))
         if (std::abs(w) > 0.0)
             roots.push_back(place + 1.0 / w);
     return roots;

@@ -3,13 +3,12 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
+#include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Numerics/OrthogonalPowers.h"
 #include "Engine/Numerics/RealRows.h"
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/TruncatedSolve.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <numbers>
@@ -118,9 +117,8 @@ RationalFit fitRational(const FrequencyData& data, const RationalOptions& option
     if (!comrade.allFinite())
         throw Error(Error::Kind::numerical,
                     "The rational fit of order " + std::to_string(n) + " did not end in finite numbers.");
-    const Eigen::EigenSolver<MatrixXd> solver(comrade, false);
     std::vector<std::complex<double>> roots;
-    for (const auto& root : solver.eigenvalues())
+    for (const auto& root : eigenvalues(comrade))
         roots.push_back(options.sampleRate > 0.0 ? 1.0 + root : scale * root);
 
     // The quotient as partial fractions: the poles are its own, so the fit is exact.

@@ -5,12 +5,11 @@
 #include "Engine/Linear/Bilinear.h"
 #include "Engine/Linear/Identify.h"
 #include "Engine/Linear/LeastSection.h"
+#include "Engine/Numerics/Eigenvalues.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <cmath>
 
@@ -38,8 +37,8 @@ MatrixXd gramian(MatrixXd A, MatrixXd W)
 /// L with W = L L^T, also where W has no full rank.
 MatrixXd root(const MatrixXd& W)
 {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(W);
-    return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    const auto [values, vectors] = symmetricEigenvectors(W);
+    return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace
@@ -100,7 +99,7 @@ StateSpace truncated(const Balanced& balanced, Index order, Truncation how)
     MatrixXd settle = -full.A.bottomRightCorner(s, s);
     if (!full.continuous())
         settle.diagonal().array() += 1.0;
-    const Eigen::PartialPivLU<MatrixXd> lu(settle);
+    const RealLu lu(settle);
     const MatrixXd x = lu.solve(full.A.bottomLeftCorner(s, r)), u = lu.solve(full.B.bottomRows(s));
     model.A += full.A.topRightCorner(r, s) * x;
     model.B += full.A.topRightCorner(r, s) * u;

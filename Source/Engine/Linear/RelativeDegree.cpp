@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Linear/RelativeDegree.h"
 
-#include <Eigen/QR>
+#include "Engine/Numerics/QrFactors.h"
 
 namespace excursion {
 namespace {
@@ -35,8 +35,7 @@ Eigen::MatrixXd permittedCoefficients(const SecondOrderSections& sections)
     const auto n = sections.order(), d = static_cast<Eigen::Index>(sections.relativeDegree);
     if (d == 0)
         return Eigen::MatrixXd::Identity(n + 1, n + 1);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(markovRows(sections).transpose());
-    return Eigen::MatrixXd(qr.householderQ()).rightCols(n + 1 - d);
+    return completedBasis(markovRows(sections).transpose()).rightCols(n + 1 - d);
 }
 
 Eigen::MatrixXd coefficientSlopes(const SecondOrderSections& sections, const Eigen::VectorXd& c)
@@ -50,7 +49,7 @@ Eigen::MatrixXd coefficientSlopes(const SecondOrderSections& sections, const Eig
         moved(2, 2 * i) = 0.5 * c[2 * i + 1];
     if (sections.odd())
         moved(2, n - 1) = c[n - 1];
-    return markovRows(sections).completeOrthogonalDecomposition().solve(moved);
+    return MinimumNorm(markovRows(sections)).solve(moved);
 }
 
 }  // namespace excursion

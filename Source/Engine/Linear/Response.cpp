@@ -2,8 +2,7 @@
 #include "Engine/Linear/Response.h"
 
 #include "Engine/Error.h"
-
-#include <Eigen/Eigenvalues>
+#include "Engine/Numerics/Schur.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +42,9 @@ Resolvent::Resolvent(const StateSpace& model)
     Eigen::MatrixXd L = model.A;
     if (!model.continuous())
         L.diagonal().array() -= 1.0;
-    const Eigen::ComplexSchur<Eigen::MatrixXd> schur(L);
-    T_ = schur.matrixT();
-    U_ = schur.matrixU();
+    auto schur = complexSchur(L);
+    T_ = std::move(schur.T);
+    U_ = std::move(schur.U);
     CU_ = model.C.cast<Complex>() * U_;
     UB_ = U_.adjoint() * model.B.cast<Complex>();
 }

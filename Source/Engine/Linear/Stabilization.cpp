@@ -6,12 +6,11 @@
 #include "Engine/Linear/PoleZero.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Linear/Subspace.h"
+#include "Engine/Numerics/Eigenvalues.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Numerics/Sylvester.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +57,7 @@ MatrixXd reachedBackwards(const StateSpace& unstable)
         return solveSylvester(unstable.A, -unstable.A.transpose(), unstable.B * unstable.B.transpose());
     // With A = (I - Ac)^-1 (I + Ac): Ac Y + Y Ac^T = Bc Bc^T, Ac = (A + I)^-1 (A - I), Bc = sqrt(2) (A + I)^-1 B
     const auto n = unstable.order();
-    const Eigen::PartialPivLU<MatrixXd> lu(unstable.A + identity(n));
+    const RealLu lu(unstable.A + identity(n));
     const MatrixXd A = lu.solve(unstable.A - identity(n)), B = std::numbers::sqrt2 * lu.solve(unstable.B);
     return solveSylvester(A, -A.transpose(), B * B.transpose());
 }
@@ -73,13 +72,13 @@ StateSpace evenlyReached(const StateSpace& unstable)
         [](double l) { return l > 0.0 ? l : 1.0; });
     scaled = transformed(unstable, MatrixXd(length.asDiagonal()));
     const MatrixXd even = length.cwiseInverse().asDiagonal() * Y * length.cwiseInverse().asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (even + even.transpose()));
+    const auto [values, vectors] = symmetricEigenvectors(0.5 * (even + even.transpose()));
     const auto n = unstable.order();
     Index kept = 0;
-    while (kept < n && solver.eigenvalues()[n - 1 - kept] > 1e-14 * solver.eigenvalues()[n - 1])
+    while (kept < n && values[n - 1 - kept] > 1e-14 * values[n - 1])
         ++kept;
-    const MatrixXd V = solver.eigenvectors().rightCols(kept);
-    const Eigen::VectorXd root = solver.eigenvalues().tail(kept).cwiseSqrt();
+    const MatrixXd V = vectors.rightCols(kept);
+    const Eigen::VectorXd root = values.tail(kept).cwiseSqrt();
     const MatrixXd T = V * root.asDiagonal(), back = root.cwiseInverse().asDiagonal() * V.transpose();
     auto result = scaled;
     result.A = back * scaled.A * T;
@@ -100,10 +99,9 @@ StateSpace timesAllPass(const StateSpace& model)
     const MatrixXd& B = unstable.B;
     MatrixXd F = -B.transpose(), W = identity(model.inputs());
     if (!model.continuous()) {
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> gain(identity(model.inputs()) + B.transpose() * B);
-        F = -gain.eigenvectors() * gain.eigenvalues().cwiseInverse().asDiagonal() * gain.eigenvectors().transpose()
-            * B.transpose() * A;
-        W = gain.operatorInverseSqrt();
+        const auto [gain, along] = symmetricEigenvectors(identity(model.inputs()) + B.transpose() * B);
+        F = -along * gain.cwiseInverse().asDiagonal() * along.transpose() * B.transpose() * A;
+        W = along * gain.cwiseInverse().cwiseSqrt().asDiagonal() * along.transpose();
     }
     const auto n = stable.order();
     auto result = sum(stable, unstable);
@@ -190,7 +188,7 @@ StateSpace stableProjection(const StateSpace& model, Index delay)
     const auto m = model.inputs(), n = stable.order();
     std::vector<MatrixXd> taps(static_cast<std::size_t>(delay) + 1, MatrixXd::Zero(model.outputs(), m));
     if (unstable.order() > 0) {
-        const Eigen::PartialPivLU<MatrixXd> lu(unstable.A);
+        const RealLu lu(unstable.A);
         MatrixXd x = unstable.B;
         for (auto& tap : taps) {
             x = lu.solve(x);

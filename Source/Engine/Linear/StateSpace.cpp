@@ -2,10 +2,11 @@
 #include "Engine/Linear/StateSpace.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/Eigenvalues.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Validity.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -53,8 +54,7 @@ std::vector<Complex> poles(const StateSpace& model)
 {
     if (model.order() == 0)
         return {};
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(model.A, false);
-    const Eigen::VectorXcd values = solver.eigenvalues();
+    const auto values = eigenvalues(model.A);
     return sorted({values.begin(), values.end()});
 }
 
@@ -97,7 +97,7 @@ bool isStable(const StateSpace& model) { return stabilityMargin(model) > 0.0; }
 
 StateSpace transformed(const StateSpace& model, const Eigen::MatrixXd& T)
 {
-    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(T);
+    const RealLu lu(T);
     StateSpace result = model;
     result.A = lu.solve(model.A * T);
     result.B = lu.solve(model.B);

@@ -4,12 +4,13 @@
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
 #include "Engine/Numerics/OrthogonalPowers.h"
+#include "Engine/Numerics/QrFactors.h"
+#include "Engine/Numerics/Schur.h"
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Numerics/TruncatedSolve.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/LU>
 
 #include <cmath>
 
@@ -103,7 +104,7 @@ StateSpace dynamicsOf(const ObservabilityRange& range, Index order, Index inputs
     model.sampleRate = range.sampleRate;
     model.A.resize(order, order);
     if (order > 0)  // Eigen's factorization of no columns is not defined
-        model.A = Eigen::ColPivHouseholderQR<MatrixXd>(O.topRows((q - 1) * p)).solve(shifted);
+        model.A = pivotedSolve(O.topRows((q - 1) * p), shifted);
     model.C = range.outputScale.cwiseInverse().asDiagonal() * O.topRows(p) / range.constant;
     model.B = MatrixXd::Zero(order, inputs);
     model.D = MatrixXd::Zero(p, inputs);
@@ -114,8 +115,7 @@ StateSpace mirrored(const StateSpace& model)
 {
     if (model.order() == 0)
         return model;
-    const Eigen::RealSchur<MatrixXd> schur(model.A);
-    MatrixXd T = schur.matrixT();
+    auto [T, U] = realSchur(model.A);
     const auto n = T.rows();
     bool changed = false;
     for (Index k = 0; k < n;) {
@@ -135,7 +135,7 @@ StateSpace mirrored(const StateSpace& model)
     if (!changed)
         return model;
     StateSpace result = model;
-    result.A = schur.matrixU() * T * schur.matrixU().transpose();
+    result.A = U * T * U.transpose();
     return result;
 }
 

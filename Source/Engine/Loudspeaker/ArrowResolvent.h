@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Numerics/StateUnits.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <complex>
@@ -109,7 +108,7 @@ private:
     static void invert(const Eigen::MatrixXcd& M, Eigen::MatrixXcd& inverse)
     {
         if (M.rows() != 2) {
-            inverse = M.partialPivLu().inverse();
+            inverse = ComplexLu(M).inverse();
             return;
         }
         const auto by = reciprocal(M(0, 0) * M(1, 1) - M(0, 1) * M(1, 0));

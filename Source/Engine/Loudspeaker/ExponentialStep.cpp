@@ -2,9 +2,9 @@
 #include "Engine/Loudspeaker/ExponentialStep.h"
 
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Numerics/Exponential.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 double spectralRadius(const Eigen::MatrixXd& J)
 {
     if (J.rows() > 2)
-        return J.eigenvalues().cwiseAbs().maxCoeff();
+        return eigenvalues(J).cwiseAbs().maxCoeff();
     const std::complex<double> half = 0.5 * J.trace(), root = std::sqrt(half * half - J.determinant());
     return std::max(std::abs(half + root), std::abs(half - root));
 }

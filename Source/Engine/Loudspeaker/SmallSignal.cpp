@@ -4,9 +4,8 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/ArrowResolvent.h"
 #include "Engine/Loudspeaker/Dynamics.h"
+#include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Numerics/Parallel.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
@@ -283,7 +282,7 @@ SmallSignal smallSignal(const Model& model, bool withGradient, Drives drives)
     return result;
 }
 
-Eigen::VectorXcd poles(const SmallSignal& linear) { return inUnits(linear.A, stateUnits(linear.A)).eigenvalues(); }
+Eigen::VectorXcd poles(const SmallSignal& linear) { return eigenvalues(inUnits(linear.A, stateUnits(linear.A))); }
 
 bool isStable(const Model& model)
 {
@@ -291,7 +290,7 @@ bool isStable(const Model& model)
     if (!A.allFinite())
         return false;
     const auto balanced = inUnits(A, stateUnits(A));
-    return balanced.eigenvalues().real().maxCoeff() <= 1e-9 * balanced.cwiseAbs().maxCoeff();
+    return eigenvalues(balanced).real().maxCoeff() <= 1e-9 * balanced.cwiseAbs().maxCoeff();
 }
 
 std::vector<Response> respond(const Model& model, const std::vector<Quantity>& quantities,

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Numerics/StateUnits.h"
-
-#include <Eigen/LU>
 
 #include <complex>
 
@@ -13,7 +12,7 @@ namespace excursion {
 class BalancedResolvent {
 public:
     explicit BalancedResolvent(const Eigen::MatrixXd& A)
-        : units_(stateUnits(A)), minusA_(-inUnits(A, units_).cast<std::complex<double>>()), factors_(A.rows())
+        : units_(stateUnits(A)), minusA_(-inUnits(A, units_).cast<std::complex<double>>())
     {
     }
 
@@ -34,7 +33,7 @@ public:
 private:
     Eigen::VectorXd units_;
     Eigen::MatrixXcd minusA_, system_;
-    Eigen::PartialPivLU<Eigen::MatrixXcd> factors_;
+    ComplexLu factors_;
 };
 
 }  // namespace excursion

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/NormalEquations.h"
 
-#include <Eigen/Eigenvalues>
+#include "Engine/Numerics/Eigenvalues.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -42,9 +43,9 @@ void NormalEquations::add(const NormalEquations& other)
 ScaledSpectrum::ScaledSpectrum(const Eigen::MatrixXd& N)
     : scale(N.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; }))
 {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * N * scale.asDiagonal());
-    values = solver.eigenvalues();
-    vectors = solver.eigenvectors();
+    auto found = symmetricEigenvectors(scale.asDiagonal() * N * scale.asDiagonal());
+    values = std::move(found.values);
+    vectors = std::move(found.vectors);
 }
 
 double ScaledSpectrum::largest() const { return std::max(values.maxCoeff(), 1e-300); }

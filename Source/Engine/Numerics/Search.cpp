@@ -2,10 +2,9 @@
 #include "Engine/Numerics/Search.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/QrFactors.h"
 #include "Engine/Numerics/ThinSvd.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +69,7 @@ private:
         system << J_ * scale_.asDiagonal(), std::sqrt(damping) * MatrixXd::Identity(n, n);
         VectorXd right = VectorXd::Zero(2 * n);
         right.head(n) = error_;
-        return scale_.cwiseProduct(Eigen::HouseholderQR<MatrixXd>(system).solve(right));
+        return scale_.cwiseProduct(QrFactors(system).solveVector(right));
     }
 
     MatrixXd J_;

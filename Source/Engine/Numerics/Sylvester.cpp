@@ -2,8 +2,7 @@
 #include "Engine/Numerics/Sylvester.h"
 
 #include "Engine/Error.h"
-
-#include <Eigen/Eigenvalues>
+#include "Engine/Numerics/Schur.h"
 
 #include <limits>
 
@@ -20,12 +19,11 @@ MatrixXd solveSylvester(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C)
         throw Error(Error::Kind::usage, "The matrices of a Sylvester equation do not fit.");
     if (n == 0 || k == 0)
         return MatrixXd::Zero(n, k);
-    const Eigen::ComplexSchur<MatrixXd> a(A), b(B);
-    const MatrixXcd& Ta = a.matrixT();
-    const MatrixXcd& Tb = b.matrixT();
+    const auto [Ta, Ua] = complexSchur(A);
+    const auto [Tb, Ub] = complexSchur(B);
     const double least = std::numeric_limits<double>::epsilon() * (A.norm() + B.norm());
     // Ta Y - Y Tb = F with Y = Ua^H X Ub: column j needs those before it.
-    const MatrixXcd F = a.matrixU().adjoint() * C * b.matrixU();
+    const MatrixXcd F = Ua.adjoint() * C * Ub;
     MatrixXcd Y(n, k);
     for (Index j = 0; j < k; ++j) {
         Eigen::VectorXcd y = F.col(j) + Y.leftCols(j) * Tb.col(j).head(j);
@@ -39,7 +37,7 @@ MatrixXd solveSylvester(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C)
         }
         Y.col(j) = y;
     }
-    return (a.matrixU() * Y * b.matrixU().adjoint()).real();
+    return (Ua * Y * Ub.adjoint()).real();
 }
 
 }  // namespace excursion

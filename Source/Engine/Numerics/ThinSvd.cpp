@@ -19,6 +19,11 @@ ThinSvd leftSvd(const Eigen::MatrixXd& A)
     return {svd.matrixU(), svd.singularValues(), {}};
 }
 
+Eigen::VectorXd singularValues(const Eigen::MatrixXd& A)
+{
+    return Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues();
+}
+
 Eigen::VectorXd lengthsInverse(const Eigen::MatrixXd& A)
 {
     return A.colwise().norm().transpose().unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });

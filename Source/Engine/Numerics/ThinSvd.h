@@ -18,6 +18,9 @@ ThinSvd thinSvd(const Eigen::MatrixXd& A);
 /// The same without V, which is left empty.
 ThinSvd leftSvd(const Eigen::MatrixXd& A);
 
+/// s alone, by Jacobi rotations: small ones are as accurate as large ones.
+Eigen::VectorXd singularValues(const Eigen::MatrixXd& A);
+
 /// One over the length of each column, 0 for a column of zeros.
 Eigen::VectorXd lengthsInverse(const Eigen::MatrixXd& A);
 

@@ -4,9 +4,8 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Dynamics.h"
 #include "Engine/Numerics/Exponential.h"
+#include "Engine/Numerics/QrFactors.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/QR>
 
 #include <cmath>
 #include <map>
@@ -135,7 +134,7 @@ FractionalPnlss expand(const Model& model, Quantity output, const TaylorOptions&
             values[a + 1].row(k) = slopes[a].transpose();
     }
     // Polynomials in w/scale, then monomials in z and u with their coefficients, by exponents
-    const Eigen::HouseholderQR<MatrixXd> qr(M);
+    const QrFactors qr(M);
     std::map<std::vector<int>, VectorXd> terms;
     for (std::size_t a = 0; a < values.size(); ++a) {
         const MatrixXd c = qr.solve(values[a]);

@@ -2,10 +2,9 @@
 #include "Engine/Polynomial/FractionalPnlss/FractionalPnlss.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/LU>
 
 #include <cmath>
 #include <numbers>
@@ -29,7 +28,7 @@ Eigen::MatrixXcd responseAt(const StateSpace& linear, const Eigen::VectorXcd& op
 {
     Eigen::MatrixXcd M = -linear.A.cast<Complex>();
     M.diagonal() += operators;
-    return linear.C.cast<Complex>() * M.partialPivLu().solve(linear.B.cast<Complex>()) + linear.D.cast<Complex>();
+    return linear.C.cast<Complex>() * ComplexLu(M).solve(linear.B.cast<Complex>()) + linear.D.cast<Complex>();
 }
 
 FractionalGrid gridOf(double sampleRate, int substeps, double seconds)
@@ -156,7 +155,7 @@ StateSpace expandedLinear(const FractionalPnlss& model, const FractionalGrid& gr
     }
     ofNew.block(cells, 0, n, n).setIdentity();
     own.block(cells + n, cells, 2 * n, 2 * n).setIdentity();
-    const auto solver = (MatrixXd::Identity(n, n) - gain.asDiagonal() * linear.A).partialPivLu();
+    const RealLu solver(MatrixXd::Identity(n, n) - gain.asDiagonal() * linear.A);
     const MatrixXd zetaOfPast = solver.solve(held), zetaOfInput = solver.solve(gain.asDiagonal() * linear.B);
     StateSpace expanded;
     expanded.sampleRate = grid.sampleRate * grid.substeps;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/FractionalPnlss/FractionalRecursion.h"
 
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Polynomial/SensitivityKernels.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -163,7 +162,7 @@ bool FractionalRecursion::run(const FractionalPnlss& model, const MatrixXd& inpu
     Past past(cut);
     VectorXd zeta = VectorXd::Zero(n_), before = zeta, size = zeta, h = zeta, v = zeta, rest = zeta, guess = zeta;
     MatrixXd M(n_, n_);
-    Eigen::PartialPivLU<MatrixXd> solver(n_);
+    RealLu solver;
     for (Index t = 0; t < N; ++t) {
         past.held(h);
         guess = 2.0 * zeta - before;
@@ -178,7 +177,7 @@ bool FractionalRecursion::run(const FractionalPnlss& model, const MatrixXd& inpu
             M.noalias() = -(gain.asDiagonal() * equations.slopes);
             M.diagonal().array() += 1.0;
             solver.compute(M);
-            rest = solver.solve(rest).eval();
+            rest = solver.solve(rest);
             zeta -= rest;
             size = size.cwiseMax(zeta.cwiseAbs());
             solved = (rest.array().abs() <= 1e-13 * size.array() + 1e-300).all();
@@ -248,7 +247,7 @@ void FractionalRecursion::differentiate(const FractionalPnlss& model, const Matr
                         + past.history().row(i).head<3>().dot(slope.direct.tail<3>().transpose());
                 }
         }
-        const MatrixXd inverse = (MatrixXd::Identity(n_, n_) - gain.asDiagonal() * equations.slopes).inverse();
+        const MatrixXd inverse = RealLu(MatrixXd::Identity(n_, n_) - gain.asDiagonal() * equations.slopes).inverse();
         states = (inverse * states).eval();
         source.noalias() += equations.slopes * states;  // dv
         if (sampled) {

@@ -2,9 +2,8 @@
 #include "Engine/Polynomial/Pnlss/Pnlss.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Validity.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -184,7 +183,7 @@ Pnlss transformed(const Pnlss& model, const MatrixXd& T)
     Pnlss result;
     result.linear = transformed(model.linear, T);
     result.exponents = all;
-    result.E = T.partialPivLu().solve(E);
+    result.E = RealLu(T).solve(E);
     result.F = F;
     result.free.setConstant(n + model.linear.outputs(), all.rows(), true);
     return result;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/Pnlss/SimulationError.h"
 
+#include "Engine/Numerics/LuFactors.h"
 #include "Engine/Numerics/TallQr.h"
 #include "Engine/Signal/Fft.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +29,7 @@ MatrixXd kalmanGain(const StateSpace& model, const VectorXd& movement, const Vec
     MatrixXd L = MatrixXd::Zero(n, model.outputs());
     for (int k = 0; k < 500; ++k) {
         const MatrixXd S = model.C * P * model.C.transpose() + R;
-        L = model.A * P * model.C.transpose() * S.inverse();
+        L = model.A * P * model.C.transpose() * RealLu(S).inverse();
         P = model.A * P * model.A.transpose() - L * S * L.transpose() + Q;
         P = (0.5 * (P + P.transpose())).eval();
     }

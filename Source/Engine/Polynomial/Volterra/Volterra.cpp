@@ -3,8 +3,7 @@
 
 #include "Engine/Error.h"
 #include "Engine/Linear/Response.h"
-
-#include <Eigen/LU>
+#include "Engine/Numerics/LuFactors.h"
 
 #include <algorithm>
 #include <bit>
@@ -103,7 +102,7 @@ Volterra::Volterra(const Pnlss& model)
         missing = n > 0 ? error.cwiseAbs().maxCoeff() : 0.0;
         if (!(missing > 1e-14 * std::max(rest_.cwiseAbs().maxCoeff(), 1e-300)))
             break;
-        rest_ -= (MatrixXd::Identity(n, n) - slope_).partialPivLu().solve(error);
+        rest_ -= RealLu(MatrixXd::Identity(n, n) - slope_).solve(error);
     }
     if (!rest_.allFinite() || !(missing <= 1e-9 * std::max(1e-300, n > 0 ? rest_.cwiseAbs().maxCoeff() : 0.0)))
         throw Error(Error::Kind::numerical, "The model has no Volterra kernels: no state was found in which it rests.");
@@ -147,7 +146,7 @@ VectorXcd Volterra::response(const std::vector<double>& frequency, const std::ve
         MatrixXcd system = (MatrixXd::Identity(n, n) - slope_).cast<std::complex<double>>();
         system.diagonal().array() += lambda;
         const VectorXcd drive = toState_ * nodes.row(S).transpose();
-        nodes.row(S).segment(1, n) = system.partialPivLu().solve(drive).transpose();
+        nodes.row(S).segment(1, n) = ComplexLu(system).solve(drive).transpose();
         multiply(algebra, nodes, S);
     }
     return toOutput_ * nodes.row(algebra.size() - 1).transpose() / factorial(frequency.size());
