@@ -116,6 +116,13 @@ void LinearizePage::showModel(const AnyModel& model)
     resized();
 }
 
+void LinearizePage::turnOn()
+{
+    mode_.follow();
+    if (processor_.parameters().settings().mode == Mode::bypass)
+        mode_.box().setSelectedItemIndex(static_cast<int>(Mode::linearize), juce::sendNotificationSync);
+}
+
 void LinearizePage::showDriver(const Model& model)
 {
     name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name),
