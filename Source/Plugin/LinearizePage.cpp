@@ -294,7 +294,7 @@ void LinearizePage::showMeters()
                         meters.displacementReduction);
     else
         excursion_.show(
-            reach,
+            meters.displacement / limits.displacementLimit,
             juce::String(1e3 * meters.displacement, 2) + " mm"
                 + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
             meters.displacementReduction);

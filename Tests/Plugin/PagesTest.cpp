@@ -181,6 +181,8 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     CHECK(meters()[0]->words().contains("% of what was measured, turned down by "));
     CHECK(meters()[1]->words().contains(" V, turned down by "));
     CHECK(meters()[2]->words().contains(" W"));
+    // A signal that is turned down is drawn close to its limit, whatever share of the measured excursion that is.
+    CHECK(meters()[0]->share() > 0.85);
     for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {800, 560}}) {
         editor.setSize(width, height);
         play();
