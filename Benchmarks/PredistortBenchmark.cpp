@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What share of one core a channel in real time takes, with every effect of the catalogue, in blocks of 64. Target at
-// 48 kHz, oversampling 2: 4 % each for the predistorter, which plays what it reckons with (Effect::undone), and the
-// speaker, which plays all.
+// 48 kHz, oversampling 2: 3 % for the predistorter, which plays what it reckons with (Effect::undone), while no limit
+// is at work, 4 % for the speaker, which plays all.
 #include "AllEffects.h"
 #include "CoreShare.h"
 

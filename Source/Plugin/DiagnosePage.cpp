@@ -79,8 +79,7 @@ DiagnosePage::DiagnosePage(Window& window) : Page(window)
             auto model = findings_->file.ladder.model();
             if (model.name.empty())
                 model.name = findings_->source;
-            window_.use(model, words(findings_->source));
-            window_.go(PageName::linearize);
+            window_.linearizeWith(model, words(findings_->source));
         }
     };
     report_.onClick = [this] {

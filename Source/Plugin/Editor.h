@@ -57,6 +57,7 @@ public:
     History& history() override { return history_; }
     void go(PageName) override;
     void use(const Model&, const juce::String& from) override;
+    void linearizeWith(const Model&, const juce::String& from) override;
     void useFile(const juce::File&) override;
     void useBox(const nlohmann::ordered_json&, const juce::String& from) override;
     void tell(const juce::String&, bool trouble) override;

@@ -103,6 +103,15 @@ void Editor::use(const Model& model, const juce::String& from)
     }
 }
 
+void Editor::linearizeWith(const Model& model, const juce::String& from)
+{
+    const auto before = owner_.modelVersion();
+    use(model, from);
+    go(PageName::linearize);
+    if (owner_.modelVersion() != before)
+        linearize_.turnOn();
+}
+
 void Editor::useFile(const juce::File& file)
 {
     const auto path = file.getFullPathName().toStdString();

@@ -116,6 +116,13 @@ void LinearizePage::showModel(const AnyModel& model)
     resized();
 }
 
+void LinearizePage::turnOn()
+{
+    mode_.follow();
+    if (processor_.parameters().settings().mode == Mode::bypass)
+        mode_.box().setSelectedItemIndex(static_cast<int>(Mode::linearize), juce::sendNotificationSync);
+}
+
 void LinearizePage::showDriver(const Model& model)
 {
     name_.setText(model.name.empty() ? juce::String("A model without a name") : words(model.name),
@@ -287,7 +294,7 @@ void LinearizePage::showMeters()
                         meters.displacementReduction);
     else
         excursion_.show(
-            reach,
+            meters.displacement / limits.displacementLimit,
             juce::String(1e3 * meters.displacement, 2) + " mm"
                 + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
             meters.displacementReduction);

@@ -27,6 +27,7 @@ public:
     void showModel(const AnyModel&);
     void tick() override;
     TargetPanel& target() { return target_; }
+    void turnOn();  ///< as if a person had chosen to linearize; only in bypass, which is the mode that nobody chose
     void resized() override;
 
 private:

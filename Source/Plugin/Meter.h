@@ -17,7 +17,8 @@ public:
     /// @param words      the value with its unit
     /// @param reduction  dB by which the limit has turned the signal down; told, for a second, where it can be heard
     void show(double share, const juce::String& words, double reduction);
-    juce::String words() const;  ///< as they are shown
+    juce::String words() const;              ///< as they are shown
+    double share() const { return share_; }  ///< as it is drawn
     void paint(juce::Graphics&) override;
 
 private:

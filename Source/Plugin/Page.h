@@ -22,7 +22,9 @@ public:
     virtual void go(PageName) = 0;
     /// loads it into the processor; tells when it can't be run
     virtual void use(const Model&, const juce::String& from) = 0;
-    /// the same with the model in a file, of a driver or without physics; the latter is rehearsed first
+    /// The same, and the signal is linearized from then on unless a person has chosen what is done with it
+    virtual void linearizeWith(const Model&, const juce::String& from) = 0;
+    /// use() with the model in a file, of a driver or without physics; the latter is rehearsed first
     virtual void useFile(const juce::File&) = 0;
     /// the document of a model without physics, which is rehearsed first
     virtual void useBox(const nlohmann::ordered_json&, const juce::String& from) = 0;

@@ -293,6 +293,46 @@ TEST_CASE("Jets carry the derivatives that finite differences show, by every par
     }
 }
 
+TEST_CASE("Tangents carry along a motion what jets carry", "[effects]")
+{
+    for (const auto* effect : catalogue()) {
+        const Alone alone(*effect);
+        const auto& range = alone.operatingRange;
+        const auto M = alone.rest().size();
+        // within what was visited, and beyond it
+        for (const double reach : {1.0, 1.7, 2.6})
+            for (const auto& point : somePoints(range)) {
+                const double i = reach * point[0], x = reach * point[1], v = reach * point[2], a = 310.0;
+                INFO(effect->id() << " at " << i << " A, " << x << " m, " << v << " m/s");
+                const auto sumsOn = [&](auto zero) {
+                    using T = decltype(zero);
+                    Motion<T> motion {T(i), T(x), T(v)};
+                    motion.i.v[1] = 1.0;
+                    motion.x.v[0] = v;
+                    motion.v.v[0] = a;
+                    std::vector<T> memory(M), rate(M),
+                        coefficients(alone.coefficients.begin(), alone.coefficients.end());
+                    for (std::size_t k = 0; k < M; ++k) {
+                        memory[k] = T(1e-3 * (0.4 + 0.1 * static_cast<double>(k)));
+                        memory[k].v[0] = 0.2;
+                        memory[k].v[1] = -1e-4;
+                    }
+                    Balance<T> sum;
+                    effect->contribute(range, coefficients.data(), motion, memory.data(), rate.data(), sum);
+                    rate.insert(rate.end(), {sum.inductance, sum.fluxSlope, sum.drop, sum.force, sum.mass});
+                    return rate;
+                };
+                const auto jets = sumsOn(Jet());
+                const auto tangents = sumsOn(Tangent());
+                for (std::size_t k = 0; k < jets.size(); ++k) {
+                    CHECK(tangents[k].a == Approx(jets[k].a).epsilon(1e-11).margin(1e-15));
+                    for (const int slot : {0, 1})
+                        CHECK(tangents[k].v[slot] == Approx(jets[k].v[slot]).epsilon(1e-9).margin(1e-12));
+                }
+            }
+    }
+}
+
 namespace {
 
 struct Cycle {

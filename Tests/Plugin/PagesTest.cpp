@@ -80,7 +80,7 @@ void forecast(Editor& editor)
 
 }  // namespace
 
-TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clicks", "[plugin][slow]")
+TEST_CASE("From a virtual loudspeaker to its linearization in at most five clicks", "[plugin][slow]")
 {
     clicks = 0;
     Processor processor;
@@ -111,11 +111,20 @@ TEST_CASE("From a virtual loudspeaker to its linearization in at most eight clic
     CHECK(picture(editor, "diagnose-complete") > 1000);
     click(editor, "Linearize with this model");
     CHECK(processor.model().effectIds() == second->file.ladder.model().effectIds());
-    CHECK(clicks <= 8);
+    CHECK(processor.parameters().settings().mode == Mode::linearize);
+    CHECK(clicks <= 5);
     forecast(editor);
     CHECK(picture(editor, "linearize") > 1000);
     click(editor, "Compare");
     CHECK(picture(editor, "compare-complete") > 1000);
+
+    // Who has chosen what is done to the signal keeps it, and the mode that was not chosen can be taken back.
+    editor.undo();
+    CHECK(processor.parameters().settings().mode == Mode::bypass);
+    processor.parameters().mode() = static_cast<int>(Mode::audition);
+    click(editor, "Diagnose");
+    click(editor, "Linearize with this model");
+    CHECK(processor.parameters().settings().mode == Mode::audition);
 
     click(editor, "Diagnose");
     click(editor, "Take the last effect back");
@@ -172,6 +181,8 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     CHECK(meters()[0]->words().contains("% of what was measured, turned down by "));
     CHECK(meters()[1]->words().contains(" V, turned down by "));
     CHECK(meters()[2]->words().contains(" W"));
+    // A signal that is turned down is drawn close to its limit, whatever share of the measured excursion that is.
+    CHECK(meters()[0]->share() > 0.85);
     for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {800, 560}}) {
         editor.setSize(width, height);
         play();

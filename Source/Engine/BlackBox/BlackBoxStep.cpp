@@ -21,24 +21,83 @@ std::vector<double> paddedRow(const Eigen::MatrixXd& row, std::size_t length)
     return result;
 }
 
-/// out += M v, by groups of rows, with four sums that do not wait for one another.
+// The matrices are small, so that calls would take as long as what they do: what is below is inlined into few functions
+// that are compiled for several processors, one for each half of a step.
+
+/// sum += four rows of M, from `m` on, times v(0), v(1), ...; with four sums that do not wait for one another.
+template <class Vector>
+[[gnu::always_inline]] inline void addRows(const double* m, std::size_t rows, std::size_t columns, const Vector& v,
+                                           Four& sum)
+{
+    Four b {}, c {}, d {};
+    std::size_t j = 0;
+    for (; j + 4 <= columns; j += 4, m += 4 * rows) {
+        sum += *reinterpret_cast<const Four*>(m) * v(j);
+        b += *reinterpret_cast<const Four*>(m + rows) * v(j + 1);
+        c += *reinterpret_cast<const Four*>(m + 2 * rows) * v(j + 2);
+        d += *reinterpret_cast<const Four*>(m + 3 * rows) * v(j + 3);
+    }
+    for (; j < columns; ++j, m += rows)
+        sum += *reinterpret_cast<const Four*>(m) * v(j);
+    sum = (sum + b) + (c + d);
+}
+
 EXCURSION_DISPATCH
 void addProduct(const double* M, std::size_t rows, std::size_t columns, const double* v, double* out)
 {
+    for (std::size_t r = 0; r < rows; r += lanes)
+        addRows(
+            M + r, rows, columns, [v](std::size_t j) { return v[j]; }, *reinterpret_cast<Four*>(out + r));
+}
+
+/// out = M v, v_j = from[index_j]
+EXCURSION_DISPATCH
+void combine(const double* M, std::size_t rows, std::size_t columns, const double* from, const std::size_t* index,
+             double* out)
+{
     for (std::size_t r = 0; r < rows; r += lanes) {
-        const double* m = M + r;
-        Four a = *reinterpret_cast<const Four*>(out + r), b {}, c {}, d {};
-        std::size_t j = 0;
-        for (; j + 4 <= columns; j += 4, m += 4 * rows) {
-            a += *reinterpret_cast<const Four*>(m) * v[j];
-            b += *reinterpret_cast<const Four*>(m + rows) * v[j + 1];
-            c += *reinterpret_cast<const Four*>(m + 2 * rows) * v[j + 2];
-            d += *reinterpret_cast<const Four*>(m + 3 * rows) * v[j + 3];
-        }
-        for (; j < columns; ++j, m += rows)
-            a += *reinterpret_cast<const Four*>(m) * v[j];
-        *reinterpret_cast<Four*>(out + r) = (a + b) + (c + d);
+        Four sum {};
+        addRows(
+            M + r, rows, columns, [from, index](std::size_t j) { return from[index[j]]; }, sum);
+        *reinterpret_cast<Four*>(out + r) = sum;
     }
+}
+
+/// |M v|^2
+EXCURSION_DISPATCH
+double squareOf(const double* M, std::size_t rows, std::size_t columns, const double* v)
+{
+    Four squares {};
+    for (std::size_t r = 0; r < rows; r += lanes) {
+        Four sum {};
+        addRows(
+            M + r, rows, columns, [v](std::size_t j) { return v[j]; }, sum);
+        squares += sum * sum;
+    }
+    return (squares[0] + squares[1]) + (squares[2] + squares[3]);
+}
+
+/// next = A x + B u + E q @returns readX x + readQ q; readX and readQ are as long as A and E have rows and columns
+struct Dynamics {
+    const double *A, *B, *E, *readX, *readQ;
+    std::size_t states, unpaddedStates, combinations, unpaddedCombinations;
+};
+EXCURSION_DISPATCH
+double advanced(const Dynamics& by, const double* x, double u, const double* q, double* next)
+{
+    Four y {};
+    for (std::size_t r = 0; r < by.states; r += lanes) {
+        Four sum = *reinterpret_cast<const Four*>(by.B + r) * u;
+        addRows(
+            by.A + r, by.states, by.unpaddedStates, [x](std::size_t j) { return x[j]; }, sum);
+        addRows(
+            by.E + r, by.states, by.unpaddedCombinations, [q](std::size_t j) { return q[j]; }, sum);
+        *reinterpret_cast<Four*>(next + r) = sum;
+        y += *reinterpret_cast<const Four*>(by.readX + r) * *reinterpret_cast<const Four*>(x + r);
+    }
+    for (std::size_t r = 0; r < by.combinations; r += lanes)
+        y += *reinterpret_cast<const Four*>(by.readQ + r) * *reinterpret_cast<const Four*>(q + r);
+    return (y[0] + y[1]) + (y[2] + y[3]);
 }
 
 EXCURSION_DISPATCH
@@ -97,9 +156,7 @@ BlackBoxStep::BlackBoxStep(const BlackBox& box, const Region& region)
       implicit_(!box.G.isZero(0.0)),
       identity_(box.S.rows() == box.S.cols() && box.S.isIdentity(0.0) && box.T.isZero(0.0)),
       nodes_(static_cast<std::size_t>(products_.nodes())),
-      terms_(static_cast<std::size_t>(box.exponents.rows())),
       place_(unpaddedSeen_ + 1),
-      white_(whiten_.rows()),
       next_(dynamics_.rows()),
       z_(zOfX_.rows() + 1),
       difference_(combine_.rows())
@@ -123,15 +180,12 @@ double BlackBoxStep::evaluate(const double* z, double u, double* q)
     for (std::size_t k = 0; k < unpaddedSeen_; ++k)
         place_[k] = z[k] - centre_[k];
     place_[unpaddedSeen_] = u - centre_[unpaddedSeen_];
-    whiten_.set(place_.data(), white_.data());
-    const double square = innerProduct(white_.data(), white_.data(), white_.size());
+    const double square = squareOf(whiten_.values(), whiten_.rows(), whiten_.columns(), place_.data());
     const double scale = square > 1.0 ? 1.0 / std::sqrt(square) : 1.0;
     for (std::size_t k = 0; k <= unpaddedSeen_; ++k)
         nodes_[1 + k] = centre_[k] + scale * place_[k];
     products_.evaluate(nodes_.data());
-    for (std::size_t k = 0; k < terms_.size(); ++k)
-        terms_[k] = nodes_[termNode_[k]];
-    combine_.set(terms_.data(), q);
+    combine(combine_.values(), combine_.rows(), combine_.columns(), nodes_.data(), termNode_.data(), q);
     return square;
 }
 
@@ -154,13 +208,11 @@ double BlackBoxStep::combinationsAt(const double* z, double u, const double* bef
 
 double BlackBoxStep::advance(double* x, double u, const double* q)
 {
-    const double y = innerProduct(readX_.data(), x, readX_.size()) + readU_ * u
-                     + innerProduct(readQ_.data(), q, readQ_.size());
-    dynamics_.set(x, next_.data());
-    driven_.add(&u, next_.data());
-    bent_.add(q, next_.data());
+    const double y = advanced({dynamics_.values(), driven_.values(), bent_.values(), readX_.data(), readQ_.data(),
+                               dynamics_.rows(), dynamics_.columns(), readQ_.size(), bent_.columns()},
+                              x, u, q, next_.data());
     std::copy(next_.begin(), next_.end(), x);
-    return y;
+    return y + readU_ * u;
 }
 
 }  // namespace excursion

@@ -18,6 +18,8 @@ public:
     std::size_t rows() const { return rows_; }  ///< with the padding
     std::size_t columns() const { return columns_; }
 
+    const double* values() const { return values_.data(); }  ///< column by column
+
     /// out += M v. @param v  columns() numbers @param out  rows() numbers
     void add(const double* v, double* out) const;
     /// out = M v
@@ -70,7 +72,7 @@ private:
     PaddedMatrix zOfX_, zOfU_, zOfQ_, combine_, whiten_;
     std::vector<double> centre_;
     bool implicit_, identity_;
-    std::vector<double> nodes_, terms_, place_, white_, next_, z_, difference_;
+    std::vector<double> nodes_, place_, next_, z_, difference_;
     std::vector<std::size_t> termNode_;
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 namespace excursion {
 
@@ -40,6 +41,43 @@ void prepare(int n, const T* c, T* b)
     }
 }
 
+/// A polynomial of degree n with its first two derivatives by s, by Horner's scheme.
+struct Bend {
+    double value, slope, curvature;
+};
+[[gnu::always_inline]] inline Bend bendAt(int n, const Tangent* b, double s)
+{
+    double value = b[n].a, slope = 0.0, half = 0.0;
+    for (int j = n - 1; j >= 0; --j) {
+        half = half * s + slope;
+        slope = slope * s + value;
+        value = value * s + b[j].a;
+    }
+    return {value, slope, 2.0 * half};
+}
+
+/// What is `value` at q and has this slope there, on numbers that carry derivatives.
+[[gnu::always_inline]] inline Tangent along(double value, double slope, const Tangent& q)
+{
+    return Tangent(value, slope * q.v);
+}
+
+/// A polynomial of degree n, by Horner's scheme. On Tangent the chain rule is applied once, to the result and not at
+/// every step of the scheme, which takes a third of the time: coefficients depend neither on time nor on the current.
+template <class T>
+[[gnu::always_inline]] inline T polynomial(int n, const T* b, const T& s)
+{
+    if constexpr (std::is_same_v<T, Tangent>) {
+        const auto bend = bendAt(n, b, s.a);
+        return along(bend.value, bend.slope, s);
+    } else {
+        T value = b[n];
+        for (int j = n - 1; j >= 0; --j)
+            value = value * s + b[j];
+        return value;
+    }
+}
+
 template <class T>
 struct ValueAndSlope {
     T value, slope;  ///< slope with respect to q
@@ -54,6 +92,11 @@ template <class T>
     const bool outside = s > T(1.0) || s < T(-1.0);
     if (outside)
         s = s > T(0.0) ? T(1.0) : T(-1.0);
+    if constexpr (std::is_same_v<T, Tangent>) {  // see polynomial()
+        const auto bend = bendAt(n, b, s.a);
+        return {along(bend.value, bend.slope, s),
+                outside ? T(0.0) : along(bend.slope * (1.0 / range), bend.curvature * (1.0 / range), s)};
+    }
     T value = b[n];
     T slope = T(0.0);
     for (int j = n - 1; j >= 0; --j) {

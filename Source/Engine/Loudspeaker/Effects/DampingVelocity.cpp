@@ -103,9 +103,7 @@ private:
         const int n = e.degree;
         const T square = w * w, off = w - c[n + 3];
         const T s = sqrt(off * off + rounding * rounding) - c[n + 4];
-        T value = c[n];
-        for (int k = n - 1; k >= 0; --k)
-            value = value * s + c[k];
+        T value = curve::polynomial(n, c, s);
         value += w * (c[n + 1] + square * c[n + 2]);
         return value > T(0.0) ? value * reach : value;
     }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 namespace excursion {
 namespace {
@@ -85,6 +86,21 @@ private:
             const T end = s > T(0.0) ? T(1.0) : T(-1.0);
             beyond = (s - end) * e.current;
             s = end;
+        }
+        if constexpr (std::is_same_v<T, Tangent>) {  // see curve::polynomial()
+            const double end = s.a, off = beyond.a;
+            const auto bend = curve::bendAt(e.degree, c, end);
+            double integral = 0.0;
+            for (int j = e.degree; j >= 0; --j)
+                integral = integral * end + c[j].a * (1.0 / (j + 2));
+            const double flux = bend.value * end * e.current, fluxSlope = bend.value + end * bend.slope,
+                         fluxCurvature = off == 0.0 ? (2.0 * bend.slope + end * bend.curvature) * (1.0 / e.current)
+                                                    : 0.0,
+                         fluxBeyond = flux + fluxSlope * off,
+                         coenergy = integral * end * end * (e.current * e.current)
+                                    + off * (flux + 0.5 * fluxSlope * off);
+            return {curve::along(fluxBeyond, fluxSlope, i), curve::along(fluxSlope, fluxCurvature, i),
+                    curve::along(coenergy, fluxBeyond, i)};
         }
         T value = T(0.0), slope = T(0.0), integral = T(0.0);
         for (int j = e.degree; j >= 0; --j) {
