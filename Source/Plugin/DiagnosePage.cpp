@@ -148,6 +148,8 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     falls_.show(std::move(falls));
     select(advice_ ? noCandidate : 0);
     resized();
+    // The focus went from card to card as they were taken away, and the list with it.
+    list_.setViewPosition(0, 0);
     repaint();
 }
 

@@ -107,7 +107,7 @@ std::string wordsOf(const TargetForecast& told, const std::string& unit, bool us
         return text + "; there is no limit.";
     if (pink.roomDb >= 0.0)
         return text + "; the limits leave room for it.";
-    return text + "; above " + plainText(pink.roomDb, 1) + " dBFS the "
+    return text + "; above " + decibels(pink.roomDb) + "FS the "
            + (pink.first == First::displacement ? "excursion is limited."
               : pink.first == First::voltage    ? "voltage is limited."
                                                 : "region of the fit is kept to.");

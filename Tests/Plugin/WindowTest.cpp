@@ -170,6 +170,21 @@ TEST_CASE("A model without physics can be read at every size, whether it can be 
     }
 }
 
+TEST_CASE("A new diagnosis is read from its beginning, wherever the one before was left", "[plugin]")
+{
+    Processor processor;
+    Editor editor(processor);
+    editor.setSize(800, 560);
+    editor.go(PageName::diagnose);
+    editor.show(plugin::syntheticFindings(3));
+    const auto lists = plugin::all<juce::Viewport>(editor.diagnose());
+    REQUIRE(lists.size() == 1);
+    lists.front()->setViewPosition(0, 150);
+    REQUIRE(lists.front()->getViewPositionY() == 150);
+    editor.show(plugin::syntheticFindings(4));
+    CHECK(lists.front()->getViewPositionY() == 0);
+}
+
 TEST_CASE("A target and what it costs can be read at every size", "[plugin][target]")
 {
     Processor processor;
