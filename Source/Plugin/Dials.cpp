@@ -59,18 +59,14 @@ NumberDial::NumberDial(Number& number, History* history) : number_(number), hist
 {
     const auto& scale = number.scale();
     slider_.setTextBoxStyle(juce::Slider::TextBoxRight, false, 90, 20);
-    slider_.setTextValueSuffix(juce::String(" ") + scale.unit);
     slider_.setNormalisableRange({scale.range.least, scale.range.most,
                                   [&number](double, double, double proportion) { return number.at(proportion); },
                                   [&number](double, double, double value) { return number.proportionOf(value); }});
-    slider_.textFromValueFunction = [&number](double value) { return number.text(value); };
-    slider_.valueFromTextFunction = [&number](const juce::String& text) {
-        return text.getDoubleValue() / number.scale().shown;
-    };
+    slider_.textFromValueFunction = [&number](double value) { return number.words(value); };
+    slider_.valueFromTextFunction = [&number](const juce::String& text) { return number.valueOf(text); };
     slider_.setDoubleClickReturnValue(true, number.first());
     slider_.setTitle(number.getName(80));
-    slider_.setDescription("From " + number.text(scale.range.least) + " to " + number.text(scale.range.most) + " "
-                           + scale.unit);
+    slider_.setDescription("From " + number.words(scale.range.least) + " to " + number.words(scale.range.most));
     slider_.onDragStart = [this] {
         held_ = true;
         before_ = number_.get();

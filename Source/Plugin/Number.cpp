@@ -49,8 +49,28 @@ void Number::setValue(float sent)
 
 juce::String Number::text(double value) const
 {
+    if (*scale_.most && value >= scale_.range.most)
+        return scale_.most;
+    if (*scale_.least && value <= scale_.range.least)
+        return scale_.least;
     return juce::String(value * scale_.shown,
                         static_cast<int>(std::lround(std::log10(scale_.stepsPerUnit / scale_.shown))));
+}
+
+juce::String Number::words(double value) const
+{
+    const auto number = text(value);
+    const bool isWord = number == scale_.most || number == scale_.least;
+    return isWord || !*scale_.unit ? number : number + " " + scale_.unit;
+}
+
+double Number::valueOf(const juce::String& text) const
+{
+    if (*scale_.most && text.trim() == scale_.most)
+        return scale_.range.most;
+    if (*scale_.least && text.trim() == scale_.least)
+        return scale_.range.least;
+    return text.getDoubleValue() / scale_.shown;
 }
 
 juce::String Number::getText(float proportion, int longest) const
@@ -61,7 +81,7 @@ juce::String Number::getText(float proportion, int longest) const
 
 float Number::getValueForText(const juce::String& text) const
 {
-    return static_cast<float>(proportionOf(text.getDoubleValue() / scale_.shown));
+    return static_cast<float>(proportionOf(valueOf(text)));
 }
 
 }  // namespace excursion::plugin

@@ -19,6 +19,7 @@ public:
         double centre;       ///< in the middle of a dial
         double shown = 1.0;  ///< for a value of 1, as 100 for a share in %
         const char* unit = "";
+        const char *least = "", *most = "";  ///< what an end of the range is called that is no number
     };
     Number(const juce::String& id, const juce::String& title, const Scale&, double value);
 
@@ -31,7 +32,9 @@ public:
     double at(double proportion) const noexcept;  ///< 0 to 1
     double proportionOf(double value) const noexcept;
     double snapped(double value) const noexcept;  ///< on the next step
-    juce::String text(double value) const;        ///< to the decimals of a step
+    juce::String text(double value) const;        ///< to the decimals of a step, or the word for an end
+    juce::String words(double value) const;       ///< the same with its unit
+    double valueOf(const juce::String& text) const;
 
     float getValue() const override { return static_cast<float>(proportionOf(get())); }
     void setValue(float sent) override;

@@ -38,7 +38,8 @@ Parameters::Parameters(juce::AudioProcessor& processor)
     };
     for (std::size_t k = 0; k < firstEffects; ++k)
         switchOf(k);
-    powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 100, 30.0, 1.0, "W"}, first.powerLimit);
+    powerLimit_ = number("powerLimit", "Power limit", {Settings::powers, 100, 30.0, 1.0, "W", "", "no limit"},
+                         first.powerLimit);
     margin_ = number("margin", "Model margin", {Settings::margins, 1000, 0.15, 100.0, "%"}, first.margin);
     for (std::size_t k = firstEffects; k < secondEffects; ++k)
         switchOf(k);
@@ -52,8 +53,8 @@ Parameters::Parameters(juce::AudioProcessor& processor)
                            first.target.volume);
     for (std::size_t k = secondEffects; k < catalogue().size(); ++k)
         switchOf(k);
-    coilResistance_ = number("coilResistance", "Coil resistance", {Settings::resistances, 100, 8.0, 1.0, "ohm"},
-                             first.coilResistance);
+    coilResistance_ = number("coilResistance", "Coil resistance",
+                             {Settings::resistances, 100, 8.0, 1.0, "ohm", "not known"}, first.coilResistance);
     targetLow_ = number("targetLow", "Target from", {Settings::targetEnds, 10, 300.0, 1.0, "Hz"}, first.target.low);
     targetHigh_ = number("targetHigh", "Target to", {Settings::targetEnds, 10, 1000.0, 1.0, "Hz"}, first.target.high);
 }

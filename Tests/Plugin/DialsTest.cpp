@@ -61,6 +61,28 @@ TEST_CASE("A dial puts a number on the nearest step and tells the host of one ge
     CHECK(percent.slider().getTextFromValue(share.get()) == "33.3 %");
 }
 
+TEST_CASE("An end of a dial that is no number is called by its word", "[plugin]")
+{
+    Processor processor;
+    for (auto* number : processor.parameters().numbers()) {
+        const auto& scale = number->scale();
+        plugin::NumberDial dial(*number);
+        auto& slider = dial.slider();
+        if (number->getName(99) == "Power limit") {
+            CHECK(slider.getTextFromValue(scale.range.most) == "no limit");
+            CHECK(slider.getValueFromText("no limit") == scale.range.most);
+            CHECK(number->getText(1.0f, 0) == "no limit");
+            CHECK(number->getValueForText("no limit") == 1.0f);
+            CHECK(slider.getTextFromValue(100.0) == "100.00 W");
+        }
+        if (number->getName(99) == "Coil resistance") {
+            CHECK(slider.getTextFromValue(0.0) == "not known");
+            CHECK(slider.getValueFromText("not known") == 0.0);
+            CHECK(slider.getTextFromValue(6.0) == "6.00 ohm");
+        }
+    }
+}
+
 TEST_CASE("A switch and a choice tell the host of one gesture, and follow it silently", "[plugin]")
 {
     Processor processor;

@@ -168,9 +168,10 @@ std::string Outcome::kin() const
 
 int Outcome::falselyAdded() const
 {
-    return static_cast<int>(
-        std::count_if(added.begin(), added.end(), [&](const auto& id) { return !hides(id) && id != kin(); }));
+    return static_cast<int>(std::count_if(added.begin(), added.end(), [&](const auto& id) { return !isThere(id); }));
 }
+
+bool Outcome::isThere(const std::string& effect) const { return hides(effect) || effect == kin(); }
 
 bool Outcome::honest() const
 {

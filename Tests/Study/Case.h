@@ -50,7 +50,8 @@ struct Outcome {
     /// The effect whose law is of the same kind as the oddity's, so that naming it is no mistake: a contact is a
     /// stiffness that depends on position, any hysteresis a friction. Empty: there is none.
     std::string kin() const;
-    int falselyAdded() const;  ///< effects that are neither there nor kin of what is
+    bool isThere(const std::string& effect) const;  ///< hidden, or kin of what is beside
+    int falselyAdded() const;                       ///< effects that are neither there nor kin of what is
     /// What is there beside the known effects is not passed over in silence: not complete, or its kin is named.
     bool honest() const;
     bool hides(const std::string& effect) const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace excursion::study {
 namespace {
@@ -35,6 +36,29 @@ std::string row(const char* what, const Share& share, double target)
 }
 
 }  // namespace
+
+void Calibration::add(double confidence, bool right)
+{
+    const auto place = std::clamp(static_cast<int>(confidence * bins), 0, bins - 1);
+    auto& bin = byConfidence[static_cast<std::size_t>(place)];
+    bin.right += right;
+    ++bin.of;
+    bin.confidence += confidence;
+}
+
+int Calibration::count() const
+{
+    return std::accumulate(byConfidence.begin(), byConfidence.end(), 0,
+                           [](int sum, const Bin& b) { return sum + b.of; });
+}
+
+double Calibration::error() const
+{
+    double sum = 0.0;
+    for (const auto& bin : byConfidence)
+        sum += std::abs(bin.right - bin.confidence);
+    return sum / std::max(1, count());
+}
 
 bool Summary::diagnosed() const
 {
@@ -79,6 +103,8 @@ Summary summarize(const std::vector<Outcome>& outcomes)
         } else {
             summary.faint.add(o.named());
         }
+        for (std::size_t n = 0; n < std::min(o.added.size(), o.confidence.size()); ++n)
+            summary.calibration.add(o.confidence[n], o.isThere(o.added[n]));
         if (!o.odd())
             summary.atNoise.add(o.finalDb <= nearNoiseDb);
         if (o.improveSeconds > 0.0)
@@ -146,6 +172,14 @@ std::string text(const Summary& s, const std::vector<Outcome>& outcomes)
     result += row("points of the true laws inside the 95 % bands", s.inBand, 0.85);
     for (const auto& [effect, share] : s.inBandOf)
         result += row(("  " + effect).c_str(), share, 0.0);
+    if (s.calibration.count() > 0) {
+        result += formatted("  calibration error of the confidence in %d added effects: %.1f %%\n",
+                            s.calibration.count(), 100.0 * s.calibration.error());
+        for (const auto& bin : s.calibration.byConfidence)
+            if (bin.of > 0)
+                result += formatted("    of %3d that were %5.1f %% sure on average %5.1f %% are there\n", bin.of,
+                                    100.0 * bin.confidence / bin.of, 100.0 * bin.right / bin.of);
+    }
     result += formatted("  median time of improve over the take's length: %.2f\n", s.medianTimeRatio);
     bool any = false;
     for (const auto& o : outcomes)
@@ -177,6 +211,12 @@ nlohmann::ordered_json toJson(const Summary& s, const std::vector<Outcome>& outc
     document["inBand"] = share(s.inBand);
     for (const auto& [effect, part] : s.inBandOf)
         document["inBandOf"][effect] = share(part);
+    auto& calibration = document["calibration"] = {{"effects", s.calibration.count()},
+                                                   {"error", s.calibration.error()}};
+    for (const auto& bin : s.calibration.byConfidence)
+        if (bin.of > 0)
+            calibration["bins"].push_back(
+                {{"confidence", bin.confidence / bin.of}, {"there", share({bin.right, bin.of})}});
     document["medianTimeRatio"] = s.medianTimeRatio;
     document["takes"] = Json::array();
     for (const auto& o : outcomes) {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <array>
 #include <map>
 
 namespace excursion::study {
@@ -18,6 +19,21 @@ struct Share {
     }
     /// Nothing to count is no failure.
     double value() const { return of > 0 ? static_cast<double>(count) / of : 1.0; }
+};
+
+/// Whether confidence means what it says: effects that were added, by the confidence in them.
+struct Calibration {
+    static constexpr int bins = 20;
+    struct Bin {
+        int right = 0, of = 0;
+        double confidence = 0.0;  ///< sum
+    };
+    std::array<Bin, bins> byConfidence {};
+
+    void add(double confidence, bool right);
+    int count() const;
+    /// sum over the bins of |right ones - sum of confidences|, over all effects
+    double error() const;
 };
 
 /// The shares that the study is judged by.
@@ -34,6 +50,7 @@ struct Summary {
     Share oddNothingFalse;                  ///< takes with an oddity: no effect added that is not there
     Share inBand;                           ///< points of the hidden laws within their 95 % bands, pooled
     std::map<std::string, Share> inBandOf;  ///< by effect
+    Calibration calibration;                ///< of all added effects
     double medianTimeRatio = 0.0;           ///< time of improve over the take's length
 
     /// Harmonic mean of the share of the shown effects that were found and of the share of the added ones that are

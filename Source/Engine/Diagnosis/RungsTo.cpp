@@ -37,11 +37,15 @@ Rung atRest(const Rung& rung, const std::vector<Score>& scores, const Whole& who
     return next;
 }
 
-/// How sure an effect of the whole is: the share of what would be left without it that it explains, as far as that is
-/// the same at all levels.
+/// How often an effect of a whole is there, by its merit: the share of what would be left without it that it explains,
+/// as far as that is the same at all levels. Counted on virtual loudspeakers (Docs/Method.md): what a whole keeps is
+/// nearly always there, whatever its merit.
 double confidenceOf(const Vote& vote)
 {
-    return std::max(0.0, 1.0 - std::pow(10.0, -vote.uniqueDb / 10.0)) * std::clamp(1.0 - vote.inconsistency, 0.0, 1.0);
+    constexpr double least = 0.90, most = 0.985;
+    const double merit = std::max(0.0, 1.0 - std::pow(10.0, -vote.uniqueDb / 10.0))
+                         * std::clamp(1.0 - vote.inconsistency, 0.0, 1.0);
+    return least + (most - least) * merit;
 }
 
 /// What is said of a rung whose next effect is known.
