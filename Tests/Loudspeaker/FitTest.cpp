@@ -177,34 +177,6 @@ TEST_CASE("A law of the bench comes back as the law of the effect", "[fit][slow]
     CHECK(inside == points);
 }
 
-TEST_CASE("Creep that begins as a single relaxation becomes the chain or the cell that it is", "[fit][slow]")
-{
-    using Family = bench::Creep::Family;
-    bench::Loudspeaker truth;
-    bench::Creep creep;
-    creep.family = GENERATE(Family::chain, Family::standard);
-    creep.low = 300.0;
-    creep.cells = {{0.014, 10.0}, {0.034, 23.0}, {0.037, 119.0}, {0.022, 666.0}, {0.010, 3320.0}};
-    truth.creep = creep;
-    auto record = makeRecord(bench::measure(truth, smallSetup()));
-    auto model = startModel(record);
-    adapt(record, model);
-    fit(model, record, estimationSections(record));
-    const auto left = [&](std::size_t start, bool single) {
-        auto creeping = withEffect(model, effectNamed("creep"), visitedRange(model, record), start);
-        auto& own = creeping.components.back().parameters;
-        REQUIRE(own[2].name == "width");
-        own[0].value = 0.05 * model.baseParameter("K").value;
-        if (single)
-            own[2].value = std::isfinite(own[2].lower) ? own[2].lower : 0.0;
-        return fit(creeping, record, estimationSections(record)).chiSquaredPerValue;
-    };
-    const double wide = left(0, false), single = left(1, true);
-    INFO("from a wide band " << wide << ", from a single relaxation " << single);
-    CHECK(single < 1.3 * wide);  // both go along a valley at the noise; a search that is stuck leaves twice as much
-    CHECK(wide < 1.6);
-}
-
 TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][slow]")
 {
     auto setup = smallSetup();

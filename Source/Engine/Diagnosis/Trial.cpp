@@ -63,6 +63,26 @@ Model newestScaled(Model model, double factor)
     return model;
 }
 
+/// Shapes of a linear effect that are next to nothing, but not from the start, at a share of where they start. Whether
+/// there are any.
+bool wakeShapes(Component& component)
+{
+    constexpr double nothing = 0.05, share = 0.15;
+    bool any = false;
+    if (!component.effect->linear() || !isAtWork(component))
+        return any;
+    const auto usual = component.effect->parameters(component.operatingRange);
+    for (std::size_t k = 0; k < usual.size(); ++k) {
+        auto& p = component.parameters[k];
+        if (p.strength || !p.free || !std::isfinite(p.prior)
+            || !(std::abs(p.value) < nothing * std::abs(usual[k].value)))
+            continue;
+        p.value = share * usual[k].value;
+        any = true;
+    }
+    return any;
+}
+
 }  // namespace
 
 void chooseResiduals(FitOptions& fit, ScoreOptions& score, const Model& model, const Record& record,
@@ -203,19 +223,32 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     auto glance = options;
     glance.search = {3, 1e-2};
     double now = quickCost(model, record, sections, options);
+    const auto helps = [&](double then) {
+        const bool does = then < worthIt * now;
+        if (does)
+            now = then;
+        return does;
+    };
+    bool woken = false;
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        auto anew = model;
+        if (!wakeShapes(anew.components[k]) || !quickFit(anew, record, sections, options).usable()
+            || !helps(quickCost(anew, record, sections, options)))
+            continue;
+        model = std::move(anew);
+        woken = true;
+    }
     return findAnew(
-        model, withoutLaws(model, record, options.threads),
-        [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
-        [&](Model& anew) {
-            if (!quickFit(anew, record, sections, glance).usable() || quickCost(anew, record, sections, options) > now
-                || !quickFit(anew, record, sections, options).usable())
-                return false;
-            const double then = quickCost(anew, record, sections, options);
-            const bool helps = then < worthIt * now;
-            if (helps)
-                now = then;
-            return helps;
-        });
+               model, withoutLaws(model, record, options.threads),
+               [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
+               [&](Model& anew) {
+                   if (!quickFit(anew, record, sections, glance).usable()
+                       || quickCost(anew, record, sections, options) > now
+                       || !quickFit(anew, record, sections, options).usable())
+                       return false;
+                   return helps(quickCost(anew, record, sections, options));
+               })
+           || woken;
 }
 
 void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options,

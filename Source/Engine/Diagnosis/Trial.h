@@ -42,7 +42,9 @@ bool findAnew(Model&, const Record& still, const std::function<bool(const Compon
               const std::function<bool(Model& anew)>& keeps);
 
 /// Searches again for linear effects that have several parts, as newly known effects may have uncovered more parts.
-/// True if that leaves less; the model then had a quick fit. Does nothing for a record without periods.
+/// Before that, shapes that have shrunk to nothing while laws were missing are brought back on trial: where all cells
+/// of a relaxation are one every slope by its shape is zero, and no search leaves that place. True if something leaves
+/// less; the model then had a quick fit. Does nothing for a record without periods.
 bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
 /// Adds an effect to the model with the start values of the score test, and makes a quick fit. Throws Error (data) if

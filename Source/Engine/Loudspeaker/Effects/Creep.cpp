@@ -51,9 +51,7 @@ public:
         width.name = "width";
         width.unit = "decades";
         width.value = 2.0;
-        // A single relaxation, at 0, is stationary in all shapes: a search that shrinks to it while laws are missing
-        // would never leave it. Within a third of a decade the weights tell the same.
-        width.lower = 0.3;
+        // the sign says nothing: a search that passes through the single relaxation at 0 must not hit a wall
         width.prior = 3.0;
         tilt.name = "tilt";
         tilt.unit = "1";
