@@ -83,6 +83,22 @@ bool wakeShapes(Component& component)
     return any;
 }
 
+/// Changes one component after the other, on trial. Whether a change was kept.
+/// @param change  of component k; false if there is nothing to change
+bool changeEach(Model& model, const std::function<bool(Model& anew, std::size_t k)>& change,
+                const std::function<bool(Model& anew)>& keeps)
+{
+    bool any = false;
+    for (std::size_t k = 1; k < model.components.size(); ++k) {
+        auto anew = model;
+        if (!change(anew, k) || !keeps(anew))
+            continue;
+        model = std::move(anew);
+        any = true;
+    }
+    return any;
+}
+
 }  // namespace
 
 void chooseResiduals(FitOptions& fit, ScoreOptions& score, const Model& model, const Record& record,
@@ -200,17 +216,13 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
 bool findAnew(Model& model, const Record& still, const std::function<bool(const Component&)>& which,
               const std::function<bool(Model& anew)>& keeps)
 {
-    bool found = false;
-    for (std::size_t k = 1; k < model.components.size(); ++k) {
-        if (!model.components[k].effect->linear() || !which(model.components[k]))
-            continue;
-        auto anew = model;
-        if (!fitByResponse(anew, k, still).usable() || !keeps(anew))
-            continue;
-        model = std::move(anew);
-        found = true;
-    }
-    return found;
+    return changeEach(
+        model,
+        [&](Model& anew, std::size_t k) {
+            const auto& component = anew.components[k];
+            return component.effect->linear() && which(component) && fitByResponse(anew, k, still).usable();
+        },
+        keeps);
 }
 
 bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections,
@@ -229,15 +241,12 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
             now = then;
         return does;
     };
-    bool woken = false;
-    for (std::size_t k = 1; k < model.components.size(); ++k) {
-        auto anew = model;
-        if (!wakeShapes(anew.components[k]) || !quickFit(anew, record, sections, options).usable()
-            || !helps(quickCost(anew, record, sections, options)))
-            continue;
-        model = std::move(anew);
-        woken = true;
-    }
+    const bool woken = changeEach(
+        model, [](Model& anew, std::size_t k) { return wakeShapes(anew.components[k]); },
+        [&](Model& anew) {
+            return quickFit(anew, record, sections, options).usable()
+                   && helps(quickCost(anew, record, sections, options));
+        });
     return findAnew(
                model, withoutLaws(model, record, options.threads),
                [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
