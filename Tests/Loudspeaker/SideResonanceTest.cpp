@@ -73,3 +73,31 @@ TEST_CASE("As many parts are found in an impedance as there are", "[effects]")
             CHECK(found[k] == Approx(parts[k].frequency).epsilon(0.01));
     }
 }
+
+TEST_CASE("A part too many is put at rest, and the parts that ring stay", "[effects]")
+{
+    OperatingRange range;
+    range.lowFrequency = 20.0;
+    range.highFrequency = 5000.0;
+    auto model = withEffect(test::baseOf(with({})), effectNamed("side-resonance"), range);
+    auto& own = model.components.back().parameters;
+    const auto set = [&](std::size_t part, double mass, double frequency, double loss) {
+        own[3 * part].value = mass;
+        own[3 * part + 1].value = frequency;
+        own[3 * part + 2].value = loss;
+    };
+    const double mass = 0.05 * model.baseParameter("m").value;
+    set(0, mass, 430.0, 0.2);
+    set(1, mass, 6000.0, 0.7);  // above the band: no more than mass
+    CHECK(restImplausibleParts(model, 1));
+    CHECK(own[0].value == mass);
+    CHECK(own[0].free);
+    CHECK(own[3].value == 0.0);
+    CHECK_FALSE(own[3].free);
+    CHECK(isItself(model, 1));
+    CHECK_FALSE(restImplausibleParts(model, 1));
+
+    set(0, mass, 7000.0, 0.2);  // nothing of it is plausible: the effect stands for something else
+    CHECK_FALSE(restImplausibleParts(model, 1));
+    CHECK(own[0].value == mass);
+}

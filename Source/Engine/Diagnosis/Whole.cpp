@@ -10,6 +10,7 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace excursion {
 namespace {
@@ -56,7 +57,7 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable())
             break;
-        strange = search.takeOutImplausible(fuller);
+        const auto before = std::exchange(strange, search.takeOutImplausible(fuller));
         search.chooseResiduals(fuller);
         now = search.left(whole.model);
         auto then = search.left(fuller);
@@ -66,7 +67,7 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
             then = search.left(fuller);
         }
         if (!(search.lost(now, then) > worthARound)) {
-            if (strange.empty())
+            if (strange.empty() || strange == before)  // the next round would be this one again
                 break;
             continue;
         }
@@ -122,6 +123,8 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         }
         search.chooseResiduals(whole.model);
     }
+    if (search.restImplausibleParts(whole.model))
+        whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.87));
     const auto keeps = [&](const Removal& one) {
         const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)

@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
+#include "Engine/Loudspeaker/FitResponse.h"
 
 #include <cmath>
 
@@ -210,14 +211,24 @@ std::optional<WholeSearch::Removals> WholeSearch::takeOut(Model& model, bool tho
     return every;
 }
 
+bool WholeSearch::restImplausibleParts(Model& model) const
+{
+    bool any = false;
+    for (std::size_t k = 1; k < model.components.size(); ++k)
+        if (!base_.has(model.components[k].effect->id()))
+            any |= excursion::restImplausibleParts(model, k);
+    return any;
+}
+
 std::set<std::string> WholeSearch::takeOutImplausible(Model& model) const
 {
-    auto strange = implausible(model);
-    std::erase_if(strange, [&](const std::string& effect) { return base_.has(effect); });
     auto leaner = model;
+    const bool rested = restImplausibleParts(leaner);
+    auto strange = implausible(leaner);
+    std::erase_if(strange, [&](const std::string& effect) { return base_.has(effect); });
     for (const auto& effect : strange)
         leaner = withoutEffect(leaner, effect);
-    if (strange.empty() || !fit(leaner, brief).usable())
+    if ((strange.empty() && !rested) || !fit(leaner, brief).usable())
         return {};
     model = std::move(leaner);
     return strange;

@@ -81,7 +81,12 @@ public:
     /// found of them all where none was taken out, else nothing.
     std::optional<Removals> takeOut(Model&, bool thorough, const std::function<bool(const Removal&)>& keeps) const;
 
-    /// Takes out what stands for something else; returns what that was.
+    /// Puts parts of effects at rest that stand for something else, where others of their effect do not (see
+    /// FitResponse.h). Whether there were any; the model is to be fitted again then.
+    bool restImplausibleParts(Model&) const;
+
+    /// Takes out what stands for something else, and fits the rest; returns the effects that went. Of those that have
+    /// plausible parts only the others go.
     std::set<std::string> takeOutImplausible(Model&) const;
 
 private:

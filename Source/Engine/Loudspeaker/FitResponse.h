@@ -81,6 +81,12 @@ SearchSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
 /// implausible values, which would stand for something else.
 bool isItself(const Model&, std::size_t component);
 
+/// Puts those parts of an effect at rest (Effect::parts), no longer free, that are implausible by themselves: one part
+/// too many stands for something else, and the others are what they are. What remains of such a part far above the band
+/// is its mass, which the base takes over in the next fit. Does nothing if no plausible part would stay.
+/// @returns whether a part was put at rest
+bool restImplausibleParts(Model&, std::size_t component);
+
 /// Whether a fit is also sure that the component is present: one of its strengths exceeds four standard errors. The
 /// errors are those for the shape that was found: data that shows a spectrum need not show its distribution, nor its
 /// value far beyond the band.

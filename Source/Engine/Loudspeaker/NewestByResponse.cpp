@@ -275,6 +275,47 @@ bool isItself(const Model& model, std::size_t component)
               });
 }
 
+namespace {
+
+/// The component with all of its parts at rest but one.
+Component withOnly(const Part& part, Component component)
+{
+    for (std::size_t k = 0; k < component.parameters.size(); ++k)
+        if (component.parameters[k].strength && (k < part.first || k >= part.first + part.count))
+            component.parameters[k].value = 0.0;
+    return component;
+}
+
+}  // namespace
+
+bool restImplausibleParts(Model& model, std::size_t component)
+{
+    auto& own = model.components[component];
+    const auto& base = model.base().parameters;
+    auto rested = own;
+    bool stays = false, goes = false;
+    for (const auto& part : own.effect->parts(own.operatingRange)) {
+        const auto alone = withOnly(part, own);
+        if (!isAtWork(alone))
+            continue;
+        if (own.effect->plausible(own.operatingRange, alone.parameters, base)) {
+            stays = true;
+            continue;
+        }
+        goes = true;
+        for (std::size_t k = part.first; k < part.first + part.count; ++k) {
+            auto& p = rested.parameters[k];
+            p.free = false;
+            if (p.strength)
+                p.value = 0.0;
+        }
+    }
+    if (!stays || !goes)
+        return false;
+    own = std::move(rested);
+    return true;
+}
+
 bool isSeen(const Model& model, std::size_t component)
 {
     constexpr double sure = 4.0;  // standard errors, which take neighbouring points for independent
