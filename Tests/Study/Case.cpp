@@ -20,7 +20,7 @@ double truth(const bench::Loudspeaker& speaker, const std::string& effect, doubl
     if (effect == "force-factor")
         return speaker.forceFactorAt(q);
     if (effect == "stiffness")
-        return speaker.stiffnessAt(q);
+        return speaker.restingStiffnessAt(q);  // K(x) of a model is what remains beside its relaxations
     if (effect == "inductance-position")
         return speaker.inductanceAt(q);
     if (effect == "damping-velocity")
