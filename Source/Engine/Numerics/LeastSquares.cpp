@@ -102,20 +102,34 @@ private:
     mutable std::deque<Known> known_;
 };
 
+/// Reports, stops when asked to, and remembers the last place that was accepted and has slopes.
 class Watch final : public ceres::IterationCallback {
 public:
-    Watch(const Progress& progress, int maximum) : progress_(progress), maximum_(maximum) {}
+    Watch(const Progress& progress, int maximum, const Eigen::VectorXd& x)
+        : progress_(progress), maximum_(maximum), x_(x)
+    {
+    }
     ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override
     {
+        if (summary.step_is_successful && summary.iteration > 0) {
+            place_ = x_;
+            cost_ = summary.cost;
+        }
         if (progress_.stop.stop_requested())
             return ceres::SOLVER_ABORT;
         progress_.at(std::min(1.0, static_cast<double>(summary.iteration) / maximum_), "refining the parameters");
         return ceres::SOLVER_CONTINUE;
     }
 
+    const Eigen::VectorXd& place() const { return place_; }  ///< empty where no step was taken
+    double cost() const { return cost_; }
+
 private:
     const Progress& progress_;
     int maximum_;
+    const Eigen::VectorXd& x_;
+    Eigen::VectorXd place_;
+    double cost_ = 0.0;
 };
 
 }  // namespace
@@ -178,7 +192,8 @@ SearchSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& theta,
     solver.line_search_interpolation_type = options.slopesAlongSteps ? ceres::CUBIC : ceres::QUADRATIC;
     solver.num_threads = 1;
     solver.logging_type = ceres::SILENT;
-    Watch watch(progress, options.maximumIterations);
+    solver.update_state_every_iteration = true;
+    Watch watch(progress, options.maximumIterations, x);
     solver.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
@@ -190,11 +205,14 @@ SearchSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& theta,
         result.end(Termination::costSettled);
     else if (summary.IsSolutionUsable())
         result.end(Termination::maximumIterations);
-    else
+    else if (watch.place().size() == 0)
         result.end(Termination::brokeDown, summary.message);
+    else  // a simulation can be possible where its derivatives run away
+        result.end(Termination::noSlopes);
     if (result.usable()) {
-        result.finalCost = 2.0 * summary.final_cost + atStart.sure;
-        theta = x.cwiseProduct(scale);
+        const bool onWay = result.termination == Termination::noSlopes;
+        result.finalCost = 2.0 * (onWay ? watch.cost() : summary.final_cost) + atStart.sure;
+        theta = (onWay ? watch.place() : x).cwiseProduct(scale);
     }
     return result;
 }

@@ -11,6 +11,7 @@ const char* sentenceFor(Termination termination)
     case Termination::startUndefined: return "the model cannot be computed at its start";
     case Termination::brokeDown: return "the search broke down";
     case Termination::maximumIterations: return "the largest number of iterations was reached";
+    case Termination::noSlopes: return "the derivatives gave out on the way";
     case Termination::notAsked: return "no refinement was asked for";
     case Termination::severalInputs: return "models with several inputs are not refined";
     case Termination::undetermined: return "the error does not tell what was searched for";

@@ -15,6 +15,7 @@ enum class Termination {
 
     // It came to something that is at least as good as its start, and might have come further.
     maximumIterations,
+    noSlopes,       ///< the best step leads to a place without finite derivatives: the search ended before it
     notAsked,       ///< options say that nothing is refined
     severalInputs,  ///< the refinement knows models with one input only
     undetermined,   ///< what is searched for does not show in the error
