@@ -114,3 +114,21 @@ TEST_CASE("The band of a law is that of all its coefficients, also where it is n
         }
     }
 }
+
+TEST_CASE("A law's band is not that of parameters on which it does not depend, and unknown where its own are",
+          "[curve]")
+{
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someOperatingRange(1.0));
+    model = withEffect(std::move(model), effectNamed("creep"), someOperatingRange(1.0));
+    const auto count = static_cast<Eigen::Index>(parametersOf(model).size());
+    const auto first = static_cast<Eigen::Index>(model.base().parameters.size());
+    const auto other = first + static_cast<Eigen::Index>(model.components[1].parameters.size());
+    model.covariance = Eigen::MatrixXd::Identity(count, count);
+    const auto before = laws(model).front().halfWidth;
+    model.covariance(other, other) = unknown;
+    CHECK(before.front() > 0.0);
+    CHECK(laws(model).front().halfWidth == before);
+    model.covariance(first, first) = unknown;
+    CHECK(std::isnan(laws(model).front().halfWidth.front()));
+}

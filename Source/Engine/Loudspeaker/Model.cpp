@@ -24,12 +24,6 @@ std::vector<Pointer> collect(ModelType& model)
     return all;
 }
 
-/// Value of a component's law at q, the base parameter not included.
-double lawValue(const Component& component, const std::vector<double>& values, double q)
-{
-    return component.effect->lawAt(component.operatingRange, values.data(), q);
-}
-
 }  // namespace
 
 Component scaled(Component component, double factor)
@@ -201,57 +195,6 @@ void setParameterVector(Model& model, const Eigen::VectorXd& values)
     const auto all = parametersOf(model);
     for (std::size_t k = 0; k < all.size(); ++k)
         all[k]->value = values[static_cast<Eigen::Index>(k)];
-}
-
-std::vector<LawCurve> laws(const Model& model, int points)
-{
-    std::vector<LawCurve> curves;
-    Eigen::Index offset = static_cast<Eigen::Index>(model.base().parameters.size());
-    for (std::size_t k = 1; k < model.components.size(); ++k) {
-        const auto& component = model.components[k];
-        const auto count = static_cast<Eigen::Index>(component.parameters.size());
-        const auto info = component.effect->law();
-        if (info) {
-            LawCurve curve;
-            curve.info = *info;
-            curve.effectId = component.effect->id();
-            const auto values = valuesOf(component);
-            const auto& baseParameters = model.base().parameters;
-            const auto* base = &parameterNamed(baseParameters, info->base);
-            const auto& e = component.operatingRange;
-            const double range = info->argument == "x"   ? e.displacement
-                                 : info->argument == "v" ? e.velocity
-                                                         : e.current;
-            for (int n = 0; n < points; ++n) {
-                const double q = range * (2.0 * n / (points - 1) - 1.0);
-                const double difference = lawValue(component, values, q);
-                curve.argument.push_back(q);
-                curve.value.push_back(base->value + difference);
-                double halfWidth = std::numeric_limits<double>::quiet_NaN();
-                if (model.covariance.size() > 0) {
-                    // Differences over a small share of each standard error: exact where a law is linear in its
-                    // coefficients, as most are.
-                    constexpr double share = 1e-3;
-                    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.covariance.rows());
-                    gradient[base - baseParameters.data()] = 1.0;
-                    for (Eigen::Index j = 0; j < count; ++j) {
-                        const double deviation = std::sqrt(model.covariance(offset + j, offset + j));
-                        const double step = deviation > 0.0 ? share * deviation : 1.0;
-                        auto above = values, below = values;
-                        above[static_cast<std::size_t>(j)] += step;
-                        below[static_cast<std::size_t>(j)] -= step;
-                        gradient[offset + j] = (lawValue(component, above, q) - lawValue(component, below, q))
-                                               / (2.0 * step);
-                    }
-                    halfWidth = 1.96 * std::sqrt(std::max(0.0, gradient.dot(model.covariance * gradient)));
-                }
-                curve.halfWidth.push_back(halfWidth);
-            }
-            curves.push_back(std::move(curve));
-        }
-        offset += count;
-    }
-    return curves;
 }
 
 }  // namespace excursion

@@ -20,11 +20,11 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
         const auto& p = *all[static_cast<std::size_t>(k)];
         const double deviation = std::sqrt(covariance(k, k)),
-                     size = std::min(std::max(std::abs(p.value), 1e-12), p.prior);
+                     size = std::min(p.value != 0.0 ? std::abs(p.value) : 1.0, p.prior);
         if (deviation == 0.0)  // held, or of no importance
             continue;
         const bool known = std::isfinite(deviation);
-        const double step = 1e-3 * (known ? std::min(deviation, size) : size);
+        const double step = 1e-3 * (!known ? size : p.value == 0.0 ? deviation : std::min(deviation, size));
         auto at = theta;
         const auto numbersAt = [&](double value) {
             at[k] = std::clamp(value, p.lower, p.upper);
