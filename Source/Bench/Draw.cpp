@@ -97,7 +97,7 @@ Draw draw(std::uint64_t seed, const DrawOptions& options)
 
     Draw result;
     const auto& classes = driverClasses();
-    const auto drawnClass = classes[static_cast<std::size_t>(classChoice.index(static_cast<int>(classes.size())))];
+    const auto& drawnClass = classes[static_cast<std::size_t>(classChoice.index(static_cast<int>(classes.size())))];
     result.driver = options.driver.value_or(drawnClass);
     result.speaker = drawLinear(result.driver, driverChoice);
     result.setup = drawSetup(result.speaker, options, setupChoice);
@@ -108,7 +108,7 @@ Draw draw(std::uint64_t seed, const DrawOptions& options)
     result.visited = visit(result.speaker, result.setup);
 
     const auto& ids = drawnEffects();
-    const auto chosen = ids[static_cast<std::size_t>(effectChoice.index(static_cast<int>(ids.size())))];
+    const auto& chosen = ids[static_cast<std::size_t>(effectChoice.index(static_cast<int>(ids.size())))];
     result.hidden = options.hidden.value_or(std::vector<HiddenEffect> {{chosen, 0.0}});
     for (auto& effect : result.hidden) {
         const auto place = std::find(effectIds().begin(), effectIds().end(), effect.id) - effectIds().begin();

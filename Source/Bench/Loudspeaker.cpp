@@ -9,43 +9,11 @@ namespace {
 
 double valueOf(const std::optional<Curve>& curve, double q) { return curve ? curve->value(q) : 1.0; }
 
-/// What creep in series with the spring yields in the end, over the spring's compliance.
-double finalYield(const Creep& creep)
-{
-    switch (creep.family) {
-    case Creep::Family::logarithmic: return creep.amount * std::log(creep.high / creep.low);
-    case Creep::Family::standard: return creep.amount;
-    case Creep::Family::fractional: break;  // lies beside the spring
-    case Creep::Family::chain: {
-        double yield = 0.0;
-        for (const auto& cell : creep.cells)
-            yield += cell.yield;
-        return yield;
-    }
-    }
-    return 0.0;
-}
-
 }  // namespace
 
 double Loudspeaker::forceFactorAt(double x) const { return Bl * valueOf(forceFactor, x); }
 
 double Loudspeaker::stiffnessAt(double x) const { return K * valueOf(stiffness, x); }
-
-double Loudspeaker::restingStiffnessAt(double x) const
-{
-    const double yield = creep ? finalYield(*creep) : 0.0;
-    if (x == 0.0 || yield == 0.0)
-        return stiffnessAt(x) / (1.0 + yield);
-    // The spring is stretched by u, what lies in series with it gives way by yield F(u)/K, and x is both.
-    double less = 0.0, more = 1.0;  // of x
-    for (int bisection = 0; bisection < 60; ++bisection) {
-        const double u = 0.5 * (less + more);
-        (u + yield * u * valueOf(stiffness, u * x) < 1.0 ? less : more) = u;
-    }
-    const double u = 0.5 * (less + more);
-    return stiffnessAt(u * x) * u;
-}
 
 double Loudspeaker::inductanceAt(double x, double i) const
 {

@@ -131,8 +131,7 @@ struct Loudspeaker {
     std::optional<Oddity> oddity;  ///< a force that no effect describes
 
     double forceFactorAt(double x) const;               ///< N/A
-    double stiffnessAt(double x) const;                 ///< N/m, of the spring
-    double restingStiffnessAt(double x) const;          ///< N/m, F/x of spring and creep once all creep is over
+    double stiffnessAt(double x) const;                 ///< N/m
     double inductanceAt(double x, double i = 0) const;  ///< H
     double inductanceSlopeAt(double x) const;           ///< H/m, d Le/dx at i = 0
     double dampingAt(double v) const;                   ///< N s/m

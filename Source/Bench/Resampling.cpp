@@ -71,8 +71,9 @@ double readBetween(std::span<const double> x, double p)
         return below;
     }();
 
-    const double whole = std::floor(p), t = p - whole + count / 2 - 1;  // t from the first of the 12
-    const long first = static_cast<long>(whole) - (count / 2 - 1);
+    constexpr int half = count / 2;
+    const double whole = std::floor(p), t = p - whole + half - 1;  // t from the first of the 12
+    const long first = static_cast<long>(whole) - (half - 1);
     // Products of (t - m) over m < n and m > n
     std::array<double, count> left {}, right {};
     left[0] = right[count - 1] = 1.0;

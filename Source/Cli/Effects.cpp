@@ -18,9 +18,7 @@ std::string parametersText(const Effect& effect, const std::vector<Parameter>& p
     if (effect.law())
         return std::to_string(parameters.size()) + " coefficients in " + parameters.front().unit
                + ", more where the data asks for them";
-    const auto text = joined(parameters,
-                             [&](const auto& p) { return p.name + (p.unit == "1" ? "" : " in " + p.unit); });
-    return text;
+    return joined(parameters, [&](const auto& p) { return p.name + (p.unit == "1" ? "" : " in " + p.unit); });
 }
 
 std::string lawText(const LawInfo& law)

@@ -83,7 +83,7 @@ std::size_t columnsOf(std::string_view text)
 Terminal::Terminal() : stderrIsTerminal_(isStderrATerminal())
 {
     std::signal(SIGINT, onInterrupt);
-    interruptWatch_ = std::jthread([this](std::stop_token ended) {
+    interruptWatch_ = std::jthread([this](const std::stop_token& ended) {
         while (!ended.stop_requested() && !interrupted)
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         if (interrupted)

@@ -14,8 +14,10 @@ std::vector<Plot> lawPlots(const Model& model)
         Plot plot;
         plot.title = effectTitle(law.effectId);
         plot.x = {law.info.argument, across.unit, false, 0.0, 0.0, {}};
-        plot.y = {law.info.name, up.unit, false, 0.0, 0.0, {}};
-        Series curve {law.info.name,
+        const auto name = law.frequency > 0.0 ? law.info.name + " at " + nominal(law.frequency, "Hz")
+                                              : law.info.name;
+        plot.y = {name, up.unit, false, 0.0, 0.0, {}};
+        Series curve {name,
                       Role::model,
                       scaled(law.argument, across.factor),
                       scaled(law.value, up.factor),
@@ -27,7 +29,7 @@ std::vector<Plot> lawPlots(const Model& model)
             curve.lower.push_back((law.value[k] - law.halfWidth[k]) * up.factor);
             curve.upper.push_back((law.value[k] + law.halfWidth[k]) * up.factor);
         }
-        const double base = model.baseParameter(law.info.base).value * up.factor;
+        const double base = law.value[law.value.size() / 2] * up.factor;
         plot.series = {{law.info.base + " at rest",
                         Role::reference,
                         {curve.x.front(), curve.x.back()},

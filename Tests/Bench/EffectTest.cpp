@@ -110,22 +110,3 @@ TEST_CASE("a coil heats towards its steady temperature", "[bench]")
     CHECK(record.coilTemperature > 20.0);
     CHECK(record.coilTemperature < 30.0);
 }
-
-TEST_CASE("once creep is over, spring and creep carry one force and share the way", "[bench]")
-{
-    Loudspeaker speaker;
-    const Creep chain {.family = Creep::Family::chain, .cells = {{0.1, 10.0}, {0.2, 100.0}}};
-    for (const auto& creep : {Creep {}, Creep {.family = Creep::Family::standard, .amount = 0.3}, chain}) {
-        speaker.creep = creep;
-        speaker.stiffness.reset();
-        const double slow = speaker.suspensionStiffness(1e-9).real(), yield = speaker.K / slow - 1.0;
-        CHECK(speaker.restingStiffnessAt(0.0) == Approx(slow));
-        CHECK(speaker.restingStiffnessAt(2e-3) == Approx(slow));
-
-        speaker.stiffness = Curve {Curve::Shape::coshSpring, 0.0, 1e-3};
-        const double force = speaker.restingStiffnessAt(2e-3) * 2e-3, stretched = 2e-3 - yield * force / speaker.K;
-        CHECK(speaker.stiffnessAt(stretched) * stretched == Approx(force));
-    }
-    speaker.creep = Creep {.family = Creep::Family::fractional};
-    CHECK(speaker.restingStiffnessAt(2e-3) == speaker.stiffnessAt(2e-3));
-}

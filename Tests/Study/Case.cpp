@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 namespace excursion::study {
@@ -20,7 +22,7 @@ double truth(const bench::Loudspeaker& speaker, const std::string& effect, doubl
     if (effect == "force-factor")
         return speaker.forceFactorAt(q);
     if (effect == "stiffness")
-        return speaker.restingStiffnessAt(q);  // K(x) of a model is what remains beside its relaxations
+        return speaker.stiffnessAt(q);
     if (effect == "inductance-position")
         return speaker.inductanceAt(q);
     if (effect == "damping-velocity")
@@ -28,6 +30,20 @@ double truth(const bench::Loudspeaker& speaker, const std::string& effect, doubl
     if (effect == "inductance-current")
         return speaker.inductanceAt(0.0, q);
     return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The same for a law at a frequency, whose base yields.
+double truth(const bench::Loudspeaker& speaker, const LawCurve& law, double q)
+{
+    const double spring = truth(speaker, law.effectId, q);
+    if (law.frequency == 0.0)
+        return spring;
+    const std::complex<double> s {0.0, 2.0 * std::numbers::pi * law.frequency};
+    if (law.info.base == "K")
+        return spring + speaker.suspensionStiffness(s).real() - speaker.K;
+    const double loops = speaker.eddyImpedance(s).imag() / s.imag();
+    const bool follow = speaker.eddyCurrents && speaker.eddyCurrents->moves && law.info.argument == "x";
+    return spring + loops * (follow ? spring / speaker.Le : 1.0);
 }
 
 std::vector<LawCoverage> coverage(const Model& model, const bench::Loudspeaker& speaker, const Outcome& outcome)
@@ -39,7 +55,7 @@ std::vector<LawCoverage> coverage(const Model& model, const bench::Loudspeaker& 
             if (std::abs(law.argument[n]) > 0.9 * law.argument.back())
                 continue;
             ++covered.points;
-            if (std::abs(law.value[n] - truth(speaker, law.effectId, law.argument[n])) <= law.halfWidth[n])
+            if (std::abs(law.value[n] - truth(speaker, law, law.argument[n])) <= law.halfWidth[n])
                 ++covered.inside;
         }
         result.push_back(covered);

@@ -76,10 +76,11 @@ ScaledModel withKnown(Model model, const KnownScale& known)
                   "and current alone."
                 : "The model has no coil: its mass follows from force and motion.");
     const bool guessed = massIsHeld(model) && !scaled;
-    if (known.mass)
-        model = withMotion(std::move(model), std::sqrt(model.baseParameter("m").value / *known.mass));
-    if (known.forceFactor)
-        model = withMotion(std::move(model), model.baseParameter("Bl").value / *known.forceFactor);
+    if (scaled) {
+        const double times = known.mass ? std::sqrt(model.baseParameter("m").value / *known.mass)
+                                        : model.baseParameter("Bl").value / *known.forceFactor;
+        model = withMotion(std::move(model), times);
+    }
 
     auto& area = model.path.parameters[0];
     if (known.coneArea) {

@@ -128,7 +128,8 @@ std::optional<Curve> impedanceChange(const Model& model, double range, double fr
 double placeError(const Curve& c, double x)
 {
     const double step = c.x[1] - c.x[0];
-    const auto k = std::clamp<std::size_t>(static_cast<std::size_t>((x - c.x.front()) / step + 0.5), 1, c.x.size() - 2);
+    const auto k = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround((x - c.x.front()) / step)), 1,
+                                           c.x.size() - 2);
     return c.error[k] * 2.0 * step / std::abs(c.y[k + 1] - c.y[k - 1]);
 }
 

@@ -32,7 +32,7 @@ Eigen::VectorXd feasibleStep(const NormalEquations& normal, const Model& model, 
     while (!positions.empty()) {
         auto use = own;
         use.insert(use.end(), positions.begin(), positions.end());
-        const auto d = gaussNewtonStep(normal, use);
+        Eigen::VectorXd d = gaussNewtonStep(normal, use);
         bool all = true;
         for (std::size_t n = positions.size(); n-- > 0;)
             if (strengths[n]->value + d[positions[n]] <= strengths[n]->lower) {

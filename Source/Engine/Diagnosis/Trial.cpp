@@ -141,7 +141,7 @@ FitSummary fitFed(Model& model, const Record& record, const std::vector<std::siz
                   const Progress& progress)
 {
     auto found = model;
-    const auto summary = quickFit(found, record, sections, options, progress);
+    auto summary = quickFit(found, record, sections, options, progress);
     options.fed = false;
     if (hasPeriods(record) && !(summary.usable() && canBeSimulated(found, record, sections, options)))
         return fit(model, record, sections, options, progress);
@@ -175,7 +175,7 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     constexpr double near = 2.0, worthIt = 0.8;
     if (!proposed.byResponse.components.empty() && left(proposed.byResponse) < near * lowest) {
         model = proposed.byResponse;
-        const auto summary = fitFed(model, record, sections, chosen, progress);
+        auto summary = fitFed(model, record, sections, chosen, progress);
         if (summary.usable() && left(model) < worthIt * lowest)
             return summary;
     }

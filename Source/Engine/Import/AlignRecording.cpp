@@ -90,8 +90,8 @@ private:
             if (rmsWithoutMean(samples) < silence)
                 continue;
             sound = true;
-            const auto place = ratio_ == 1.0 ? findPlan(played(), periods_, samples)
-                                             : findPlan(played(), periods_, resampled(samples, ratio_));
+            auto place = ratio_ == 1.0 ? findPlan(played(), periods_, samples)
+                                       : findPlan(played(), periods_, resampled(samples, ratio_));
             if (place.found) {
                 result_.witness = w;
                 return place;

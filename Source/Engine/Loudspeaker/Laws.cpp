@@ -12,6 +12,15 @@ double rangeOf(const LawInfo& law, const OperatingRange& e)
     return law.argument == "x" ? e.displacement : law.argument == "v" ? e.velocity : e.current;
 }
 
+/// The part of a model that yields beside the base parameter of this name; null where none does.
+const Component* yieldingBeside(const Model& model, const std::string& base)
+{
+    for (const auto& component : model.components)
+        if (component.effect->relaxes() && base == (component.effect->electrical() ? "Le" : "K") && isAtWork(component))
+            return &component;
+    return nullptr;
+}
+
 /// The values of all laws of a model, at these arguments, one law after the other.
 Eigen::VectorXd valuesOfLaws(const Model& model, const std::vector<LawCurve>& at)
 {
@@ -23,9 +32,11 @@ Eigen::VectorXd valuesOfLaws(const Model& model, const std::vector<LawCurve>& at
         if (!law)
             continue;
         const auto own = valuesOf(component);
+        double base = model.baseParameter(law->base).value;
+        if (const auto* beside = yieldingBeside(model, law->base))
+            base += beside->effect->atEdge(beside->operatingRange, valuesOf(*beside).data());
         for (const double q : curve->argument)
-            values.push_back(model.baseParameter(law->base).value
-                             + component.effect->lawAt(component.operatingRange, own.data(), q));
+            values.push_back(base + component.effect->lawAt(component.operatingRange, own.data(), q));
         ++curve;
     }
     return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -44,6 +55,9 @@ std::vector<LawCurve> laws(const Model& model, int points)
         LawCurve curve;
         curve.info = *law;
         curve.effectId = component.effect->id();
+        if (const auto* beside = yieldingBeside(model, law->base))
+            curve.frequency = beside->effect->electrical() ? beside->operatingRange.highFrequency
+                                                           : beside->operatingRange.lowFrequency;
         for (int n = 0; n < points; ++n)
             curve.argument.push_back(rangeOf(*law, component.operatingRange) * (2.0 * n / (points - 1) - 1.0));
         curves.push_back(std::move(curve));

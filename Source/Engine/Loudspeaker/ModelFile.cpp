@@ -59,7 +59,7 @@ Json covarianceJson(const Eigen::MatrixXd& covariance)
 Json lawsJson(const Model& model)
 {
     auto list = Json::array();
-    for (const auto& law : laws(model))
+    for (const auto& law : laws(model)) {
         list.push_back({{"effect", law.effectId},
                         {"name", law.info.name},
                         {"unit", law.info.unit},
@@ -68,6 +68,9 @@ Json lawsJson(const Model& model)
                         {"at", curveJson(law.argument)},
                         {"value", curveJson(law.value)},
                         {"halfWidth95", curveJson(law.halfWidth)}});
+        if (law.frequency > 0.0)
+            list.back()["frequency"] = law.frequency;
+    }
     return list;
 }
 

@@ -82,16 +82,12 @@ public:
     /// By how much the stiffness rises over the lowest decade of the band: the rate of creep.
     std::vector<Figure> summary(const OperatingRange& e, const double* parameters) const override
     {
-        std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
-        prepareFor(e, parameters, c.data());
-        const auto stiffness = [&](double frequency) {
-            const std::complex<double> s {0.0, 2.0 * std::numbers::pi * frequency};
-            std::complex<double> sum = 0.0;
-            for (int k = 0; k < cells; ++k)
-                sum += c[static_cast<std::size_t>(2 * k)] * s / (s + c[static_cast<std::size_t>(2 * k + 1)]);
-            return sum.real();
-        };
-        return {{"creep rate", "N/m per decade", stiffness(10.0 * e.lowFrequency) - stiffness(e.lowFrequency)}};
+        return {{"creep rate", "N/m per decade",
+                 stiffnessAt(e, parameters, 10.0 * e.lowFrequency) - stiffnessAt(e, parameters, e.lowFrequency)}};
+    }
+    double atEdge(const OperatingRange& e, const double* parameters) const override
+    {
+        return stiffnessAt(e, parameters, e.lowFrequency);
     }
 
     int memorySize(const OperatingRange&) const override { return cells; }
@@ -139,6 +135,17 @@ public:
     }
 
 private:
+    double stiffnessAt(const OperatingRange& e, const double* parameters, double frequency) const
+    {
+        std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
+        prepareFor(e, parameters, c.data());
+        const std::complex<double> s {0.0, 2.0 * std::numbers::pi * frequency};
+        std::complex<double> sum = 0.0;
+        for (std::size_t k = 0; k < c.size(); k += 2)
+            sum += c[k] * s / (s + c[k + 1]);
+        return sum.real();
+    }
+
     static constexpr int shape = 4;                // parameters ahead of the departures
     static constexpr int cells = spectrum::cells;  // over five decades: a ripple below a thousandth of S
 };

@@ -42,9 +42,13 @@ public:
     }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
+    /// With what of the loops still follows the current at the highest frequency, p^2/(p^2 + w^2) of each.
     double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
-        return curve::valueAt(e.degree, p, x, e.displacement);
+        double held = 0.0, rate = fastest;  // over the highest frequency
+        for (int n = 0; n < loops; ++n, rate /= spacing)
+            held += p[e.degree + n] * rate * rate / (rate * rate + 1.0);
+        return curve::valueAt(e.degree, p, x, e.displacement) * (1.0 + std::exp(p[e.degree + loops]) * held);
     }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
