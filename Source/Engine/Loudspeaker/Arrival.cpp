@@ -46,8 +46,9 @@ double between(const std::vector<double>& fine, double sample, int finer)
         return result;
     }();
     const auto length = static_cast<std::ptrdiff_t>(fine.size());
-    const double place = sample * finer, floor = std::floor(place), fraction = place - floor + (points / 2 - 1);
-    const auto first = static_cast<std::ptrdiff_t>(floor) - (points / 2 - 1);
+    constexpr int before = points / 2 - 1;  // of the points that lie on the left
+    const double place = sample * finer, floor = std::floor(place), fraction = place - floor + before;
+    const auto first = static_cast<std::ptrdiff_t>(floor) - before;
     std::array<double, points> across;  // only where the period begins and ends
     const double* values = fine.data() + first;
     if (first < 0 || first + points > length) {

@@ -43,7 +43,7 @@ public:
             fit.channels.push_back(std::move(normal));
             fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted));
             if (options.spectra)
-                fit.predicted.push_back(played ? played->predicted[c] : std::move(predicted));
+                fit.predicted.push_back(played ? played->predicted[c] : predicted);
         }
         return fit;
     }

@@ -47,7 +47,7 @@ using ErrorOf = std::function<std::vector<SectionFit>(const std::vector<Eigen::I
 /// @param fits  of the model, when they had to be known and no parameter is left out; else none
 std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, std::vector<SectionFit>& fits)
 {
-    const auto active = freeParameters(model);
+    auto active = freeParameters(model);
     const auto all = parametersOf(model);
     std::vector<bool> atWork;
     for (const auto& component : model.components)

@@ -201,7 +201,7 @@ SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targe
         return std::isfinite(sum.cost);
     };
     const Eigen::VectorXd start = y;
-    const auto summary = minimize(evaluate, y, lower, upper, options);
+    auto summary = minimize(evaluate, y, lower, upper, options);
     place(shifted(summary.usable() ? y : start));
     if (summary.usable())
         keepErrors(model, targets, active, values);

@@ -106,7 +106,7 @@ Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
         }
     }
     constexpr double most = 32.0, forgotten = 7.0;  // exp(-7): a thousandth
-    const double quarter = static_cast<double>(motion.i.size() / fine) / (4.0 * sampleRate);
+    const double quarter = static_cast<double>(motion.i.size()) / (fine * 4.0 * sampleRate);
     return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)),
             *std::min_element(sum.begin(), sum.end()) / asked * quarter > forgotten, steady};
 }
@@ -259,7 +259,7 @@ Spectrum firstLines(const std::vector<double>& samples, std::size_t lines)
 }
 
 /// The derivatives of what a law without memory adds to the two equations, by its parameters, somewhere in its range.
-std::vector<double> slopesAt(const Component& law, std::vector<Jet> parameters, double i, double x, double v)
+std::vector<double> slopesAt(const Component& law, const std::vector<Jet>& parameters, double i, double x, double v)
 {
     const auto& e = law.operatingRange;
     const Motion<Jet> at {Jet(i * e.current), Jet(x * e.displacement), Jet(v * e.velocity)};

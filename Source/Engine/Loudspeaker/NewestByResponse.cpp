@@ -161,7 +161,7 @@ SearchSummary addByResponse(Model& model, const Effect& effect, const std::vecto
     operatingRange.lowFrequency = targets.front().frequency.front();
     operatingRange.highFrequency = targets.front().frequency.back();
     Model best = withEffect(model, effect, operatingRange);
-    const auto summary = fitNewestByResponse(best, targets);
+    auto summary = fitNewestByResponse(best, targets);
     if (summary.usable())
         model = std::move(best);
     return summary;
@@ -224,7 +224,7 @@ SearchSummary fitAsNewest(Model& model, std::size_t k, const Targets& targets)
     auto trial = model;
     const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
     std::rotate(place, place + 1, trial.components.end());
-    const auto summary = fitNewestByResponse(trial, targets);
+    auto summary = fitNewestByResponse(trial, targets);
     if (!summary.usable())
         return summary;
     model = std::move(trial);

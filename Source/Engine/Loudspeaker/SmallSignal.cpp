@@ -238,7 +238,7 @@ struct DrivenResponse {
 SmallSignal smallSignal(const Model& model, bool withGradient, Drives drives)
 {
     const auto [states, parameters, n, count] = linearAmongAll(model);
-    const auto part = linearForm(linearPart(model), withGradient, drives);
+    auto part = linearForm(linearPart(model), withGradient, drives);
     if (static_cast<Eigen::Index>(states.size()) == n && static_cast<Eigen::Index>(parameters.size()) == count)
         return part;
 

@@ -89,7 +89,7 @@ private:
     template <class T>
     static T size(const T& v, double width)
     {
-        const T positive = v < T(0.0) ? -v : v;
+        T positive = v < T(0.0) ? -v : v;
         if (positive > T(width))
             return positive;
         const T s = positive * (1.0 / width);
