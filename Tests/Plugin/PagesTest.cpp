@@ -177,6 +177,19 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     CHECK(meters()[2]->words().contains(" W"));
     // A signal that is turned down is drawn close to its limit, whatever share of the measured excursion that is.
     CHECK(meters()[0]->share() > 0.85);
+    // With a margin it stops where the margin begins, and there the bars are full.
+    recipe.margin = 0.3;
+    processor.parameters().set(recipe);
+    for (int k = 0; k < 3; ++k)  // until the louder sound of before is played out
+        play();
+    processor.collectMeters();
+    play();
+    for (int k = 0; k < 60; ++k) {  // they fall slowly, and are full again only if something is played
+        if (k == 59)
+            play();
+        editor.update();
+    }
+    CHECK(meters()[0]->share() > 0.85);
     for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {800, 560}}) {
         editor.setSize(width, height);
         play();
