@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Editor.h"
 #include "Plugin/VirtualDevice.h"
+#include "Plugin/Walk.h"
 
 #include <catch2/catch.hpp>
 
