@@ -18,7 +18,7 @@ Plot fallPlot(const Ladder& ladder, Quantity quantity)
 {
     Series error {"error", Role::error, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
     Series predicted {"predicted", Role::model, {}, {}, {}, {}, Series::Shape::pointsAndLine, 3};
-    Series noise {"noise floor", Role::noise, {}, {}, {}, {}, Series::Shape::line, 0};
+    Series noise {"noise", Role::noise, {}, {}, {}, {}, Series::Shape::line, 0};
     for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
         const auto& rung = ladder.rungs[k];
         const auto errors = errorByChannel(rung.comparison);

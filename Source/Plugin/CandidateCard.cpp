@@ -97,7 +97,7 @@ CandidateCard::CandidateCard(const RankedEffect& ranked, const ErrorByChannel& b
     : Card(std::move(selected)),
       title_(juce::String(static_cast<int>(place) + 1) + ".  " + words(effectTitle(ranked.effect))),
       fall_(fallOf(ranked, before)),
-      reason_(words(ranked.reason)),
+      reason_(typeset(ranked.reason)),
       confidence_(ranked.confidence)
 {
     setTitle(title_);

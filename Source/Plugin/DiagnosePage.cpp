@@ -116,10 +116,10 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     const auto verdict = unknown ? foundInWords(ladder) + "Left unexplained: "
                                        + inFewWords(ladder.rungs.back().diagnosis.remainder) + "."
                                  : ladder.sentence;
-    verdict_.setTooltip(words(ladder.sentence));
-    verdict_.setText(words(!ladder.rungs.empty() ? verdict
-                           : fit                 ? "The first model is being fitted."
-                                                 : findings.report.verdict()),
+    verdict_.setTooltip(typeset(ladder.sentence));
+    verdict_.setText(typeset(!ladder.rungs.empty() ? verdict
+                             : fit                 ? "The first model is being fitted."
+                                                   : findings.report.verdict()),
                      juce::dontSendNotification);
     look::setTone(verdict_, !ladder.rungs.empty() || !fit ? toneOf(fit ? ladder.verdict : Verdict::badMeasurement)
                                                           : look::Tone::dim);
@@ -129,7 +129,8 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
         const auto& diagnosis = ladder.rungs.back().diagnosis;
         if (findings.file.whatIf && ladder.verdict != Verdict::missingEffect) {
             advice_ = std::make_unique<TextCard>("What makes the distortion, and what limits the stroke",
-                                                 words(advice(*findings.file.whatIf)), [this] { select(noCandidate); });
+                                                 typeset(advice(*findings.file.whatIf)),
+                                                 [this] { select(noCandidate); });
             advice_->setExplicitFocusOrder(++order);
             rows_.addAndMakeVisible(*advice_);
         }

@@ -19,7 +19,8 @@ LinearizePage::LinearizePage(Window& window)
     : Page(window),
       processor_(window.processor()),
       mode_(processor_.parameters().mode(), &window.history()),
-      target_(window)
+      target_(window),
+      meters_(window)
 {
     name_.setFont(juce::Font(19.0f));
     forecastWords_.setFont(juce::Font(14.0f));
@@ -74,6 +75,8 @@ LinearizePage::LinearizePage(Window& window)
     distortion_.told = tell;
     target_.told = tell;
     target_.reshaped = [this] { resized(); };
+    meters_.reshaped = [this] { resized(); };
+    meters_.told = tell;
     add({&name_, &recipes_, &drivers_, &load_, &mode_.box(), &adapt_});
     for (auto* number : processor_.parameters().numbers()) {
         dials_.emplace_back(std::make_unique<juce::Label>(), std::make_unique<NumberDial>(*number, &window.history()));
@@ -85,8 +88,7 @@ LinearizePage::LinearizePage(Window& window)
         switches_.push_back(std::make_unique<OnOffButton>(*effect, &window.history()));
         add({&switches_.back()->button()});
     }
-    add({&excursion_, &voltage_, &power_, &facts_, &target_, &laws_, &distortion_, &forecastWords_});
-    power_.setVisible(false);
+    add({&meters_, &facts_, &target_, &laws_, &distortion_, &forecastWords_});
     showModel(processor_.anyModel());
 }
 
@@ -94,21 +96,21 @@ void LinearizePage::showModel(const AnyModel& model)
 {
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     box_ = box != nullptr ? *box : nullptr;
-    coil_ = box_ ? drivesCoil(box_->played.box) : std::get<Model>(model).electrical();
+    const bool coil = box_ ? drivesCoil(box_->played.box) : std::get<Model>(model).electrical();
     const auto numbers = processor_.parameters().numbers();
     for (std::size_t k = 0; k < dials_.size(); ++k) {
         const auto& id = numbers[k]->paramID;
         const bool moves = !box_ || std::isfinite(measuredDisplacement(box_->played));
         const bool shown = id == "displacementLimit" || id == "margin" ? moves
-                           : id == "powerLimit"                        ? coil_
-                           : id == "coilResistance"                    ? box_ && coil_
+                           : id == "powerLimit"                        ? coil
+                           : id == "coilResistance"                    ? box_ && coil
                                                                        : true;
         dials_[k].first->setVisible(shown);
         dials_[k].second->slider().setVisible(shown);
     }
     facts_.setVisible(box_ || followed_ == processor_.modelVersion());
     adapt_.setVisible(!box_);
-    excursion_.setHead(box_ && !std::isfinite(measuredDisplacement(box_->played)) ? "Region" : "Excursion");
+    meters_.showModel(model);
     if (box_)
         showBox(box_->played);
     else
@@ -281,43 +283,12 @@ void LinearizePage::follow()
         recipes_.setText(title, juce::dontSendNotification);
 }
 
-void LinearizePage::showMeters()
-{
-    const auto meters = processor_.collectMeters();
-    const double range = box_ ? measuredDisplacement(box_->played) : measuredDisplacement(processor_.model()),
-                 reach = std::isfinite(range) ? meters.displacement / range : 0.0;
-    const auto limits = processor_.parameters().controls(range).linearization;
-    if (!processor_.standstill().empty())
-        excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
-    else if (box_ && !std::isfinite(range))
-        excursion_.show(meters.region, whole(100.0 * meters.region) + " % of where it was fitted",
-                        meters.displacementReduction);
-    else
-        excursion_.show(
-            meters.displacement / limits.displacementLimit,
-            juce::String(1e3 * meters.displacement, 2) + " mm"
-                + (std::isfinite(range) ? ", " + whole(100.0 * reach) + " % of what was measured" : juce::String()),
-            meters.displacementReduction);
-    voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V",
-                  meters.voltageReduction);
-    if (const bool told = std::isfinite(limits.powerLimit) && coil_ && (!box_ || limits.coilResistance > 0.0);
-        told != power_.isVisible()) {
-        power_.setVisible(told);
-        resized();
-    }
-    power_.show(meters.power / limits.powerLimit, juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W",
-                meters.powerReduction);
-    if (meters.faults > faults_)
-        window_.tell("Something was not finite: the engine has started anew.", true);
-    faults_ = meters.faults;
-}
-
 void LinearizePage::tick()
 {
     follow();
     useAdapted();
     adapt_.setEnabled(session().findings() != nullptr && !session().status().busy);
-    showMeters();
+    meters_.tick();
     if (box_)
         showFacts();
     target_.tick();
@@ -351,8 +322,7 @@ void LinearizePage::resized()
         std::count_if(dials_.begin(), dials_.end(), [](const auto& dial) { return dial.first->isVisible(); }));
     for (std::size_t k = 0; k < shown.size(); ++lines)
         k += k + 1 < shown.size() && titled(*shown[k]) && titled(*shown[k + 1]) ? 2 : 1;
-    const int meters = power_.isVisible() ? 3 : 2, told = facts_.isVisible() ? 116 : 0,
-              rest = 28 + 4 * 8 + meters * 34 + told,
+    const int told = facts_.isVisible() ? 116 : 0, rest = 28 + 4 * 8 + meters_.wantedHeight() + told,
               row = juce::jlimit(18, 28, (left.getHeight() - rest) / juce::jmax(1, lines));
     auto modes = left.removeFromTop(28);
     if (!box_) {
@@ -378,12 +348,7 @@ void LinearizePage::resized()
             shown[k++]->setBounds(line);
     }
     left.removeFromTop(8);
-    for (auto* meter : {&excursion_, &voltage_, &power_}) {
-        if (!meter->isVisible())
-            continue;
-        meter->setBounds(left.removeFromTop(30));
-        left.removeFromTop(4);
-    }
+    meters_.setBounds(left.removeFromTop(meters_.wantedHeight()));
     left.removeFromTop(8);
     facts_.setBounds(left.removeFromTop(juce::jmin(140, left.getHeight())));
     for (auto* part : std::initializer_list<juce::Component*> {&laws_, &distortion_, &forecastWords_})

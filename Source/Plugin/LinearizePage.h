@@ -4,7 +4,7 @@
 #include "Plugin/Dials.h"
 #include "Engine/Predistortion/PredictedDistortion.h"
 #include "Plugin/Forecast.h"
-#include "Plugin/Meter.h"
+#include "Plugin/LimitMeters.h"
 #include "Plugin/Page.h"
 #include "Plugin/PlotGrid.h"
 #include "Plugin/TargetPanel.h"
@@ -38,7 +38,6 @@ private:
                         const std::vector<double>& after, const std::string& title);
     void choose();
     void follow();
-    void showMeters();
     void showForecast();
     void useAdapted();
     bool targetPictured() const { return target_.pictured(); }
@@ -54,15 +53,13 @@ private:
     PlotGrid laws_ {"Laws of the model"};
     PlotView distortion_;
     TargetPanel target_;
-    Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
+    LimitMeters meters_;
     LoadedBoxPointer box_;  ///< null: a driver is shown
     Forecast<std::optional<PredictedDistortion>> forecast_;
     /// version of the model, and the recipe, that the forecast is of
     std::pair<std::uint64_t, std::string> asked_;
     std::uint64_t followed_ = 0;  ///< version of a model that has followed its take, which the facts tell of
-    bool coil_ = false;           ///< the model has one, whose heat may be limited
     std::unique_ptr<juce::FileChooser> chooser_;
-    int faults_ = 0;
 };
 
 }  // namespace excursion::plugin

@@ -54,7 +54,7 @@ juce::String textOf(const Findings& findings)
         auto line = words(capitalized(name(channel.quantity))) + ": " + words(engineering(channel.rms, channel.unit, 3))
                     + " rms, peak " + words(engineering(channel.peak, channel.unit, 3));
         if (channel.snrDb)
-            line += ", signal to noise " + juce::String(*channel.snrDb, 1) + " dB";
+            line += ", signal to noise " + words(decibels(*channel.snrDb));
         if (channel.delay)
             line += ", delay " + words(engineering(channel.delay->seconds, "s", 2));
         lines.add(line);
@@ -64,7 +64,7 @@ juce::String textOf(const Findings& findings)
     for (const auto& remark : findings.remarks)
         lines.add("Remark: " + words(remark));
     for (const auto& problem : findings.report.problems)
-        lines.add((problem.fatal ? "Fault: " : "Remark: ") + words(problem.sentence));
+        lines.add((problem.fatal ? "Fault: " : "Remark: ") + typeset(problem.sentence));
     return lines.joinIntoString("\n");
 }
 

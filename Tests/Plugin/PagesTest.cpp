@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/Editor.h"
 #include "Plugin/VirtualDevice.h"
+#include "Plugin/Walk.h"
 
 #include <catch2/catch.hpp>
 
@@ -150,13 +151,7 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     editor.go(PageName::linearize);
     editor.update();
     auto* const page = &editor.page(PageName::linearize);
-    const auto meters = [page] {
-        std::vector<plugin::Meter*> all;
-        for (auto* child : page->getChildren())
-            if (auto* meter = dynamic_cast<plugin::Meter*>(child); meter != nullptr && meter->isVisible())
-                all.push_back(meter);
-        return all;
-    };
+    const auto meters = [page] { return plugin::all<plugin::Meter>(*page); };
     CHECK(meters().size() == 2);  // no limit of the power is set
     auto recipe = processor.parameters().recipe();
     recipe.mode = Mode::linearize;
@@ -183,6 +178,19 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     CHECK(meters()[2]->words().contains(" W"));
     // A signal that is turned down is drawn close to its limit, whatever share of the measured excursion that is.
     CHECK(meters()[0]->share() > 0.85);
+    // With a margin it stops where the margin begins, and there the bars are full.
+    recipe.margin = 0.3;
+    processor.parameters().set(recipe);
+    for (int k = 0; k < 3; ++k)  // until the louder sound of before is played out
+        play();
+    processor.collectMeters();
+    play();
+    for (int k = 0; k < 60; ++k) {  // they fall slowly, and are full again only if something is played
+        if (k == 59)
+            play();
+        editor.update();
+    }
+    CHECK(meters()[0]->share() > 0.85);
     for (const auto& [width, height] : {std::pair {editor.getWidth(), editor.getHeight()}, {800, 560}}) {
         editor.setSize(width, height);
         play();
@@ -206,6 +214,17 @@ TEST_CASE("The last page shows every limit and what it does, and nothing on it i
     processor.prepareToPlay(96000.0, 480);
     editor.update();
     CHECK_FALSE(meters()[0]->words().contains("as it is"));
+}
+
+TEST_CASE("Sentences that terminals print as well are typeset in a window", "[plugin]")
+{
+    const auto same = [](const char* plain, const char* typeset) {
+        CHECK(plugin::typeset(plain) == plugin::words(typeset));
+    };
+    same("falls by 27.0 dB to -55.3 dB (-60 dB before)",
+         "falls by 27.0\u202fdB to \u221255.3\u202fdB (\u221260\u202fdB before)");
+    same("-3 dB, a semi-inductance from 5-10 Hz - or so", "\u22123\u202fdB, a semi-inductance from 5-10 Hz - or so");
+    same("", "");
 }
 
 TEST_CASE("Work in the background is cancelled, and what cannot be read is told", "[plugin]")

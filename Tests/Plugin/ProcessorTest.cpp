@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "BlackBox/EveryClass.h"
 #include "Plugin/Played.h"
 #include "Plugin/Processor.h"
 
@@ -9,7 +8,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <thread>
@@ -200,74 +198,3 @@ TEST_CASE("An effect is switched off while audio runs, and a model replaced, wit
     CHECK(distance(period(47200), period(95200)) > 1e-4);   // the effect is gone
     CHECK(distance(period(95200), period(180000)) > 1e-2);  // another driver
 }
-
-namespace {
-
-/// Whatever a host and a person do, one after the other.
-void operateAtRandom(unsigned seed, int operations)
-{
-    std::mt19937 random(seed);
-    Processor processor;
-    double rate = 48000.0;
-    int channels = 2;
-    processor.prepareToPlay(rate, 256);
-    juce::MidiBuffer midi;
-    auto kept = stateOf(processor);
-    bool finite = true;
-    const auto box = plugin::loadedBox(everyClass().front(), "a test");
-    for (int operation = 0; operation < operations; ++operation) {
-        switch (random() % 12) {
-        case 0:
-            rate = std::array {44100.0, 48000.0, 96000.0, 100.0, 1e6}[random() % 5];  // where no engine runs, too
-            processor.prepareToPlay(rate, 256);
-            break;
-        case 1: kept = stateOf(processor); break;
-        case 2: processor.setStateInformation(kept.getData(), static_cast<int>(kept.getSize())); break;
-        case 3: {
-            const auto& drivers = plugin::factoryDrivers();
-            if (random() % 2 == 0)
-                processor.setModel(box);
-            else
-                processor.setModel(plugin::modelFromText(drivers[random() % drivers.size()].text, "a driver"));
-            break;
-        }
-        case 4:
-        case 5: {
-            auto& all = processor.getParameters();
-            all[static_cast<int>(random() % static_cast<unsigned>(all.size()))]->setValueNotifyingHost(
-                static_cast<float>(random() % 1001) / 1000.0f);
-            break;
-        }
-        case 6:
-            if (random() % 2 == 0) {  // what no parameter is
-                auto recipe = processor.parameters().recipe();
-                for (auto& level : recipe.target.curve)
-                    level = random() % 3 == 0 ? Target::notGiven : static_cast<double>(random() % 60) - 30.0;
-                processor.parameters().set(recipe);
-            } else {
-                processor.reset();
-            }
-            break;
-        default: {
-            juce::AudioBuffer<float> buffer(channels,
-                                            static_cast<int>(random() % 5 == 0 ? random() % 3000 : random() % 200));
-            for (int c = 0; c < channels; ++c)
-                for (int n = 0; n < buffer.getNumSamples(); ++n)
-                    buffer.setSample(c, n, static_cast<float>(random() % 2001) / 1000.0f - 1.0f);
-            if (random() % 20 == 0 && buffer.getNumSamples() > 0)
-                buffer.setSample(0, 0, std::numeric_limits<float>::quiet_NaN());
-            random() % 10 == 0 ? processor.processBlockBypassed(buffer, midi) : processor.processBlock(buffer, midi);
-            for (int c = 0; c < channels; ++c)
-                for (int n = 0; n < buffer.getNumSamples(); ++n)
-                    finite = finite && std::isfinite(buffer.getSample(c, n));
-        }
-        }
-    }
-    CHECK(finite);
-}
-
-}  // namespace
-
-TEST_CASE("2,000 random operations leave finite samples", "[plugin]") { operateAtRandom(11, 2000); }
-
-TEST_CASE("10,000 random operations leave finite samples", "[.minutes]") { operateAtRandom(12, 10000); }

@@ -40,6 +40,13 @@ Predistorter::Predistorter(const Model& model, const RealTimeOptions& options, c
     reset();
 }
 
+double Predistorter::share(const Model& model, double margin)
+{
+    const RealTimeOptions anyRate;  // the share is the same at all of them
+    requireRunnable(model, anyRate);
+    return Protection::share(linearMotion(undonePart(model), anyRate.sampleRate), margin);
+}
+
 void Predistorter::reset()
 {
     oversampling_.reset();

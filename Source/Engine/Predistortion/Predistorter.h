@@ -36,6 +36,10 @@ public:
     /// Throws Error, see requireRunnable.
     Predistorter(const Model&, const RealTimeOptions&, const PredistortionControls& = {});
 
+    /// What the margin leaves to the signal of a limit of the excursion, a share; see PredistortionControls. Throws
+    /// Error, see requireRunnable.
+    static double share(const Model&, double margin);
+
     int latency() const { return Protection::latency + oversampling_.latency(); }  ///< samples; fixed
 
     /// As if new, but the controls jump to their targets.

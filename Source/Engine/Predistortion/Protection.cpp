@@ -133,8 +133,7 @@ void Protection::set(const PredistortionControls& controls, bool on)
     on_ = on;
     displacement_.aim(on ? reciprocal(controls.displacementLimit) / leftBy(uncertainty_, controls.margin) : 0.0);
     voltage_.aim(on ? reciprocal(controls.voltageLimit) : 0.0);
-    power_.aim(on && heated_ ? reciprocal(controls.powerLimit) / ((1.0 - controls.margin) * (1.0 - controls.margin))
-                             : 0.0);
+    power_.aim(on && heated_ ? reciprocal(controls.powerLimit) / powerShare(controls.margin) : 0.0);
     if (fresh) {
         for (auto* limit : {&displacement_, &voltage_, &power_})
             limit->jump();

@@ -50,6 +50,8 @@ public:
 
     /// The share of an excursion limit that the margin leaves to the signal.
     static double share(const LinearMotion&, double margin);
+    /// The share of a power limit that it leaves: the current may be larger by the margin.
+    static double powerShare(double margin) { return (1.0 - margin) * (1.0 - margin); }
 
     /// New limits from the controls, or none.
     void set(const PredistortionControls&, bool on);

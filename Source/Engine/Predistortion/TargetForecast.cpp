@@ -3,9 +3,8 @@
 
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
-#include "Engine/Predistortion/DriverMotion.h"
 #include "Engine/Predistortion/Linearizer.h"
-#include "Engine/Predistortion/Protection.h"
+#include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/Speaker.h"
 #include "Engine/Predistortion/TargetFilter.h"
 #include "Engine/Signal/Level.h"
@@ -238,7 +237,7 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
             return inDecibels(w * w * std::abs(motion(f)) / flat);
         };
     }
-    subject.share = Protection::share(linearMotion(undonePart(model), rate), controls.margin);
+    subject.share = Predistorter::share(model, controls.margin);
     subject.linearized = [&model, &own = subject.own, amount = controls.amount](const Target& target) {
         auto driver = std::make_shared<Rehearsed>(model, own, amount, target);
         return [driver](const std::vector<double>& signal, std::size_t from, double level) {
