@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The time of the whole `improve` of one hidden effect, on a 4-channel 48 kHz take of about 12 s, against the take's
 // length, with two threads. Target: at most 5.
-//     benchmark_improvebenchmark [EFFECT ...]     default: each effect that is drawn
+//     benchmark_improve [EFFECT ...]     default: each effect that is drawn
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/Improve.h"
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 using namespace excursion;
 
@@ -233,6 +234,24 @@ TEST_CASE("an offset, a weak signal and a loose contact are told")
     report = check(take);
     CHECK(find(report, "low-snr", Quantity::pressure));
     CHECK(find(report, "poor-repeatability", Quantity::pressure));
+}
+
+TEST_CASE("a stated period in which nothing repeats is told")
+{
+    auto take = soundTake();
+    CHECK(find(check(take), "excitation", Quantity::voltage) == nullptr);
+    take.excitation->lines.clear();
+    CHECK(find(check(take), "excitation", Quantity::voltage) == nullptr);  // they are found
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise;
+    for (auto& channel : take.channels)
+        for (auto& x : channel.samples)
+            x = noise(random);
+    const auto report = check(take);
+    const auto* problem = find(report, "excitation", Quantity::voltage);
+    REQUIRE(problem);
+    CHECK(problem->fatal);
+    CHECK(problem->value == take.excitation->period);
 }
 
 TEST_CASE("a take without channels that drive it, or without samples, is refused")

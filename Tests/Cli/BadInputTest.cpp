@@ -258,7 +258,7 @@ TEST_CASE("Effects that do not exist or do not suit are refused before the work"
     const auto take = Chain::get().take(), model = Chain::get().model();
     const auto out = (scratch / "out.json").string(), folder = (scratch / "ladder").string();
     refusedWith(2, {"fit", take, "--effects", "stiffness,stifness", "--out", out}, scratch, "stifness");
-    refusedWith(2, {"improve", take, "--with", "gravity", "--out", folder}, scratch, "gravity");
+    refusedWith(2, {"improve", take, "--effects", "gravity", "--out", folder}, scratch, "gravity");
     refusedWith(2, {"add", take, "--model", model, "gravity", "--out", out}, scratch, "gravity");
     refusedWith(2, {"effects", "gravity"}, scratch, "gravity");
 
@@ -276,7 +276,7 @@ TEST_CASE("Effects that do not exist or do not suit are refused before the work"
     }
     const auto pushed = scratch.file("pushed.csv", csv).string();
     refusedWith(2, {"fit", pushed, "--effects", "force-factor", "--out", out}, scratch, "force-factor");
-    refusedWith(2, {"improve", pushed, "--with", "force-factor", "--out", folder}, scratch, "force-factor");
+    refusedWith(2, {"improve", pushed, "--effects", "force-factor", "--out", folder}, scratch, "force-factor");
     refusedWith(4, {"compare", pushed, "--model", model}, scratch, "coil");
 
     const auto impedance =

@@ -275,3 +275,16 @@ TEST_CASE("A take that cannot be fitted is refused", "[record]")
     CHECK(!reason.empty());
     CHECK_THROWS_AS(makeRecord(take(1, 0.0), options), Error);
 }
+
+TEST_CASE("a stated period in which nothing repeats is refused", "[record]")
+{
+    auto made = take(-1, 0.0);
+    const auto lines = makeRecord(made).bandHigh;
+    made.excitation->lines.clear();
+    CHECK(makeRecord(made).bandHigh == lines);  // they are found
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise;
+    for (auto& x : made.channels.front().samples)
+        x = noise(random);
+    CHECK_THROWS_AS(makeRecord(made), Error);
+}

@@ -126,6 +126,15 @@ CheckReport check(const Measurement& take)
                                   "be taken for the loudspeaker's, and levels "
                                   "are as right as the gain that was given."});
 
+    if (take.excitation && take.excitation->lines.empty() && take.excitation->settlePeriods > 0
+        && take.excitation->totalSamples() <= static_cast<long>(take.length()))
+        problems.push_back({"excitation", take.input().quantity, static_cast<double>(take.excitation->period),
+                            "samples", true,
+                            "The take states a period of " + std::to_string(take.excitation->period)
+                                + " samples, but nothing repeats in the " + std::string(name(take.input().quantity))
+                                + ": correct the excitation in measurement.json, or leave it out for a signal that "
+                                  "does not repeat."});
+
     const bool described = take.excitation && !take.excitation->lines.empty() && take.excitation->period > 1;
     const long missing = described ? take.excitation->totalSamples() - static_cast<long>(take.length()) : 0;
     if (missing > 0) {

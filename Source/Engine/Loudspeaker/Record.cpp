@@ -335,7 +335,8 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
     const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
     if (periodic && take.excitation->lines.empty()) {
         Measurement completed = take;
-        completed.excitation->lines = findLines(take.input().samples, *take.excitation);
+        completeExcitation(completed);
+        excitedLines(completed);  // refuses a take in which nothing repeats
         return makeRecord(completed, options);
     }
     record.bandLow = 0.0;

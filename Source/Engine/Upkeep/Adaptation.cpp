@@ -12,7 +12,7 @@ namespace excursion {
 namespace {
 
 constexpr double farther = 1.05;   // than was measured, which is of no matter
-constexpr double explained = 4.0;  // misfit up to which drift is all there is
+constexpr double explained = 4.0;  // chi squared per value up to which drift is all there is
 constexpr double certain = 3.0;    // standard errors, from which on a parameter has drifted
 
 void requireSameKind(const Model& model, const PreparedTake& take)
