@@ -115,7 +115,7 @@ Volterra::Volterra(const Pnlss& model)
 
 std::vector<Index> Volterra::inputsOf(std::size_t order, const std::vector<Index>& given) const
 {
-    const auto inputs = given.empty() ? std::vector<Index>(order, 0) : given;
+    auto inputs = given.empty() ? std::vector<Index>(order, 0) : given;
     for (const auto input : inputs)
         if (inputs.size() != order || input < 0 || input >= model_.linear.inputs())
             throw Error(Error::Kind::usage,
