@@ -34,10 +34,8 @@ int main(int argc, char** argv)
         const Model model = readModel(argc > 1 ? argv[1] : "Presets/drivers/woofer.json");
         std::vector<double> plain(48000);
         for (std::size_t n = 0; n < plain.size(); ++n) {
-            const double t = static_cast<double>(n) / sampleRate;
-            // V
-            plain[n] = 5.0 * std::sin(2.0 * std::numbers::pi * 40.0 * t)
-                       + 2.0 * std::sin(2.0 * std::numbers::pi * 300.0 * t);
+            const double turn = 2.0 * std::numbers::pi * static_cast<double>(n) / sampleRate;  // of 1 Hz
+            plain[n] = 5.0 * std::sin(40.0 * turn) + 2.0 * std::sin(300.0 * turn);             // V
         }
 
         PredistortionControls controls;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A woofer whose suspension hardens plays a tone of 20 Hz. How far does its cone go, and what harmonics does the motion
-// get?
+// A woofer whose suspension hardens plays a tone of 20 Hz: how far its cone goes, and the harmonics that the motion gets.
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Signal/Fft.h"
 
 #include <cmath>
+#include <complex>
 #include <iostream>
 #include <numbers>
 
@@ -38,8 +38,7 @@ int main()
          {std::pair {"Re", 5.6}, {"Le", 0.4e-3}, {"Bl", 7.2}, {"m", 0.02}, {"Rms", 1.5}, {"K", 1800.0}})
         linear.baseParameter(name).value = value;
 
-    // K(x) = K + c1 [T1(x/X) - T1(0)] + c2 [T2(x/X) - T2(0)] with Chebyshev polynomials T and X = 6 mm. T2(s) - T2(0) =
-    // 2 s^2, so c2 = K/2 doubles the stiffness at the ends.
+    // K(x) = K + c1 T1(x/X) + c2 [T2(x/X) - T2(0)], Chebyshev's T2(s) - T2(0) = 2 s^2: c2 = K/2 doubles K at the ends.
     OperatingRange operatingRange;
     operatingRange.displacement = 6e-3;
     operatingRange.degree = 2;
@@ -48,16 +47,13 @@ int main()
     hardening.components.back().parameters[1].value = 900.0;
 
     const auto without = harmonics(linear), with = harmonics(hardening);
-    std::cout << "linear:    " << without[0] << " mm, second harmonic " << without[1] << ", third " << without[2]
-              << "\n"
-              << "hardening: " << with[0] << " mm, second harmonic " << with[1] << ", third " << with[2] << "\n";
+    std::cout << "linear:    " << without[0] << " mm, harmonics " << without[1] << ", " << without[2] << " mm\n"
+              << "hardening: " << with[0] << " mm, harmonics " << with[1] << ", " << with[2] << " mm\n";
 
     // In closed form: X = Bl U / (Ze Zm + j w Bl^2) with Ze = Re + j w Le and Zm = K - m w^2 + j w Rms.
     const double w = 2.0 * std::numbers::pi * tone;
-    const std::complex<double> j(0.0, 1.0);
-    const double truth =
-        1e3
-        * std::abs(7.2 * volts / ((5.6 + j * w * 0.4e-3) * (1800.0 - 0.02 * w * w + j * w * 1.5) + j * w * 7.2 * 7.2));
+    const std::complex<double> Ze(5.6, w * 0.4e-3), Zm(1800.0 - 0.02 * w * w, w * 1.5), damping(0.0, w * 7.2 * 7.2);
+    const double truth = 1e3 * std::abs(7.2 * volts / (Ze * Zm + damping));
     const bool right = std::abs(without[0] / truth - 1.0) < 1e-4 && with[0] < 0.95 * without[0]
                        && with[2] > 100.0 * with[1];
     return right ? 0 : 1;
