@@ -55,7 +55,7 @@ double ExponentialAdams::step(std::span<const double> u)
 {
     constexpr auto rates = ExponentialStep::rates, motions = ExponentialStep::motions;
     const auto moving = motion_.moving_, states = motion_.A_.rows(), following = states - moving;
-    auto& [now, before, earlier] = past_;
+    auto &now = past_[0], &before = past_[1], &earlier = past_[2];
     auto& y = motion_.y_;
     double* const z = motion_.z_.data();
     double* const memory = z + states;

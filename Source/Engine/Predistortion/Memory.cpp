@@ -149,7 +149,7 @@ void Memory::stepDriven()
 
 void Memory::stepAny(const MotionCubic& motion)
 {
-    auto& [k1, k2, k3, k4, y] = stages_;
+    auto &k1 = stages_[0], &k2 = stages_[1], &k3 = stages_[2], &k4 = stages_[3], &y = stages_[4];
     const auto ask = [&](double s, const double* m, std::vector<double>& out) {
         rates(motion.i.at(s), motion.x.at(s), motion.v.at(s), m, out.data());
     };

@@ -185,8 +185,8 @@ std::vector<int> findLines(std::span<const double> input, const Excitation& e)
     if (e.period < 4 || e.periods < 1 || e.totalSamples() <= 0 || e.totalSamples() > static_cast<long>(input.size()))
         throw Error(Error::Kind::data,
                     "The excited lines cannot be found: the record is shorter than its excitation says.");
-    const auto [power, raw] = linePowers(input, e);
-    const auto noise = smoothed(raw);
+    const auto powers = linePowers(input, e);
+    const auto &power = powers.power, noise = smoothed(powers.noise);
     const auto last = static_cast<std::size_t>((e.period - 1) / 2);
     const auto stands = [&](std::size_t k) { return power[k] > excitedOverNoise * noise[k]; };
 
