@@ -117,7 +117,7 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
-        if (gradient) {
+        if (gradient && sum.N.allFinite()) {  // else the search ends before this place
             last = sum;
             summary.onlyNoise = onlyNoise;
         }
