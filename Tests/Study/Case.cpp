@@ -32,18 +32,14 @@ double truth(const bench::Loudspeaker& speaker, const std::string& effect, doubl
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The same for a law at a frequency, whose base yields.
+/// The same for a law of a suspension that creeps, at a frequency.
 double truth(const bench::Loudspeaker& speaker, const LawCurve& law, double q)
 {
     const double spring = truth(speaker, law.effectId, q);
     if (law.frequency == 0.0)
         return spring;
     const std::complex<double> s {0.0, 2.0 * std::numbers::pi * law.frequency};
-    if (law.info.base == "K")
-        return spring + speaker.suspensionStiffness(s).real() - speaker.K;
-    const double loops = speaker.eddyImpedance(s).imag() / s.imag();
-    const bool follow = speaker.eddyCurrents && speaker.eddyCurrents->moves && law.info.argument == "x";
-    return spring + loops * (follow ? spring / speaker.Le : 1.0);
+    return spring + speaker.suspensionStiffness(s).real() - speaker.K;
 }
 
 std::vector<LawCoverage> coverage(const Model& model, const bench::Loudspeaker& speaker, const Outcome& outcome)

@@ -47,7 +47,7 @@ std::string Effect::sizedBy() const
     return info ? info->base : "";
 }
 
-double Effect::atEdge(const OperatingRange&, const double*) const { return 0.0; }
+double Effect::lowestStiffness(const OperatingRange&, const double*) const { return 0.0; }
 
 double Effect::lawAt(const OperatingRange&, const double*, double) const { return 0.0; }
 

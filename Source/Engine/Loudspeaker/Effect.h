@@ -198,9 +198,9 @@ public:
     /// Linear, and yields over time: a suspension that creeps, loops in the iron.
     virtual bool relaxes() const { return false; }
     bool creeps() const { return relaxes() && !electrical(); }
-    /// Of an effect that relaxes: what it adds to the base's stiffness at the lowest frequency of the range, or to its
-    /// inductance at the highest. The data tells the sum there. How it divides into the two lies beyond the band.
-    virtual double atEdge(const OperatingRange&, const double* parameters) const;
+    /// Of a suspension that creeps: what it adds to the base's stiffness at the lowest frequency of the range. The data
+    /// tells the sum there; how that divides into the two lies below the band.
+    virtual double lowestStiffness(const OperatingRange&, const double* parameters) const;
     virtual int coefficientCount(const OperatingRange&) const = 0;
 
     /// Turns parameters into coefficients, once per run: everything that depends on the parameters alone.

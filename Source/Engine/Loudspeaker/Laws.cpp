@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Loudspeaker/Propagate.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace excursion {
@@ -12,13 +13,12 @@ double rangeOf(const LawInfo& law, const OperatingRange& e)
     return law.argument == "x" ? e.displacement : law.argument == "v" ? e.velocity : e.current;
 }
 
-/// The part of a model that yields beside the base parameter of this name; null where none does.
-const Component* yieldingBeside(const Model& model, const std::string& base)
+/// The creep beside a law of the stiffness; null where there is none.
+const Component* creepBeside(const Model& model, const LawInfo& law)
 {
-    for (const auto& component : model.components)
-        if (component.effect->relaxes() && base == (component.effect->electrical() ? "Le" : "K") && isAtWork(component))
-            return &component;
-    return nullptr;
+    const auto found = std::find_if(model.components.begin(), model.components.end(),
+                                    [](const Component& c) { return c.effect->creeps() && isAtWork(c); });
+    return law.base == "K" && found != model.components.end() ? &*found : nullptr;
 }
 
 /// The values of all laws of a model, at these arguments, one law after the other.
@@ -33,8 +33,8 @@ Eigen::VectorXd valuesOfLaws(const Model& model, const std::vector<LawCurve>& at
             continue;
         const auto own = valuesOf(component);
         double base = model.baseParameter(law->base).value;
-        if (const auto* beside = yieldingBeside(model, law->base))
-            base += beside->effect->atEdge(beside->operatingRange, valuesOf(*beside).data());
+        if (const auto* creep = creepBeside(model, *law))
+            base += creep->effect->lowestStiffness(creep->operatingRange, valuesOf(*creep).data());
         for (const double q : curve->argument)
             values.push_back(base + component.effect->lawAt(component.operatingRange, own.data(), q));
         ++curve;
@@ -55,9 +55,8 @@ std::vector<LawCurve> laws(const Model& model, int points)
         LawCurve curve;
         curve.info = *law;
         curve.effectId = component.effect->id();
-        if (const auto* beside = yieldingBeside(model, law->base))
-            curve.frequency = beside->effect->electrical() ? beside->operatingRange.highFrequency
-                                                           : beside->operatingRange.lowFrequency;
+        if (const auto* creep = creepBeside(model, *law))
+            curve.frequency = creep->operatingRange.lowFrequency;
         for (int n = 0; n < points; ++n)
             curve.argument.push_back(rangeOf(*law, component.operatingRange) * (2.0 * n / (points - 1) - 1.0));
         curves.push_back(std::move(curve));

@@ -97,8 +97,8 @@ Eigen::VectorXd parameterVector(const Model&);
 void setParameterVector(Model&, const Eigen::VectorXd&);
 
 /// A law of the model with its 95 % band over the visited range [-range, range], for plots and reports. Beside a
-/// suspension that creeps K(x) is the stiffness at the lowest measured frequency, beside eddy currents Le(x) the
-/// inductance at the highest: what lies beyond, an extrapolation tells.
+/// suspension that creeps K(x) is the stiffness at the lowest measured frequency: what it comes to rest at is an
+/// extrapolation. Le(x) is the coil's own inductance, which beside eddy currents is one, too.
 struct LawCurve {
     LawInfo info;
     std::string effectId;                            ///< id of the effect with this law

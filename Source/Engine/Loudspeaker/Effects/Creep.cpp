@@ -85,7 +85,7 @@ public:
         return {{"creep rate", "N/m per decade",
                  stiffnessAt(e, parameters, 10.0 * e.lowFrequency) - stiffnessAt(e, parameters, e.lowFrequency)}};
     }
-    double atEdge(const OperatingRange& e, const double* parameters) const override
+    double lowestStiffness(const OperatingRange& e, const double* parameters) const override
     {
         return stiffnessAt(e, parameters, e.lowFrequency);
     }

@@ -93,14 +93,6 @@ public:
                 {"departure", "%", 100.0 * std::sqrt(rest)}};
     }
 
-    double atEdge(const OperatingRange& e, const double* parameters) const override
-    {
-        std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
-        prepareFor(e, parameters, c.data());
-        const double omega = 2.0 * std::numbers::pi * e.highFrequency;
-        return impedance(e, c.data(), {0.0, omega}).imag() / omega;
-    }
-
     int memorySize(const OperatingRange& e) const override { return innerCells(e) + 2; }
     int coefficientCount(const OperatingRange& e) const override { return 2 + 2 * memorySize(e); }
 

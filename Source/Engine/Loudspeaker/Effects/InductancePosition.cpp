@@ -42,13 +42,9 @@ public:
     }
 
     std::optional<LawInfo> law() const override { return LawInfo {"Le(x)", "H", "x", "m", "Le"}; }
-    /// With what of the loops still follows the current at the highest frequency, p^2/(p^2 + w^2) of each.
     double lawAt(const OperatingRange& e, const double* p, double x) const override
     {
-        double held = 0.0, rate = fastest;  // over the highest frequency
-        for (int n = 0; n < loops; ++n, rate /= spacing)
-            held += p[e.degree + n] * rate * rate / (rate * rate + 1.0);
-        return curve::valueAt(e.degree, p, x, e.displacement) * (1.0 + std::exp(p[e.degree + loops]) * held);
+        return curve::valueAt(e.degree, p, x, e.displacement);
     }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
