@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/AnyModel.h"
 
+#include "Engine/BlackBox/BoxMotion.h"
 #include "Engine/BlackBox/ModelDocument.h"
+
+#include <cmath>
 
 namespace excursion::plugin {
 
@@ -10,6 +13,18 @@ LoadedBoxPointer loadedBox(const nlohmann::ordered_json& document, const std::st
     const nlohmann::json plain(document);
     const auto box = blackBoxOf(modelDocumentFrom(JsonField(plain, "", where)));
     return std::make_shared<const LoadedBox>(LoadedBox {document, PlayedBox(box, progress)});
+}
+
+bool hasCoil(const AnyModel& model)
+{
+    const auto* box = std::get_if<LoadedBoxPointer>(&model);
+    return box != nullptr ? drivesCoil((*box)->played.box) : std::get<Model>(model).electrical();
+}
+
+bool givesExcursion(const AnyModel& model)
+{
+    const auto* box = std::get_if<LoadedBoxPointer>(&model);
+    return box == nullptr || std::isfinite(measuredDisplacement((*box)->played));
 }
 
 bool holdsBox(std::string_view text)

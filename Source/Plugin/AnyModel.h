@@ -27,6 +27,11 @@ LoadedBoxPointer loadedBox(const nlohmann::ordered_json& document, const std::st
 /// What the plugin plays: a driver, or a model without physics.
 using AnyModel = std::variant<Model, LoadedBoxPointer>;
 
+/// Whether it has a coil, whose heat may be limited.
+bool hasCoil(const AnyModel&);
+/// Whether it tells how far the cone moves, as a driver always does.
+bool givesExcursion(const AnyModel&);
+
 /// Whether the text is the document of a model without physics.
 bool holdsBox(std::string_view text);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/LimitMeters.h"
 
-#include "Engine/BlackBox/BoxMotion.h"
 #include "Engine/BlackBox/BoxProtection.h"
 #include "Engine/Error.h"
 #include "Engine/Predistortion/Predistorter.h"
@@ -22,14 +21,13 @@ LimitMeters::LimitMeters(Window& window) : processor_(window.processor())
     power_.setVisible(false);
 }
 
-bool LimitMeters::givesExcursion() const { return !box_ || std::isfinite(measuredDisplacement(box_->played)); }
-
 void LimitMeters::showModel(const AnyModel& model)
 {
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     box_ = box != nullptr ? *box : nullptr;
-    coil_ = box_ ? drivesCoil(box_->played.box) : std::get<Model>(model).electrical();
-    excursion_.setHead(givesExcursion() ? "Excursion" : "Region");
+    hasCoil_ = hasCoil(model);
+    givesExcursion_ = givesExcursion(model);
+    excursion_.setHead(givesExcursion_ ? "Excursion" : "Region");
 }
 
 /// What the protection leaves of the limit. It is asked for only when it can be another, as a driver's sensitivity to
@@ -62,7 +60,7 @@ void LimitMeters::tick()
     const auto limits = processor_.parameters().controls(range).linearization;
     if (!processor_.standstill().empty())
         excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
-    else if (!givesExcursion())
+    else if (!givesExcursion_)
         excursion_.show(meters.region, whole(100.0 * meters.region) + " % of where it was fitted",
                         meters.displacementReduction);
     else
@@ -74,14 +72,14 @@ void LimitMeters::tick()
                         meters.displacementReduction);
     voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V",
                   meters.voltageReduction);
-    if (const bool shown = std::isfinite(limits.powerLimit) && coil_ && (!box_ || limits.coilResistance > 0.0);
+    if (const bool shown = std::isfinite(limits.powerLimit) && hasCoil_ && (!box_ || limits.coilResistance > 0.0);
         shown != power_.isVisible()) {
         power_.setVisible(shown);
         if (reshaped)
             reshaped();
     }
-    const double powerMargin = givesExcursion() ? limits.margin
-                                                : 0.0;  // without it there is no margin, see BoxProtection
+    const double powerMargin = givesExcursion_ ? limits.margin
+                                               : 0.0;  // without it there is no margin, see BoxProtection
     power_.show(meters.power / (limits.powerLimit * Protection::powerShare(powerMargin)),
                 juce::String(meters.power, meters.power < 10.0 ? 2 : 1) + " W", meters.powerReduction);
     if (meters.faults > faults_ && told)

@@ -25,13 +25,12 @@ public:
     void resized() override;
 
 private:
-    bool givesExcursion() const;  ///< a driver always does
     double excursionShare(double margin);
 
     Processor& processor_;
     Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
-    LoadedBoxPointer box_;  ///< null: a driver is shown
-    bool coil_ = false;     ///< the model has one, whose heat may be limited
+    LoadedBoxPointer box_;                          ///< null: a driver is shown
+    bool hasCoil_ = false, givesExcursion_ = true;  ///< see AnyModel.h
     /// version of the model, switches of its effects, and margin that the share is of
     std::tuple<std::uint64_t, std::uint64_t, double> asked_;
     double share_ = 1.0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Plugin/LinearizePage.h"
 
-#include "Engine/BlackBox/BoxMotion.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -96,11 +95,10 @@ void LinearizePage::showModel(const AnyModel& model)
 {
     const auto* box = std::get_if<LoadedBoxPointer>(&model);
     box_ = box != nullptr ? *box : nullptr;
-    const bool coil = box_ ? drivesCoil(box_->played.box) : std::get<Model>(model).electrical();
+    const bool coil = hasCoil(model), moves = givesExcursion(model);
     const auto numbers = processor_.parameters().numbers();
     for (std::size_t k = 0; k < dials_.size(); ++k) {
         const auto& id = numbers[k]->paramID;
-        const bool moves = !box_ || std::isfinite(measuredDisplacement(box_->played));
         const bool shown = id == "displacementLimit" || id == "margin" ? moves
                            : id == "powerLimit"                        ? coil
                            : id == "coilResistance"                    ? box_ && coil
