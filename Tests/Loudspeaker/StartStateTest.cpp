@@ -61,7 +61,7 @@ TEST_CASE("A linear section starts in the state that it would reach after a long
     const auto begin = GENERATE(std::size_t {0}, std::size_t {300});
     const auto record = someRecord(N / 4 + begin);
     const auto drive = record.drive(record.sections.front());
-    const auto start = startStates(model, record, {0}, 0, false);
+    const auto start = startStates(model, record, {0}, 0, false, 2);
     REQUIRE(start.size() == 1);
     CHECK(start[0].gradient.size() == 0);
 
@@ -87,7 +87,7 @@ TEST_CASE("The derivative of the start state is that of finite differences", "[o
 {
     const auto model = creeping();
     const auto record = someRecord(N / 2);
-    const auto start = startStates(model, record, {0}, 0, true);
+    const auto start = startStates(model, record, {0}, 0, true, 2);
     const auto theta = parameterVector(model);
     REQUIRE(start[0].gradient.cols() == theta.size());
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
@@ -97,7 +97,7 @@ TEST_CASE("The derivative of the start state is that of finite differences", "[o
             auto changed = theta;
             changed[k] += by;
             setParameterVector(there, changed);
-            return startStates(there, record, {0}, 0, false)[0].value;
+            return startStates(there, record, {0}, 0, false, 2)[0].value;
         };
         const Eigen::VectorXd slope = (moved(step) - moved(-step)) / (2.0 * step);
         INFO("parameter " << k);
@@ -109,5 +109,5 @@ TEST_CASE("A section without periods starts at rest", "[output-error]")
 {
     auto record = someRecord(0);
     record.sections.front().periodic = false;
-    CHECK(startStates(creeping(), record, {0}, 0, true)[0].value.size() == 0);
+    CHECK(startStates(creeping(), record, {0}, 0, true, 2)[0].value.size() == 0);
 }

@@ -111,7 +111,7 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
     const double mass = model.baseParameter("m").value;
     const int substeps = stableSubsteps(model, record.sampleRate);
     const auto leadIn = settlingTime(model, record);
-    const auto from = startStates(model, record, sections, leadIn, false);
+    const auto from = startStates(model, record, sections, leadIn, false, 1);
     Motions motions;
     bool seesForce = false, seesVoltage = false;
     for (std::size_t n = 0; n < sections.size(); ++n) {

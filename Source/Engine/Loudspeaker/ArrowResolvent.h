@@ -63,10 +63,7 @@ public:
     }
 
     /// B, and a row c, in the form that column() and row() need at every s.
-    Eigen::VectorXcd turnedRight(const Eigen::VectorXd& B) const
-    {
-        return B.cwiseQuotient(units_)(order_).cast<std::complex<double>>();
-    }
+    Eigen::VectorXcd turnedRight(const Eigen::VectorXcd& B) const { return B.cwiseQuotient(units_)(order_); }
     Eigen::VectorXcd turnedLeft(const Eigen::RowVectorXd& c) const
     {
         return c.transpose().cwiseProduct(units_)(order_).cast<std::complex<double>>();

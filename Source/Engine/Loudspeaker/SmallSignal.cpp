@@ -312,7 +312,7 @@ std::vector<std::vector<Response>> respondToEach(const Model& model, const std::
     const ArrowResolvent resolvent(driven.front().linear.A);
     std::vector<Eigen::VectorXcd> inputs, outputs;
     for (const auto& d : driven)
-        inputs.push_back(resolvent.turnedRight(d.linear.B));
+        inputs.push_back(resolvent.turnedRight(d.linear.B.cast<std::complex<double>>()));
     for (const auto& of : driven.front().observed)
         outputs.push_back(resolvent.turnedLeft(of.row));
     std::vector<std::vector<Response>> responses(drives.size(), std::vector<Response>(quantities.size()));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/StartState.h"
 
+#include "Engine/Loudspeaker/ArrowResolvent.h"
 #include "Engine/Loudspeaker/LawMemory.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
-#include "Engine/Numerics/BalancedResolvent.h"
+#include "Engine/Numerics/Parallel.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -55,13 +56,13 @@ std::map<double, std::vector<Share>> linesOf(const Record& record, const std::ve
 /// Puts the memories of the laws where the sections have brought them.
 /// @param spectra  [section of the record][i, x or v], of the linear part; empty where that is not known
 void startMemories(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                   std::size_t leadIn, bool withGradient,
+                   std::size_t leadIn, bool withGradient, unsigned threads,
                    const std::vector<std::array<std::vector<Complex>, 3>>& spectra, std::vector<StartState>& states)
 {
     // What was measured is nearer to the truth than what the linear part would do.
     const auto current = record.channelIndex(Quantity::current);
     std::vector<PeriodicMotion> motions(record.sections.size());
-    for (std::size_t s = 0; s < motions.size(); ++s) {
+    inParallel(motions.size(), threads, {}, [&](std::size_t s) {
         const auto& section = record.sections[s];
         const auto played = [&](const std::vector<Complex>& lines) {
             return lines.empty() ? std::vector<double>(section.window, 0.0) : inverseFft(lines, section.window);
@@ -69,7 +70,8 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
         motions[s] = {
             played(current && *current < section.measured.size() ? section.measured[*current] : spectra[s][0]),
             played(spectra[s][1]), played(spectra[s][2])};
-    }
+        return true;
+    });
     std::vector<double> run;  // s, from the start of a drive to the middle of the window
     for (const auto& section : record.sections)
         run.push_back((static_cast<double>(section.periodic ? std::max(record.leadIn, leadIn)
@@ -84,11 +86,11 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
             std::vector<MemoryStart> histories;
             if (component.effect->slow())
                 histories = historyOf(component, record, motions, run, withGradient);
-            for (std::size_t s = 0; s < sections.size(); ++s) {
+            inParallel(sections.size(), threads, {}, [&](std::size_t s) {
                 const auto& section = record.sections[sections[s]];
                 auto& state = states[s];
                 if (state.value.size() == 0)
-                    continue;
+                    return true;
                 const auto start = component.effect->slow() ? histories[sections[s]]
                                    : section.periodic
                                        ? settledMemory(component, motions[sections[s]],
@@ -97,7 +99,8 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
                 state.value.segment(place, size) = start.value;
                 if (withGradient)
                     state.gradient.block(place, parameter, size, count) = start.gradient;
-            }
+                return true;
+            });
         }
         place += size;
         parameter += count;
@@ -107,7 +110,7 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
 }  // namespace
 
 std::vector<StartState> startStates(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                                    std::size_t leadIn, bool withGradient)
+                                    std::size_t leadIn, bool withGradient, unsigned threads)
 {
     std::vector<StartState> states(sections.size());
     bool remembers = false, slow = false;  // a law
@@ -144,17 +147,15 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
         for (const auto s : heard)
             if (const auto& section = record.sections[s]; section.periodic)
                 spectra[s].fill(std::vector<Complex>(section.window / 2 + 1, 0.0));
-    const Eigen::VectorXcd B = linear.B.cast<Complex>();
-    Eigen::MatrixXcd drives(n, P), gradient;
-    BalancedResolvent resolvent(linear.A);
+    ArrowResolvent resolvent(linear.A);
+    const Eigen::VectorXcd B = resolvent.turnedRight(linear.B.cast<Complex>());
+    Eigen::MatrixXcd gradient(n, P);
     for (const auto& [frequency, shares] : linesOf(record, heard, leadIn)) {
         resolvent.moveTo(Complex(0.0, 2.0 * std::numbers::pi * frequency));
-        const Eigen::VectorXcd z = resolvent.times(B);
+        const Eigen::VectorXcd z = resolvent.column(B);
         for (Eigen::Index p = 0; p < P; ++p)
-            drives.col(p).noalias() = linear.dA[static_cast<std::size_t>(p)] * z
-                                      + linear.dB[static_cast<std::size_t>(p)];
-        if (withGradient)
-            gradient = resolvent.times(drives);
+            gradient.col(p) = resolvent.column(resolvent.turnedRight(linear.dA[static_cast<std::size_t>(p)] * z
+                                                                     + linear.dB[static_cast<std::size_t>(p)]));
         for (const auto& share : shares) {
             if (remembers)
                 for (std::size_t q = 0; q < 3; ++q)
@@ -168,7 +169,7 @@ std::vector<StartState> startStates(const Model& model, const Record& record, co
         }
     }
     if (remembers)
-        startMemories(model, record, sections, leadIn, withGradient, spectra, states);
+        startMemories(model, record, sections, leadIn, withGradient, threads, spectra, states);
     return states;
 }
 

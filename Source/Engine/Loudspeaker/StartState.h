@@ -24,6 +24,6 @@ struct StartState {
 /// brings them (LawMemory.h). A section without periods starts at rest (an empty state), except for slow memories.
 /// @param leadIn  as passed to Record::drive
 std::vector<StartState> startStates(const Model&, const Record&, const std::vector<std::size_t>& sections,
-                                    std::size_t leadIn, bool withGradient);
+                                    std::size_t leadIn, bool withGradient, unsigned threads);
 
 }  // namespace excursion
