@@ -267,7 +267,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
         const bool promising = falls(scores.chiSquaredPerValue, candidate.chiSquaredPerValue,
                                      0.5 * options.significantFall)
                                && excess(candidate.chiSquaredPerValue) < 20.0 * bestLeft;
-        if (promising && tried < options.trials) {
+        if (promising && tried < options.trials && (!isNoise(before) || helps(candidate, record, sections, quick))) {
             const double share = 0.7 / options.trials, begun = 0.3 + share * tried++;
             progress.at(begun, "trying " + entry.effect);
             Model trial;

@@ -7,6 +7,7 @@
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -56,6 +57,9 @@ bool paysForItself(const Model& higher, const Model& model, const Record& record
     return now->cost - then->cost > priceOfCoefficient * unit * more;
 }
 
+/// Of a step that is too long for the simulation.
+constexpr std::array shares {1.0, 0.5, 0.2, 0.05};
+
 /// The strengths of the newest component times a factor.
 Model newestScaled(Model model, double factor)
 {
@@ -81,6 +85,15 @@ bool wakeShapes(Component& component)
         any = true;
     }
     return any;
+}
+
+/// Whether a cost is less than a share of the lowest one; it is the lowest one then.
+bool falls(double& lowest, double cost, double share)
+{
+    const bool does = cost < share * lowest;
+    if (does)
+        lowest = cost;
+    return does;
 }
 
 /// Changes one component after the other, on trial. Whether a change was kept.
@@ -149,6 +162,16 @@ FitSummary fitFed(Model& model, const Record& record, const std::vector<std::siz
     return summary;
 }
 
+bool helps(const Score& proposed, const Record& record, const std::vector<std::size_t>& sections,
+           const FitOptions& options)
+{
+    const auto left = [&](const Model& candidate) { return quickCost(candidate, record, sections, options); };
+    const double still = left(newestScaled(proposed.model, 0.0));
+    return (!proposed.byResponse.components.empty() && left(proposed.byResponse) < still)
+           || std::any_of(shares.begin(), shares.end(),
+                          [&](double share) { return left(newestScaled(proposed.model, share)) < still; });
+}
+
 FitSummary tryFit(Model& model, const Score& proposed, const Record& record, const std::vector<std::size_t>& sections,
                   const FitOptions& options, const Progress& progress)
 {
@@ -160,8 +183,8 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     const bool simulated = chosen.fedGradient || !hasPeriods(record);  // what left() tells
     Model best = newestScaled(model, 0.0);
     double lowest = left(best);
-    for (const double factor : {1.0, 0.5, 0.2, 0.05}) {
-        const Model candidate = newestScaled(model, factor);
+    for (const double share : shares) {
+        const Model candidate = newestScaled(model, share);
         const double cost = left(candidate);
         if (cost < lowest && (simulated || canBeSimulated(candidate, record, sections, chosen))) {
             lowest = cost;
@@ -191,26 +214,34 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto near = [&](const FitSummary& s) {
         return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
     };
-    const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
+    enum class Slopes { fed, kept, exact };
+    const auto stage = [&](int iterations, double tolerance, Slopes slopes, double from, double to) {
         auto chosen = options;
         chosen.search = {iterations, tolerance};
-        chosen.fedGradient = fedGradient && hasPeriods(record);
-        chosen.exactGradient = !fedGradient;
+        chosen.fedGradient = slopes == Slopes::fed && hasPeriods(record);
+        chosen.keptGradient = slopes == Slopes::kept;
+        chosen.exactGradient = slopes == Slopes::exact;
         return fit(model, record, sections, chosen, progress.part(from, to));
     };
-    auto summary = stage(15, 1e-3, true, 0.0, 0.2);
+    auto summary = stage(15, 1e-3, Slopes::fed, 0.0, 0.2);
     if (summary.usable() && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
-        summary = stage(15, 1e-3, false, 0.2, 0.3);
+        summary = stage(15, 1e-3, Slopes::exact, 0.2, 0.3);
     if (!near(summary))
         return summary;
-    summary = stage(30, 5e-7, true, 0.3, 0.5);
-    // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
-    // noise the cost falls by next to nothing for long.
+    // Along a valley at the noise fed slopes fall by next to nothing for long. The last word has the simulation's own
+    // slopes, of which come the standard errors, too.
+    constexpr int mostRounds = 4;
+    constexpr double moved = 2e-3;
+    for (int n = 0; n < mostRounds; ++n) {
+        summary = stage(10, 5e-6, Slopes::kept, 0.3 + 0.1 * n, 0.4 + 0.1 * n);
+        if (!summary.usable() || summary.initialCost - summary.finalCost < moved * summary.finalCost)
+            break;
+    }
     if (near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean)
-        return stage(1, 5e-5, false, 0.5, 1.0);
+        return summary;
     if (!record.noiseKnown)
-        return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
-    return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);
+        return stage(options.search.maximumIterations, options.search.costTolerance, Slopes::exact, 0.7, 1.0);
+    return toTheEnd ? stage(30, 1e-4, Slopes::exact, 0.7, 1.0) : stage(15, 1e-3, Slopes::exact, 0.7, 1.0);
 }
 
 bool findAnew(Model& model, const Record& still, const std::function<bool(const Component&)>& which,
@@ -225,6 +256,24 @@ bool findAnew(Model& model, const Record& still, const std::function<bool(const 
         keeps);
 }
 
+bool wakeShapes(Model& model, const Record& record, const std::vector<std::size_t>& sections, const FitOptions& options)
+{
+    constexpr double worthIt = 0.998;
+    double now = std::numeric_limits<double>::infinity();
+    return changeEach(
+        model,
+        [&](Model& anew, std::size_t k) {
+            const bool any = wakeShapes(anew.components[k]);
+            if (any && std::isinf(now))
+                now = quickCost(model, record, sections, options);
+            return any;
+        },
+        [&](Model& anew) {
+            return quickFit(anew, record, sections, options).usable()
+                   && falls(now, quickCost(anew, record, sections, options), worthIt);
+        });
+}
+
 bool findPartsAnew(Model& model, const Record& record, const std::vector<std::size_t>& sections,
                    const FitOptions& options)
 {
@@ -234,19 +283,8 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     constexpr double worthIt = 0.95;
     auto glance = options;
     glance.search = {3, 1e-2};
+    const bool woken = wakeShapes(model, record, sections, options);
     double now = quickCost(model, record, sections, options);
-    const auto helps = [&](double then) {
-        const bool does = then < worthIt * now;
-        if (does)
-            now = then;
-        return does;
-    };
-    const bool woken = changeEach(
-        model, [](Model& anew, std::size_t k) { return wakeShapes(anew.components[k]); },
-        [&](Model& anew) {
-            return quickFit(anew, record, sections, options).usable()
-                   && helps(quickCost(anew, record, sections, options));
-        });
     return findAnew(
                model, withoutLaws(model, record, options.threads),
                [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
@@ -255,7 +293,7 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
                        || quickCost(anew, record, sections, options) > now
                        || !quickFit(anew, record, sections, options).usable())
                        return false;
-                   return helps(quickCost(anew, record, sections, options));
+                   return falls(now, quickCost(anew, record, sections, options), worthIt);
                })
            || woken;
 }
@@ -305,6 +343,8 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     if (hasPeriods(record)) {
         if (record.noiseKnown && (summary.chiSquaredPerValue > atNoise || !summary.onlyNoise))
             findPartsAnew(model, record, sections, quick);
+        else
+            wakeShapes(model, record, sections, quick);
         quick.search = {15, 1e-4};
         if (!quick.fedGradient)
             summary = fitFed(model, record, sections, quick, progress.part(0.6, 0.75));

@@ -27,6 +27,11 @@ FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& section
 /// applies; 0 becomes the number that the model needs.
 void chooseResiduals(FitOptions&, ScoreOptions&, const Model&, const Record&, const std::vector<std::size_t>& sections);
 
+/// Whether the step that a score test proposed, or a share of it, leaves less. A take at the noise lets many a step
+/// look promising that leaves nothing less in the end.
+/// @param options  with the number of substeps
+bool helps(const Score& proposed, const Record&, const std::vector<std::size_t>& sections, const FitOptions& options);
+
 /// Fits the model that a score test proposed. If the simulation does not follow the proposed step, it is shortened
 /// first.
 /// @param model  the result; with zero strength if nothing helps
@@ -41,10 +46,14 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std:
 bool findAnew(Model&, const Record& still, const std::function<bool(const Component&)>& which,
               const std::function<bool(Model& anew)>& keeps);
 
-/// Searches again for linear effects that have several parts, as newly known effects may have uncovered more parts.
-/// Before that, shapes that have shrunk to nothing while laws were missing are brought back on trial: where all cells
-/// of a relaxation are one every slope by its shape is zero, and no search leaves that place. True if something leaves
-/// less; the model then had a quick fit. Does nothing for a record without periods.
+/// Brings shapes of linear effects back on trial that have shrunk to nothing while laws were missing: where all cells
+/// of a relaxation are one every slope by its shape is zero, and no search leaves that place. True if that leaves less;
+/// the model then had a quick fit.
+bool wakeShapes(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
+
+/// Wakes shapes, and then searches again for linear effects that have several parts, as newly known effects may have
+/// uncovered more parts. True if something leaves less; the model then had a quick fit. Does nothing for a record
+/// without periods.
 bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
 /// Adds an effect to the model with the start values of the score test, and makes a quick fit. Throws Error (data) if

@@ -38,6 +38,8 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
     return fuller;
 }
 
+bool isNeeded(const Removal& tried) { return tried.vote.uniqueDb > hardlyNeeded; }
+
 /// The effects that rounds of voting put into a base, and what the last of them was fitted to.
 Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
 {
@@ -63,7 +65,8 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
         auto then = search.left(fuller);
         if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes in the end
             search.findPartsAnew(fuller);
-            search.takeOut(fuller, false, [](const Removal& tried) { return tried.vote.uniqueDb > hardlyNeeded; });
+            WholeSearch::Removals tried;
+            search.takeOut(fuller, false, isNeeded, tried);
             then = search.left(fuller);
         }
         if (!(search.lost(now, then) > worthARound)) {
@@ -98,28 +101,54 @@ std::optional<Model> fittedToLoudest(const Model& model, const Record& record, c
     return loud;
 }
 
+/// A whole, and what was found of its effects on trial.
+struct Candidate {
+    Whole whole;
+    WholeSearch::Removals tried;
+};
+
+Candidate grownAndRefined(const Model& base, const Record& record, WholeSearch& search, const FitOptions& options,
+                          const Progress& progress)
+{
+    Candidate found {grown(base, record, search, progress.part(0.0, 0.7)), {}};
+    auto& [whole, tried] = found;
+    if (!whole.fit.usable())
+        return found;
+    if (search.left(whole.model).isNoise())  // what is not needed would only hold up the refinement
+        search.takeOut(whole.model, false, isNeeded, tried);
+    whole.fit = refine(whole.model, record, options, progress.part(0.7, 1.0));
+    return found;
+}
+
+/// Whether another start could not lead much further.
+bool isNear(const Whole& whole, const Record& record)
+{
+    return whole.fit.usable() && record.noiseKnown && whole.fit.chiSquaredPerValue < nearNoise;
+}
+
 }  // namespace
 
 Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
 {
     WholeSearch search(base, record, options);
-    Whole whole = grown(base, record, search, progress.part(0.0, 0.4));
-    if (const auto loud = fittedToLoudest(base, record, options); loud && !search.left(whole.model).isNoise()) {
-        auto other = grown(*loud, record, search, progress.part(0.4, 0.7));
+    auto found = grownAndRefined(base, record, search, options, progress.part(0.0, 0.4));
+    auto& [whole, tried] = found;
+    if (const auto loud = fittedToLoudest(base, record, options); loud && !isNear(whole, record)) {
+        auto other = grownAndRefined(*loud, record, search, options, progress.part(0.4, 0.8));
         search.chooseResiduals(whole.model);
-        if (other.fit.usable()
-            && search.left(other.model).chiSquaredPerValue < search.left(whole.model).chiSquaredPerValue)
-            whole = std::move(other);
+        if (other.whole.fit.usable()
+            && search.left(other.whole.model).chiSquaredPerValue < search.left(whole.model).chiSquaredPerValue)
+            found = std::move(other);
     }
     if (!whole.fit.usable())
         return whole;
-    whole.fit = refine(whole.model, record, options, progress.part(0.7, 0.8));
     search.chooseResiduals(whole.model);
     if (!search.left(whole.model).isNoise()) {  // laws of a higher degree may have laid bare what is small
         auto more = grown(whole.model, record, search, progress.part(0.8, 0.82));
         if (more.fit.usable()) {
             more.fit = refine(more.model, record, options, progress.part(0.82, 0.85));
             whole = std::move(more);
+            tried.clear();
         }
         search.chooseResiduals(whole.model);
     }
@@ -133,12 +162,14 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
                            : one.vote.backs() || whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
     };
     constexpr int rounds = 3;  // what has gone may have held up another one
-    auto tried = search.takeOut(whole.model, true, keeps);
-    for (int n = 1; n <= rounds && !tried; ++n) {
+    for (int n = 0; search.takeOut(whole.model, true, keeps, tried); ++n) {
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
-        tried = n < rounds ? search.takeOut(whole.model, true, keeps) : search.tryWithout(whole.model, false);
+        if (n + 1 < rounds)
+            continue;
+        tried = search.tryWithout(whole.model, false);
+        break;
     }
-    for (const auto& [effect, one] : *tried)
+    for (const auto& [effect, one] : tried)
         whole.votes[effect] = one.vote;
     return whole;
 }

@@ -149,7 +149,8 @@ Removal WholeSearch::without(const Model& model, const Left& now, const std::str
             if (reshape(leaner, then, now, *still))
                 then = left(leaner);
         }
-        if (thorough && test_.played && lost(then, now) > hardlyNeeded && fitExactly(leaner).usable())
+        const double missed = lost(then, now);
+        if (thorough && test_.played && missed > hardlyNeeded && missed < barelyMissed && fitExactly(leaner).usable())
             then = left(leaner);
     }
     removal.vote = votedBy(effect, vote, then, now);
@@ -159,7 +160,7 @@ Removal WholeSearch::without(const Model& model, const Left& now, const std::str
     return removal;
 }
 
-WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough) const
+WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough, const Removals& before) const
 {
     Removals tried;
     const auto now = left(model);
@@ -168,21 +169,25 @@ WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough)
     for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
         if (base_.has(effect))
             continue;
+        const auto known = before.find(effect);
         const bool plausible = !strange.contains(effect);
         auto& one = tried[effect];
-        one = vote.standsAlone() && plausible ? Removal {vote, {}} : without(model, now, effect, vote, thorough, still);
+        one = vote.standsAlone() && plausible ? Removal {vote, {}}
+              : known != before.end() && known->second.vote.uniqueDb > barelyMissed
+                  ? Removal {known->second.vote, {}}
+                  : without(model, now, effect, vote, thorough, still);
         one.plausible = plausible;
     }
     return tried;
 }
 
-std::optional<WholeSearch::Removals> WholeSearch::takeOut(Model& model, bool thorough,
-                                                          const std::function<bool(const Removal&)>& keeps) const
+bool WholeSearch::takeOut(Model& model, bool thorough, const std::function<bool(const Removal&)>& keeps,
+                          Removals& tried) const
 {
     bool any = false;
-    auto every = tryWithout(model, thorough);
+    tried = tryWithout(model, thorough, tried);
     std::vector<std::pair<const std::string, Removal>*> order;
-    for (auto& one : every)
+    for (auto& one : tried)
         order.push_back(&one);
     std::stable_sort(order.begin(), order.end(),
                      [](auto* a, auto* b) { return a->second.vote.uniqueDb < b->second.vote.uniqueDb; });
@@ -206,9 +211,7 @@ std::optional<WholeSearch::Removals> WholeSearch::takeOut(Model& model, bool tho
         model = std::move(leaner);
         any = true;
     }
-    if (any)
-        return std::nullopt;
-    return every;
+    return any;
 }
 
 bool WholeSearch::restImplausibleParts(Model& model) const
@@ -224,14 +227,60 @@ std::set<std::string> WholeSearch::takeOutImplausible(Model& model) const
 {
     auto leaner = model;
     const bool rested = restImplausibleParts(leaner);
-    auto strange = implausible(leaner);
-    std::erase_if(strange, [&](const std::string& effect) { return base_.has(effect); });
-    for (const auto& effect : strange)
-        leaner = withoutEffect(leaner, effect);
-    if ((strange.empty() && !rested) || !fit(leaner, brief).usable())
+    std::set<std::string> gone;
+    std::set<std::string> anew;
+    for (auto strange = strangeIn(leaner); !strange.empty(); strange = strangeIn(leaner)) {
+        auto next = withoutOneOf(strange, leaner);
+        if (!next || !fit(next->model, brief).usable())
+            return {};
+        if (anew.insert(next->effect).second && bringBack(leaner, next->effect, left(next->model)))
+            continue;
+        gone.insert(next->effect);
+        leaner = std::move(next->model);
+    }
+    if (gone.empty() && anew.empty() && (!rested || !fit(leaner, brief).usable()))
         return {};
     model = std::move(leaner);
+    return gone;
+}
+
+/// Where others have bent a linear effect far away no small step leads back.
+bool WholeSearch::bringBack(Model& model, const std::string& effect, const Left& without) const
+{
+    return effectNamed(effect).linear() && lost(without, left(model)) > barelyMissed
+           && findAnew(
+               model, withoutLaws(model, record_, options_.threads),
+               [&](const Component& component) { return component.effect->id() == effect; },
+               [&](Model& anew) {
+                   return fit(anew, brief).usable() && !strangeIn(anew).contains(effect)
+                          && lost(without, left(anew)) > hardlyNeeded;
+               });
+}
+
+std::set<std::string> WholeSearch::strangeIn(const Model& model) const
+{
+    auto strange = implausible(model);
+    std::erase_if(strange, [&](const std::string& effect) { return base_.has(effect); });
     return strange;
+}
+
+std::optional<WholeSearch::Leaner> WholeSearch::withoutOneOf(const std::set<std::string>& effects,
+                                                             const Model& model) const
+{
+    if (effects.size() == 1)
+        return Leaner {*effects.begin(), withoutEffect(model, *effects.begin())};
+    std::optional<Leaner> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& effect : effects) {
+        auto leaner = withoutEffect(model, effect);
+        if (!fit(leaner, glance).usable())
+            continue;
+        if (const double then = left(leaner).chiSquaredPerValue; then < least) {
+            least = then;
+            best = {effect, std::move(leaner)};
+        }
+    }
+    return best;
 }
 
 /// What seems to miss a linear effect a little may only have another of its linear effects in a wrong shape, from which

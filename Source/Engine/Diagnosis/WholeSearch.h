@@ -75,24 +75,36 @@ public:
     /// large part of the linear model, so one that seems to be needed little is really taken out.
     /// @param thorough  what seems to be missed is fitted with a simulation's own slopes before that is believed: where
     ///                  laws rule the motion those of fed laws lead no further than near the least error
-    Removals tryWithout(const Model&, bool thorough) const;
+    /// @param before    of a model that had these effects and others: what it missed clearly is not tried again
+    Removals tryWithout(const Model&, bool thorough, const Removals& before = {}) const;
 
-    /// Takes the effects out of which the others do not lose what `keeps` asks for, the least needed first. What was
-    /// found of them all where none was taken out, else nothing.
-    std::optional<Removals> takeOut(Model&, bool thorough, const std::function<bool(const Removal&)>& keeps) const;
+    /// Takes the effects out of which the others do not lose what `keeps` asks for, the least needed first. Whether
+    /// there were any.
+    /// @param tried  as for tryWithout(); and what was found of them all
+    bool takeOut(Model&, bool thorough, const std::function<bool(const Removal&)>& keeps, Removals& tried) const;
 
     /// Puts parts of effects at rest that stand for something else, where others of their effect do not (see
     /// FitResponse.h). Whether there were any; the model is to be fitted again then.
     bool restImplausibleParts(Model&) const;
 
     /// Takes out what stands for something else, and fits the rest; returns the effects that went. Of those that have
-    /// plausible parts only the others go.
+    /// plausible parts only the others go. The effects go one at a time, the least missed first: one that stands for
+    /// something else bends others, too, and these come right again without it.
+    /// A linear effect that is much missed is found anew before it would go.
     std::set<std::string> takeOutImplausible(Model&) const;
 
 private:
+    struct Leaner {
+        std::string effect;  ///< that went
+        Model model;
+    };
+
     FitOptions within(const LeastSquaresOptions&) const;
     FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
     FitSummary fitExactly(Model&) const;
+    std::set<std::string> strangeIn(const Model&) const;
+    std::optional<Leaner> withoutOneOf(const std::set<std::string>& effects, const Model&) const;
+    bool bringBack(Model&, const std::string& effect, const Left& without) const;
     bool reshape(Model&, const Left& now, const Left& enough, const Record& still) const;
     Removal without(const Model&, const Left& now, const std::string& effect, const Vote&, bool thorough,
                     std::optional<Record>& still) const;
