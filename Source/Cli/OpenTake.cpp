@@ -43,7 +43,7 @@ void requireSameKind(const Model& model, const OpenTake& open)
 
 Record recordFor(const Model& model, const OpenTake& open)
 {
-    auto record = makeRecord(open.take.measurement());
+    auto record = open.take.record();
     adapt(record, model);
     return record;
 }

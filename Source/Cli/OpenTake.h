@@ -3,7 +3,7 @@
 
 #include "Engine/Check/PreparedTake.h"
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -7,6 +7,7 @@
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Error.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Drift.h"
 
 #include <catch2/catch.hpp>

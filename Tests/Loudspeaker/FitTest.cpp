@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fits to takes of the virtual bench, which shares no code with the model.
 #include "Bench/Bench.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Loudspeaker/OutputError.h"

@@ -4,6 +4,7 @@
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Estimate/MakeRecord.h"
 
 #include <algorithm>
 #include <chrono>

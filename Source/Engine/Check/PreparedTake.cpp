@@ -2,6 +2,7 @@
 #include "Engine/Check/PreparedTake.h"
 
 #include "Engine/Error.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Take/FindExcitation.h"
 
 #include <mutex>
@@ -24,8 +25,9 @@ struct PreparedTake::State {
     explicit State(Take given) : take(completed(std::move(given))) {}
 
     Take take;
-    mutable std::once_flag checked;
+    mutable std::once_flag checked, cut;
     mutable CheckReport report;
+    mutable Record record;
 };
 
 PreparedTake::PreparedTake(Take take) : state_(std::make_shared<const State>(std::move(take))) {}
@@ -50,6 +52,12 @@ const CheckReport& PreparedTake::report() const
     std::call_once(state_->checked,
                    [this] { state_->report = std::visit([](const auto& take) { return check(take); }, state_->take); });
     return state_->report;
+}
+
+const Record& PreparedTake::record() const
+{
+    std::call_once(state_->cut, [this] { state_->record = makeRecord(measurement()); });
+    return state_->record;
 }
 
 }  // namespace excursion

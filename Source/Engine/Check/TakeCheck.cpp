@@ -9,7 +9,6 @@
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Estimate/Welch.h"
-#include "Engine/Take/FindExcitation.h"
 #include "Engine/Take/Motion.h"
 
 #include <algorithm>
@@ -104,13 +103,6 @@ CheckReport check(const Measurement& take)
     take.input();  // throws when there is none
     if (take.length() == 0)
         throw Error(Error::Kind::data, "The take has no samples.");
-    if (take.excitation && take.excitation->lines.empty()
-        && take.excitation->totalSamples() <= static_cast<long>(take.length())) {
-        auto completed = take;
-        completeExcitation(completed);
-        if (!completed.excitation->lines.empty())
-            return check(completed);
-    }
     CheckReport report;
     report.channels.resize(take.channels.size());
     auto& problems = report.problems;

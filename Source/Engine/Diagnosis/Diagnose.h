@@ -7,7 +7,7 @@
 #include "Engine/Diagnosis/Vote.h"
 #include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 
 #include <map>
 #include <string>

@@ -74,7 +74,7 @@ Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const
     if (const auto* spectra = take_.asResponses()) {
         data_ = *spectra;
     } else if (report.fitForUse()) {
-        data_ = makeRecord(take_.measurement());
+        data_ = take_.record();
     } else {
         ladder_.verdict = Verdict::badMeasurement;
         ladder_.sentence = report.verdict();

@@ -47,7 +47,7 @@ Adaptation adaptTo(const Model& model, const PreparedTake& take, const std::vect
         result.after = compare(result.drift.model, *spectra);
         return result;
     }
-    auto record = makeRecord(take.measurement());
+    auto record = take.record();
     adapt(record, model);
     result.before = compare(model, record, {0, false}, progress.part(0.0, 0.1));
     result.drift = followDrift(model, record, names, {}, progress.part(0.1, 0.9));

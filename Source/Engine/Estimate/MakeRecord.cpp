@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/MakeRecord.h"
 
 #include "Engine/Error.h"
 #include "Engine/Estimate/Periods.h"
 #include "Engine/Estimate/Wander.h"
 #include "Engine/Signal/Fft.h"
-#include "Engine/Take/FindExcitation.h"
+#include "Engine/Take/Motion.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -256,52 +256,6 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
 
 }  // namespace
 
-std::optional<int> integrationsToDisplacement(Quantity quantity)
-{
-    switch (quantity) {
-    case Quantity::displacement: return 0;
-    case Quantity::velocity: return 1;
-    case Quantity::acceleration: return 2;
-    default: return std::nullopt;
-    }
-}
-
-std::optional<std::size_t> Record::channelIndex(Quantity quantity) const
-{
-    const auto found = std::find(channels.begin(), channels.end(), quantity);
-    if (found == channels.end())
-        return std::nullopt;
-    return static_cast<std::size_t>(found - channels.begin());
-}
-
-std::pair<std::size_t, std::size_t> Record::lineRange(const Section& section) const
-{
-    const double resolution = sampleRate / static_cast<double>(section.window);
-    const auto first = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(lowFrequency / resolution)));
-    const auto last = std::min<std::size_t>(section.window / 2 - 1,
-                                            static_cast<std::size_t>(highFrequency / resolution));
-    return {first, std::max(first, last)};
-}
-
-std::size_t Record::driveBegin(const Section& section, std::size_t atLeast) const
-{
-    const std::size_t N = section.input.size();
-    return section.periodic ? (N - std::max(leadIn, atLeast) % N) % N : 0;
-}
-
-std::vector<double> Record::drive(const Section& section, std::size_t atLeast) const
-{
-    if (!section.periodic)
-        return section.input;
-    const auto& period = section.input;
-    const std::size_t N = period.size();
-    const std::size_t begin = driveBegin(section, atLeast);
-    std::vector<double> samples(std::max(leadIn, atLeast) + N);
-    for (std::size_t n = 0; n < samples.size(); ++n)
-        samples[n] = period[(n + begin) % N];
-    return samples;
-}
-
 bool RecordOptions::isValid(std::string* reason) const
 {
     if (!(windowSeconds > 0.0) || !(leadInSeconds >= 0.0))
@@ -333,21 +287,13 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
                     "displacement, velocity, acceleration or pressure.");
 
     const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
-    if (periodic && take.excitation->lines.empty()) {
-        Measurement completed = take;
-        completeExcitation(completed);
-        excitedLines(completed);  // refuses a take in which nothing repeats
-        return makeRecord(completed, options);
-    }
     record.bandLow = 0.0;
     record.bandHigh = trustedBand * take.sampleRate;
     if (periodic) {
-        periodicExcitation(take);  // checks the structure against the length
+        const auto& lines = excitedLines(take);  // refuses a record that is too short, or in which nothing repeats
         const double resolution = take.sampleRate / take.excitation->period;
-        if (!take.excitation->lines.empty()) {
-            record.bandLow = resolution * take.excitation->lines.front();
-            record.bandHigh = resolution * take.excitation->lines.back();
-        }
+        record.bandLow = resolution * lines.front();
+        record.bandHigh = resolution * lines.back();
         // Above the distortion's band there is nothing to compare, and fewer samples are simulated sooner.
         std::size_t factor = 1;
         while (static_cast<std::size_t>(take.excitation->period) % (2 * factor) == 0
