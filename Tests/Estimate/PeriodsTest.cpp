@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Estimate/Periods.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 #include "Engine/Error.h"
 #include "Estimate/SyntheticTake.h"
@@ -69,7 +69,7 @@ TEST_CASE("the scatter over the periods is the noise of the averaged period")
     auto& channel = take.channels.front();
     synthetic::addNoise(channel.samples, 0.01, random);
 
-    const auto noise = periodNoise(take, channel, 0);
+    const auto noise = AveragedPeriods(take).noise(channel, 0);
     CHECK(noise.degreesOfFreedom == 2 * 25 * 3);
     double mean = 0.0;
     for (std::size_t k = 1; k + 1 < noise.variance.size(); ++k)
@@ -84,7 +84,7 @@ TEST_CASE("noise is unknown from a single period")
     synthetic::Plan plan;
     plan.periods = 1;
     const auto take = synthetic::record({}, plan, random);
-    const auto noise = periodNoise(take, take.channels.front(), 0);
+    const auto noise = AveragedPeriods(take).noise(take.channels.front(), 0);
     CHECK(noise.variance.empty());
     CHECK(noise.degreesOfFreedom == 0);
 }

@@ -3,7 +3,6 @@
 
 #include "Engine/Check/Hum.h"
 #include "Engine/Check/PeriodShift.h"
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
@@ -30,14 +29,14 @@ struct Powers {
     std::vector<double> noise;  ///< of one period
 };
 
-Powers powersOf(const Measurement& take, const Channel& channel, int level)
+Powers powersOf(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = *take.excitation;
+    const Excitation& e = *averages.take().excitation;
     Powers powers;
     powers.mean.assign(static_cast<std::size_t>(e.period / 2 + 1), 0.0);
     powers.noise = powers.mean;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto averaged = averagedPeriod(take, channel, level, m);
+        const auto& averaged = averages.spectrum(channel, level, m);
         for (std::size_t k = 0; k < powers.mean.size(); ++k) {
             powers.mean[k] += std::norm(averaged.mean[k]) / e.realizations;
             if (e.periods > 1)
@@ -96,18 +95,19 @@ std::optional<double> settling(const Measurement& take, const Channel& channel, 
 
 }  // namespace
 
-std::optional<double> signalToNoise(const Measurement& take, const Channel& channel, int level)
+std::optional<double> signalToNoise(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = periodicExcitation(take);
-    const auto& lines = excitedLines(take);
+    const Excitation& e = periodicExcitation(averages.take());
+    const auto& lines = excitedLines(averages.take());
     if (e.periods < 2)
         return std::nullopt;
-    return between(powersOf(take, channel, level), lines, e.periods, lines.front(), lines.back()).db();
+    return between(powersOf(averages, channel, level), lines, e.periods, lines.front(), lines.back()).db();
 }
 
-bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigures& figures,
+bool checkPeriods(const AveragedPeriods& averages, const Channel& channel, ChannelFigures& figures,
                   std::vector<Problem>& problems)
 {
+    const auto& take = averages.take();
     const Excitation& e = periodicExcitation(take);
     const auto& lines = excitedLines(take);
     const std::string who(name(channel.quantity));
@@ -115,7 +115,7 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
     if (e.periods < 2)
         return true;
 
-    const auto powers = powersOf(take, channel, loudest);
+    const auto powers = powersOf(averages, channel, loudest);
     double mean = 0.0, noise = 0.0;
     for (const int k : lines) {
         mean += powers.mean[static_cast<std::size_t>(k)];
@@ -163,7 +163,7 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
                                 + rounded(*figures.settlingDb, 0)
                                 + " dB of the signal; play one more settling period."});
 
-    if (const auto hum = findHum(take, channel))
+    if (const auto hum = findHum(averages, channel))
         problems.push_back({"hum", channel.quantity, hum->db, "dB", hum->db > -40.0 && hum->aboveNoise > 6.0,
                             "The " + who + " channel hums at " + rounded(hum->mains, 0) + " Hz and harmonics, "
                                 + rounded(hum->db, 0)

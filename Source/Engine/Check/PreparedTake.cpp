@@ -6,6 +6,7 @@
 #include "Engine/Take/FindExcitation.h"
 
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -22,9 +23,14 @@ Take completed(Take take)
 }  // namespace
 
 struct PreparedTake::State {
-    explicit State(Take given) : take(completed(std::move(given))) {}
+    explicit State(Take given) : take(completed(std::move(given)))
+    {
+        if (const auto* measurement = std::get_if<Measurement>(&take))
+            averages.emplace(*measurement);
+    }
 
-    Take take;
+    const Take take;
+    std::optional<AveragedPeriods> averages;  // what the check and the record ask for, of a take in time
     mutable std::once_flag checked, cut;
     mutable CheckReport report;
     mutable Record record;
@@ -49,14 +55,16 @@ const Measurement& PreparedTake::measurement() const
 
 const CheckReport& PreparedTake::report() const
 {
-    std::call_once(state_->checked,
-                   [this] { state_->report = std::visit([](const auto& take) { return check(take); }, state_->take); });
+    std::call_once(state_->checked, [this] {
+        state_->report = state_->averages ? check(*state_->averages) : check(std::get<Spectra>(state_->take));
+    });
     return state_->report;
 }
 
 const Record& PreparedTake::record() const
 {
-    std::call_once(state_->cut, [this] { state_->record = makeRecord(measurement()); });
+    measurement();  // refuses a frequency response
+    std::call_once(state_->cut, [this] { state_->record = makeRecord(*state_->averages); });
     return state_->record;
 }
 

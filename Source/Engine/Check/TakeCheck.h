@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Check/CheckReport.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 namespace excursion {
 
@@ -13,6 +14,7 @@ namespace excursion {
 /// A take without excitation is checked for what its waveforms and coherences tell. Lines that an excitation does not
 /// name are not looked for: a PreparedTake has completed it.
 /// @throws Error (data) when there is neither a voltage nor a force channel, or no sample
+CheckReport check(const AveragedPeriods&);
 CheckReport check(const Measurement&);
 
 /// A frequency response has no waveforms to check: what its reader had to assume is all there is to tell.

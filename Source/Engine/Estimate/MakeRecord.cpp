@@ -2,7 +2,6 @@
 #include "Engine/Estimate/MakeRecord.h"
 
 #include "Engine/Error.h"
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Estimate/Wander.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Take/Motion.h"
@@ -94,11 +93,11 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
 }
 
 /// Peaks upwards and downwards of an averaged period integrated n times within the excited band, in any unit.
-std::pair<double, double> integratedPeaks(const Measurement& take, const Channel& channel, int level, int realization,
-                                          int integrations)
+std::pair<double, double> integratedPeaks(const AveragedPeriods& averages, const Channel& channel, int level,
+                                          int realization, int integrations)
 {
-    const auto& e = *take.excitation;
-    auto spectrum = fft(averagePeriod(take, channel, level, realization));
+    const auto& e = *averages.take().excitation;
+    auto spectrum = fft(averages.inTime(channel, level, realization));
     const auto first = static_cast<std::size_t>(e.lines.front()), last = static_cast<std::size_t>(e.lines.back());
     for (std::size_t k = 0; k < spectrum.size(); ++k)
         spectrum[k] = k >= first && k <= last
@@ -112,8 +111,9 @@ std::pair<double, double> integratedPeaks(const Measurement& take, const Channel
 /// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current to
 /// either side (what the channels tell of them; the input's low frequencies when they tell nothing of the cone), each
 /// relative to where the others go, its largest is the lowest.
-int quietestRealization(const Measurement& take)
+int quietestRealization(const AveragedPeriods& averages)
 {
+    const auto& take = averages.take();
     const auto& e = *take.excitation;
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     std::vector<std::pair<const Channel*, int>> motions;
@@ -131,7 +131,7 @@ int quietestRealization(const Measurement& take)
     for (const auto& [channel, integrations] : motions) {
         std::vector<double> up, down;
         for (int realization = 0; realization < e.realizations; ++realization) {
-            const auto [high, low] = integratedPeaks(take, *channel, loudest, realization, integrations);
+            const auto [high, low] = integratedPeaks(averages, *channel, loudest, realization, integrations);
             up.push_back(high);
             down.push_back(low);
         }
@@ -174,19 +174,21 @@ void thinOut(Section& section, std::size_t factor)
         variance *= share * share;
 }
 
-void addPeriodicSections(const Measurement& take, const RecordOptions& options, std::size_t factor, Record& record)
+void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& options, std::size_t factor,
+                         Record& record)
 {
+    const auto& take = averages.take();
     const auto& e = *take.excitation;
     record.levels = e.levels;
     record.noiseKnown = e.periods > 1;
-    const int held = options.holdOut && e.realizations > 1 ? quietestRealization(take) : -1;
+    const int held = options.holdOut && e.realizations > 1 ? quietestRealization(averages) : -1;
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
-        const auto scatter = periodNoise(take, take.input(), level).variance;
+        const auto& scatter = averages.noise(take.input(), level).variance;
         const auto inputVariance = scatter.empty() ? scatter : smoothVariance(scatter, e.lines);
         std::vector<std::vector<double>> variance;
         for (const auto quantity : record.channels) {
-            auto noise = periodNoise(take, *take.find(quantity), level).variance;
+            const auto& noise = averages.noise(*take.find(quantity), level).variance;
             variance.push_back(noise.empty() ? noise : smoothVariance(noise, e.lines));
         }
         for (int realization = 0; realization < e.realizations; ++realization) {
@@ -200,15 +202,14 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
             section.begin = period * played * (level * e.realizations + realization);
             section.end = section.begin + period * played;
             section.middle = section.end - 0.5 * period * e.periods;
-            section.input = averagePeriod(take, take.input(), level, realization);
+            section.input = averages.inTime(take.input(), level, realization);
             section.window = section.input.size();
             section.excited = e.lines;
             section.inputVariance = inputVariance;
             if (!inputVariance.empty())
                 silenceNoise(section.input, inputVariance, e.lines);
             for (std::size_t c = 0; c < record.channels.size(); ++c) {
-                section.measured.push_back(
-                    fft(averagePeriod(take, *take.find(record.channels[c]), level, realization)));
+                section.measured.push_back(fft(averages.inTime(*take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
             }
             if (factor > 1)
@@ -217,7 +218,7 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
         }
     }
     for (const auto quantity : record.channels)
-        record.wanderDb.push_back(wanderDb(take, *take.find(quantity)));
+        record.wanderDb.push_back(wanderDb(averages, *take.find(quantity)));
     record.leadIn = static_cast<std::size_t>(e.period) / factor
                     * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
@@ -265,8 +266,9 @@ bool RecordOptions::isValid(std::string* reason) const
     return true;
 }
 
-Record makeRecord(const Measurement& take, const RecordOptions& options)
+Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
 {
+    const auto& take = averages.take();
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The take cannot be prepared: " + reason + ".");
@@ -301,7 +303,7 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
                       <= take.sampleRate / static_cast<double>(2 * factor))
             factor *= 2;
         record.sampleRate = take.sampleRate / static_cast<double>(factor);
-        addPeriodicSections(take, options, factor, record);
+        addPeriodicSections(averages, options, factor, record);
     } else {
         record.wanderDb.resize(record.channels.size());
         addAperiodicSections(take, options, record);
@@ -310,6 +312,11 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
         record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
     record.highFrequency = std::min(trustedBand * record.sampleRate, distortionBand * record.bandHigh);
     return record;
+}
+
+Record makeRecord(const Measurement& take, const RecordOptions& options)
+{
+    return makeRecord(AveragedPeriods(take), options);
 }
 
 }  // namespace excursion

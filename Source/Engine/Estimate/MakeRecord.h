@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Estimate/AveragedPeriods.h"
 #include "Engine/Estimate/Record.h"
 
 #include <string>
@@ -23,6 +24,7 @@ struct RecordOptions {
 /// Cuts a take into the sections that models are fitted to and compared with. Lines that its excitation does not name
 /// are not looked for (completeExcitation() finds them).
 /// Throws Error (data) if the take has no output channel or is too short, or states a period in which nothing repeats.
+Record makeRecord(const AveragedPeriods&, const RecordOptions& = {});
 Record makeRecord(const Measurement&, const RecordOptions& = {});
 
 }  // namespace excursion
