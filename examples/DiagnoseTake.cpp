@@ -31,7 +31,7 @@ int main()
 
         auto record = take.record();
         const Model linear = fitEffects(record, {}, {});
-        const auto diagnosis = diagnose(linear, record);
+        const auto diagnosis = diagnose(linear, record, compare(linear, record));
         for (const auto& [quantity, error] : diagnosis.error)
             std::cout << name(quantity) << ": error " << error.db << " dB, noise " << error.noiseFloorDb.value_or(0.0)
                       << " dB\n";

@@ -29,8 +29,12 @@ Diagnosis diagnosisOf(const Model& model, const OpenTake& open, Terminal& termin
         diagnosis.sentence = open.take.report().verdict();
         return diagnosis;
     }
-    return open.take.asResponses() ? diagnose(model, *open.take.asResponses(), {}, terminal.progress())
-                                   : diagnose(model, recordFor(model, open), {}, terminal.progress());
+    const auto progress = terminal.progress();
+    if (const auto* spectra = open.take.asResponses())
+        return diagnose(model, *spectra, compare(model, *spectra), {}, progress);
+    const auto record = recordFor(model, open);
+    const auto before = compare(model, record, {}, progress.part(0.0, 0.1));
+    return diagnose(model, record, before, {}, progress.part(0.1, 1.0));
 }
 
 /// The error of the model as it is in the first row, then that with each candidate: as a refit confirmed it, else as

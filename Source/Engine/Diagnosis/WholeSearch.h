@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/Score.h"
 #include "Engine/Diagnosis/Vote.h"
 #include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/LinearResponses.h"
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include <algorithm>
@@ -93,9 +94,9 @@ private:
     FitOptions within(const LeastSquaresOptions&) const;
     FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
     FitSummary fitExactly(Model&) const;
-    bool reshape(Model&, const Left& now, const Left& enough, const Record& still) const;
+    bool reshape(Model&, const Left& now, const Left& enough, const LinearResponses& still) const;
     Removal without(const Model&, const Left& now, const std::string& effect, const Vote&, bool thorough,
-                    std::optional<Record>& still) const;
+                    std::optional<LinearResponses>& still) const;
     Vote votedBy(const std::string& effect, const Vote&, const Left& without, const Left& with) const;
 
     const Model& base_;
