@@ -9,6 +9,7 @@
 #include "Engine/Error.h"
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Drift.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <catch2/catch.hpp>
 

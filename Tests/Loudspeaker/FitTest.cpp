@@ -4,6 +4,7 @@
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include <catch2/catch.hpp>

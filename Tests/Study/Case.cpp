@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Estimate/MakeRecord.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <algorithm>
 #include <chrono>
