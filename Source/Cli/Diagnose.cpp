@@ -7,6 +7,7 @@
 #include "Engine/Diagnosis/Diagnose.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Seen.h"
 
 #include <nlohmann/json.hpp>
 
@@ -89,7 +90,7 @@ void run(const DiagnoseArguments& options, Terminal& terminal)
 {
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
-    requireSameKind(model, open);
+    requireSameKind(model, seenIn(open.take.either()));
     auto diagnosis = diagnosisOf(model, open, terminal);
     diagnosis.problems = open.take.report().problems;
     print(diagnosis, terminal);

@@ -26,9 +26,6 @@ OpenTake openTake(const std::string& path);
 /// nonlinear and the take is a frequency response.
 void requireEffects(const std::vector<std::string>& ids, const PreparedTake&);
 
-/// Throws Error (data) when one of model and take has a coil and the other has none.
-void requireSameKind(const Model&, const OpenTake&);
-
 /// The record of a take that is not a frequency response, adapted to the model.
 Record recordFor(const Model&, const OpenTake&);
 

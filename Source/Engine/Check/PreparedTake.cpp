@@ -42,6 +42,8 @@ PreparedTake::PreparedTake(Measurement measurement) : PreparedTake(Take(std::mov
 
 PreparedTake::PreparedTake(Spectra spectra) : PreparedTake(Take(std::move(spectra))) {}
 
+const Take& PreparedTake::either() const { return state_->take; }
+
 const Measurement* PreparedTake::inTime() const { return std::get_if<Measurement>(&state_->take); }
 
 const Spectra* PreparedTake::asResponses() const { return std::get_if<Spectra>(&state_->take); }

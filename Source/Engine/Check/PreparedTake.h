@@ -19,6 +19,7 @@ public:
     PreparedTake(Measurement);
     PreparedTake(Spectra);
 
+    const Take& either() const;
     /// Null where the take is a frequency response, or is none.
     const Measurement* inTime() const;
     const Spectra* asResponses() const;
