@@ -332,7 +332,7 @@ TEST_CASE("In bypass a target changes no bit", "[predistortion][target]")
 {
     constexpr double rate = 48000.0;
     ChainControls controls;
-    controls.linearization = towards(25.0, 0.7);
+    controls.predistortion = towards(25.0, 0.7);
     Chain chain(everything(), {rate, 2}, controls);
     const auto u = noise(20000, 0.7);
     CHECK(through(chain, u) == u);
