@@ -16,7 +16,7 @@ namespace {
 /// scaled so that the sum over lines is the mean square of the residual.
 std::vector<double> residualSpectrum(const AveragedPeriods& averages, const Channel& channel)
 {
-    const Excitation& e = *averages.take().excitation;
+    const Excitation& e = averages.excitation();
     const auto length = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(e.periods);
     std::vector<double> power(length / 2 + 1, 0.0), residual(length);
     const double records = static_cast<double>(e.realizations) * static_cast<double>(e.levels.size());
@@ -39,7 +39,7 @@ std::vector<double> residualSpectrum(const AveragedPeriods& averages, const Chan
 
 double signalPower(const AveragedPeriods& averages, const Channel& channel)
 {
-    const Excitation& e = *averages.take().excitation;
+    const Excitation& e = averages.excitation();
     double power = 0.0;
     for (int m = 0; m < e.realizations; ++m) {
         const auto& period = averages.inTime(channel, static_cast<int>(e.levels.size()) - 1, m);
@@ -54,12 +54,11 @@ double signalPower(const AveragedPeriods& averages, const Channel& channel)
 
 /// The share of a sinusoid's power that is left when the average of P periods is taken away: 1 - |D|^2 with
 /// D = 1/P sum_p exp(2 pi j f N p / fs).
-double shareLeft(double frequency, const Measurement& take)
+double shareLeft(double frequency, const Excitation& e, double sampleRate)
 {
-    const Excitation& e = *take.excitation;
     std::complex<double> sum = 0.0;
     for (int p = 0; p < e.periods; ++p)
-        sum += std::polar(1.0 / e.periods, 2.0 * std::numbers::pi * frequency * e.period / take.sampleRate * p);
+        sum += std::polar(1.0 / e.periods, 2.0 * std::numbers::pi * frequency * e.period / sampleRate * p);
     return std::max(0.1, 1.0 - std::norm(sum));
 }
 
@@ -68,7 +67,7 @@ double shareLeft(double frequency, const Measurement& take)
 std::optional<Hum> findHum(const AveragedPeriods& averages, const Channel& channel)
 {
     const auto& take = averages.take();
-    const Excitation& e = periodicExcitation(take);
+    const Excitation& e = averages.excitation();
     const double signal = signalPower(averages, channel);
     if (e.periods < 2 || !(signal > 0.0))
         return std::nullopt;
@@ -113,7 +112,7 @@ std::optional<Hum> findHum(const AveragedPeriods& averages, const Channel& chann
             ++hum.harmonics;
             highest = std::max(highest, standsOut);
             seen += sum;
-            total += sum / shareLeft(harmonic * mains, take);
+            total += sum / shareLeft(harmonic * mains, e, take.sampleRate);
         }
         if (hum.harmonics < 2 && highest < 25.0)
             continue;

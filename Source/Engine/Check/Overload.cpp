@@ -33,7 +33,7 @@ struct Line {
 std::vector<Line> leftOut(const AveragedPeriods& averages, const Channel& channel, const Channel& partner, int level,
                           int realization, double offset, double scale, double& signal)
 {
-    const auto& excited = excitedLines(averages.take());
+    const auto& excited = averages.lines();
     const auto& beside = averages.spectrum(partner, level, realization);
     const auto& averaged = averages.spectrum(channel, level, realization);
     const auto& y = averages.inTime(channel, level, realization);
@@ -88,7 +88,7 @@ std::vector<std::pair<double, double>> surroundings(const std::vector<Line>& lin
 std::optional<Overload> overloadAt(const AveragedPeriods& averages, const Channel& channel, const Channel& partner,
                                    int level)
 {
-    const Excitation& e = periodicExcitation(averages.take());
+    const Excitation& e = averages.excitation();
     // An offset says nothing about a bend, and powers of it would stand for the signal itself.
     const double samples = static_cast<double>(e.period) * e.realizations;
     double offset = 0.0, squares = 0.0, most = 0.0, least = 0.0;
@@ -181,7 +181,7 @@ std::optional<Overload> overloadAt(const AveragedPeriods& averages, const Channe
 std::optional<Overload> findOverload(const AveragedPeriods& averages, const Channel& channel, const Channel& partner)
 {
     std::optional<Overload> worst;
-    for (int level = 0; level < static_cast<int>(periodicExcitation(averages.take()).levels.size()); ++level)
+    for (int level = 0; level < static_cast<int>(averages.excitation().levels.size()); ++level)
         if (const auto here = overloadAt(averages, channel, partner, level);
             here && here->explained > explainedFrom && here->db > faintest)
             if (!worst || here->db > worst->db)

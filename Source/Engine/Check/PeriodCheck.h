@@ -17,7 +17,7 @@ bool checkPeriods(const AveragedPeriods&, const Channel&, ChannelFigures&, std::
 /// Clock drift and lost samples, over all channels at once: what all share is the recorder's, what one has is its own.
 /// @param figures  one for each channel of the take
 /// @param alive    which channels to look at
-void checkClocks(const Measurement&, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
+void checkClocks(const AveragedPeriods&, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
                  std::vector<Problem>&);
 
 }  // namespace excursion

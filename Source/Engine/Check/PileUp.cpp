@@ -36,7 +36,7 @@ double smallestStep(const std::vector<double>& x)
 
 Strip averagedLevel(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = *averages.take().excitation;
+    const Excitation& e = averages.excitation();
     const auto period = static_cast<std::size_t>(e.period), periods = static_cast<std::size_t>(e.periods);
     Strip strip;
     for (int m = 0; m < e.realizations; ++m) {

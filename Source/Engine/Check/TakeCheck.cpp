@@ -144,7 +144,7 @@ CheckReport check(const AveragedPeriods& averages)
                                : isCoherent(take, take.channels[c], problems);
         bool labelled = true;
         if (described) {
-            checkClocks(take, alive, report.channels, problems);
+            checkClocks(averages, alive, report.channels, problems);
             labelled = checkLabels(take, alive, problems);
             if (labelled)
                 checkOverload(averages, alive, problems);

@@ -6,7 +6,7 @@ namespace {
 
 PeriodNoise pooled(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = periodicExcitation(averages.take());
+    const Excitation& e = averages.excitation();
     PeriodNoise noise;
     if (e.periods < 2)
         return noise;

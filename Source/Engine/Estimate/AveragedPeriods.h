@@ -24,6 +24,8 @@ public:
     explicit AveragedPeriods(const Measurement& take) : take_(take) {}
 
     const Measurement& take() const { return take_; }
+    const Excitation& excitation() const { return periodicExcitation(take_); }
+    const std::vector<int>& lines() const { return excitedLines(take_); }  ///< that are excited
 
     /// The average period of one realization in the time domain (averagePeriod()).
     const std::vector<double>& inTime(const Channel&, int level, int realization) const;

@@ -96,7 +96,7 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
 std::pair<double, double> integratedPeaks(const AveragedPeriods& averages, const Channel& channel, int level,
                                           int realization, int integrations)
 {
-    const auto& e = *averages.take().excitation;
+    const auto& e = averages.excitation();
     auto spectrum = fft(averages.inTime(channel, level, realization));
     const auto first = static_cast<std::size_t>(e.lines.front()), last = static_cast<std::size_t>(e.lines.back());
     for (std::size_t k = 0; k < spectrum.size(); ++k)
@@ -114,7 +114,7 @@ std::pair<double, double> integratedPeaks(const AveragedPeriods& averages, const
 int quietestRealization(const AveragedPeriods& averages)
 {
     const auto& take = averages.take();
-    const auto& e = *take.excitation;
+    const auto& e = averages.excitation();
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     std::vector<std::pair<const Channel*, int>> motions;
     for (const auto& channel : take.channels)
@@ -178,7 +178,7 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
                          Record& record)
 {
     const auto& take = averages.take();
-    const auto& e = *take.excitation;
+    const auto& e = averages.excitation();
     record.levels = e.levels;
     record.noiseKnown = e.periods > 1;
     const int held = options.holdOut && e.realizations > 1 ? quietestRealization(averages) : -1;
@@ -292,7 +292,7 @@ Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
     record.bandLow = 0.0;
     record.bandHigh = trustedBand * take.sampleRate;
     if (periodic) {
-        const auto& lines = excitedLines(take);  // refuses a record that is too short, or in which nothing repeats
+        const auto& lines = averages.lines();  // refuses a record that is too short, or in which nothing repeats
         const double resolution = take.sampleRate / take.excitation->period;
         record.bandLow = resolution * lines.front();
         record.bandHigh = resolution * lines.back();

@@ -17,7 +17,7 @@ struct Band {
 
 std::vector<double> powerOf(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const int realizations = averages.take().excitation->realizations;
+    const int realizations = averages.excitation().realizations;
     std::vector<double> power;
     for (int realization = 0; realization < realizations; ++realization) {
         const auto& period = averages.spectrum(channel, level, realization);
@@ -40,7 +40,7 @@ std::vector<Band> bandsOf(const AveragedPeriods& averages, const Channel& channe
     std::vector<Band> bands;
     double begin = 0.0;
     int lines = enough;
-    for (const int line : excitedLines(take)) {
+    for (const int line : averages.lines()) {
         const auto k = static_cast<std::size_t>(line);
         if (lines >= enough && line >= begin * std::cbrt(2.0)) {
             bands.emplace_back();
@@ -108,7 +108,7 @@ Split splitOf(const std::vector<Band>& bands)
 
 std::optional<double> wanderDb(const AveragedPeriods& averages, const Channel& channel)
 {
-    const auto& e = periodicExcitation(averages.take());
+    const auto& e = averages.excitation();
     if (e.periods < 2 || e.levels.size() < 2)
         return std::nullopt;
     const int loudest = static_cast<int>(e.levels.size()) - 1;
