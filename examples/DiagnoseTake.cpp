@@ -2,7 +2,7 @@
 // A loudspeaker is measured, a linear model is fitted, and what it lacks is named. The loudspeaker is a virtual one, in
 // which a force factor that falls with excursion is hidden; a take of a real one comes from readMeasurement(folder).
 #include "Bench/Draw.h"
-#include "Engine/Check/TakeCheck.h"
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Diagnosis/Diagnose.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Error.h"
@@ -23,16 +23,15 @@ int main()
         options.seconds = 2.0;
         options.channels = {Quantity::voltage, Quantity::current, Quantity::displacement};
         const auto drawn = bench::draw(7, options);
-        const Measurement take = bench::measure(drawn.speaker, drawn.setup);
+        const PreparedTake take(bench::measure(drawn.speaker, drawn.setup));
 
-        const auto report = check(take);
-        std::cout << report.verdict() << "\n";
-        if (!report.fitForUse())
+        std::cout << take.report().verdict() << "\n";
+        if (!take.report().fitForUse())
             return 1;
 
-        auto record = makeRecord(take);
+        auto record = take.record();
         const Model linear = fitEffects(record, {}, {});
-        const auto diagnosis = diagnose(linear, record);
+        const auto diagnosis = diagnose(linear, record, compare(linear, record));
         for (const auto& [quantity, error] : diagnosis.error)
             std::cout << name(quantity) << ": error " << error.db << " dB, noise " << error.noiseFloorDb.value_or(0.0)
                       << " dB\n";

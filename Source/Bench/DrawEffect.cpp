@@ -9,6 +9,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
+#include <string_view>
 
 namespace excursion::bench {
 namespace {
@@ -196,6 +198,21 @@ std::vector<HungPart> drawParts(double strength, const Loudspeaker& speaker, dou
     return parts;
 }
 
+/// The effects that bend one parameter along what the loudspeaker visits.
+struct DrawnLaw {
+    std::string_view id;
+    std::optional<Curve> Loudspeaker::*curve;
+    Curve (*draw)(double strength, double range, Random&);
+    double Visited::*range;
+};
+constexpr DrawnLaw drawnLaws[] = {
+    {"force-factor", &Loudspeaker::forceFactor, drawForceFactor, &Visited::displacement},
+    {"stiffness", &Loudspeaker::stiffness, drawStiffness, &Visited::displacement},
+    {"inductance-position", &Loudspeaker::inductancePosition, drawInductancePosition, &Visited::displacement},
+    {"inductance-current", &Loudspeaker::inductanceCurrent, drawInductanceCurrent, &Visited::current},
+    {"damping-velocity", &Loudspeaker::dampingVelocity, drawDamping, &Visited::velocity},
+};
+
 }  // namespace
 
 double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited& visited, const BenchSetup& setup,
@@ -204,28 +221,13 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
     const double drawn = random.logUniform(0.05, 0.6), strength = effect.strength > 0.0 ? effect.strength : drawn;
     const double f0 = std::sqrt(speaker.K / speaker.m) / turn;
     const auto& plan = setup.excitation;
-    const auto reached = [](const std::optional<Curve>& curve, double range) { return curve->change(range); };
 
-    if (effect.id == "force-factor") {
-        speaker.forceFactor = drawForceFactor(strength, visited.displacement, random);
-        return reached(speaker.forceFactor, visited.displacement);
-    }
-    if (effect.id == "stiffness") {
-        speaker.stiffness = drawStiffness(strength, visited.displacement, random);
-        return reached(speaker.stiffness, visited.displacement);
-    }
-    if (effect.id == "inductance-position") {
-        speaker.inductancePosition = drawInductancePosition(strength, visited.displacement, random);
-        return reached(speaker.inductancePosition, visited.displacement);
-    }
-    if (effect.id == "inductance-current") {
-        speaker.inductanceCurrent = drawInductanceCurrent(strength, visited.current, random);
-        return reached(speaker.inductanceCurrent, visited.current);
-    }
-    if (effect.id == "damping-velocity") {
-        speaker.dampingVelocity = drawDamping(strength, visited.velocity, random);
-        return reached(speaker.dampingVelocity, visited.velocity);
-    }
+    for (const auto& law : drawnLaws)
+        if (effect.id == law.id) {
+            auto& curve = speaker.*law.curve;
+            curve = law.draw(strength, visited.*law.range, random);
+            return curve->change(visited.*law.range);
+        }
     if (effect.id == "eddy-currents") {  // strength: its impedance against the coil's at the high edge
         const double w = turn * plan.bandHigh, exponent = random.uniform(0.45, 0.9);
         const double size = strength * std::hypot(speaker.Re, w * speaker.Le);

@@ -9,6 +9,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Seen.h"
 #include "Engine/Upkeep/Adaptation.h"
 
 #include <nlohmann/json.hpp>
@@ -87,7 +88,7 @@ void run(const AdaptArguments& options, Terminal& terminal)
     const auto model = readModel(options.model);
     nlohmann::ordered_json document {{"format", "excursion-adapt"}, {"version", 1}};
     const auto open = openTake(options.take);
-    requireSameKind(model, open);
+    requireSameKind(model, seenIn(open.take.either()));
     if (!open.take.report().fitForUse())
         return refuseTake(open, document, terminal);
     const auto names = options.parameters.empty() ? driftingParameters(model) : options.parameters;

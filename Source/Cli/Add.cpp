@@ -11,6 +11,7 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Seen.h"
 
 #include <nlohmann/json.hpp>
 
@@ -94,7 +95,7 @@ void run(const AddArguments& options, Terminal& terminal)
     const auto model = readModel(options.model);
     nlohmann::ordered_json document {{"format", "excursion-add"}, {"version", 1}, {"added", effect.id()}};
     const auto open = openTake(options.take);
-    requireSameKind(model, open);
+    requireSameKind(model, seenIn(open.take.either()));
     requireEffects({effect.id()}, open.take);
     if (model.has(effect.id()))
         throw Error(Error::Kind::usage, "The model already has the effect \"" + effect.id() + "\".");

@@ -9,6 +9,7 @@
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Document/Engineering.h"
 #include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Seen.h"
 
 #include <nlohmann/json.hpp>
 
@@ -147,7 +148,7 @@ void run(const CompareArguments& options, Terminal& terminal)
 {
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
-    requireSameKind(model, open);
+    requireSameKind(model, seenIn(open.take.either()));
     const auto comparison = open.take.asResponses() ? compare(model, *open.take.asResponses())
                                                     : compare(model, recordFor(model, open), {}, terminal.progress());
     sayProblems(open.take.report().problems, terminal);

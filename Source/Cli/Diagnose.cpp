@@ -7,6 +7,7 @@
 #include "Engine/Diagnosis/Diagnose.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Seen.h"
 
 #include <nlohmann/json.hpp>
 
@@ -29,8 +30,12 @@ Diagnosis diagnosisOf(const Model& model, const OpenTake& open, Terminal& termin
         diagnosis.sentence = open.take.report().verdict();
         return diagnosis;
     }
-    return open.take.asResponses() ? diagnose(model, *open.take.asResponses(), {}, terminal.progress())
-                                   : diagnose(model, recordFor(model, open), {}, terminal.progress());
+    const auto progress = terminal.progress();
+    if (const auto* spectra = open.take.asResponses())
+        return diagnose(model, *spectra, compare(model, *spectra), {}, progress);
+    const auto record = recordFor(model, open);
+    const auto before = compare(model, record, {}, progress.part(0.0, 0.1));
+    return diagnose(model, record, before, {}, progress.part(0.1, 1.0));
 }
 
 /// The error of the model as it is in the first row, then that with each candidate: as a refit confirmed it, else as
@@ -85,7 +90,7 @@ void run(const DiagnoseArguments& options, Terminal& terminal)
 {
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
-    requireSameKind(model, open);
+    requireSameKind(model, seenIn(open.take.either()));
     auto diagnosis = diagnosisOf(model, open, terminal);
     diagnosis.problems = open.take.report().problems;
     print(diagnosis, terminal);

@@ -42,7 +42,7 @@ void run(const FitArguments& options, Terminal& terminal)
         comparison = compare(model, *open.take.asResponses());
         caveats = caveatsOf(model, responsesOf(*open.take.asResponses()));
     } else {
-        auto record = makeRecord(open.take.measurement());
+        auto record = open.take.record();
         const auto progress = terminal.progress();
         model = fitEffects(record, options.effects, {}, &summary, progress.part(0.0, 0.95));
         comparison = compare(model, record, {summary.substeps, false}, progress.part(0.95, 1.0));

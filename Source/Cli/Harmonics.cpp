@@ -11,6 +11,7 @@
 #include "Engine/Error.h"
 #include "Engine/Polynomial/Hammerstein/HarmonicDistortionFile.h"
 #include "Engine/Polynomial/Hammerstein/ParallelHammersteinFile.h"
+#include "Engine/Polynomial/Hammerstein/SweepModel.h"
 
 #include <nlohmann/json.hpp>
 

@@ -6,6 +6,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/Summary.h"
 
 #include <algorithm>

@@ -10,40 +10,20 @@
 #include "Engine/Loudspeaker/Seen.h"
 
 namespace excursion::cli {
-namespace {
-
-bool hasCoil(const PreparedTake& take)
-{
-    const auto* spectra = take.asResponses();
-    return spectra ? spectra->find(Quantity::voltage) != nullptr
-                   : take.measurement().input().quantity == Quantity::voltage;
-}
-
-}  // namespace
 
 OpenTake openTake(const std::string& path) { return {path, readTake(path)}; }
 
 void requireEffects(const std::vector<std::string>& ids, const PreparedTake& take)
 {
-    const auto seen = take.asResponses() ? seenIn(*take.asResponses()) : seenIn(take.measurement());
+    const auto seen = seenIn(take.either());
     for (const auto& id : ids)
         if (const auto why = whyUnseen(effectNamed(id), seen); !why.empty())
             throw Error(Error::Kind::usage, why);
 }
 
-void requireSameKind(const Model& model, const OpenTake& open)
-{
-    if (model.electrical() == hasCoil(open.take))
-        return;
-    throw Error(Error::Kind::data,
-                model.electrical()
-                    ? "The model has a coil, but the take drives the cone by a force; fit a model to this take."
-                    : "The model has no coil, but the take drives one by a voltage; fit a model to this take.");
-}
-
 Record recordFor(const Model& model, const OpenTake& open)
 {
-    auto record = makeRecord(open.take.measurement());
+    auto record = open.take.record();
     adapt(record, model);
     return record;
 }

@@ -3,7 +3,7 @@
 
 #include "Engine/Check/PreparedTake.h"
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -25,9 +25,6 @@ OpenTake openTake(const std::string& path);
 /// Throws Error (usage) when an effect cannot be part of a model of this take: it needs a coil that is not there, or is
 /// nonlinear and the take is a frequency response.
 void requireEffects(const std::vector<std::string>& ids, const PreparedTake&);
-
-/// Throws Error (data) when one of model and take has a coil and the other has none.
-void requireSameKind(const Model&, const OpenTake&);
 
 /// The record of a take that is not a frequency response, adapted to the model.
 Record recordFor(const Model&, const OpenTake&);

@@ -127,8 +127,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
     const auto make = [&] { return std::make_unique<Predistorter>(model, realTime, controls); };
     const auto told = [&](double before, double after, const Predistorter::Meters& meters) {
         faults += meters.faults;
-        limited = limited || meters.displacementReduction > noticed || meters.voltageReduction > noticed
-                  || meters.powerReduction > noticed;
+        limited = limited || wasLimited(meters);
         channels.push_back({{"peakIn", before},
                             {"peakOut", after},
                             {"displacement", meters.displacement},
@@ -142,10 +141,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
                         turnedDown(meters.displacementReduction,
                                    options.displacementLimit || std::isfinite(controls.displacementLimit)),
                         turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
-        if (options.powerLimit) {
-            rows.back().push_back(significant(meters.power) + " W");
-            rows.back().push_back(turnedDown(meters.powerReduction, true));
-        }
+        addPower(rows.back(), options, meters);
     };
     const double loudest = bendAll(bent, options.fullScale, progress, make, told);
     publish(bent, options.out);

@@ -85,8 +85,7 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
     const auto make = [&] { return std::make_unique<BlackBoxPredistorter>(model, rate, controls); };
     const auto told = [&](double before, double after, const BlackBoxPredistorter::Meters& meters) {
         beyond = beyond || meters.regionReduction > noticed;
-        limited = limited || beyond || meters.displacementReduction > noticed || meters.voltageReduction > noticed
-                  || meters.powerReduction > noticed;
+        limited = limited || beyond || wasLimited(meters);
         channels.push_back({{"peakIn", before},
                             {"peakOut", after},
                             {"correction", meters.correction},
@@ -103,10 +102,7 @@ void runBlackBox(const PredistortArguments& options, const BlackBox& box, Termin
                         moves ? significant(1e3 * meters.displacement) + " mm" : "unknown",
                         turnedDown(meters.displacementReduction, moves),
                         turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
-        if (options.powerLimit) {
-            rows.back().push_back(significant(meters.power) + " W");
-            rows.back().push_back(turnedDown(meters.powerReduction, true));
-        }
+        addPower(rows.back(), options, meters);
     };
     const double loudest = bendAll(bent, options.fullScale, progress, make, told);
     publish(bent, options.out);

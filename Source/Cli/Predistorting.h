@@ -47,6 +47,24 @@ Wav readPlayable(const std::string& file, const std::string& out);
 /// dB from which on a limit is told to have acted.
 inline constexpr double noticed = 1e-3;
 std::string turnedDown(double decibels, bool limited);
+/// Whether the protection of a loudspeaker acted.
+template <class Meters>
+bool wasLimited(const Meters& meters)
+{
+    return meters.displacementReduction > noticed || meters.voltageReduction > noticed
+           || meters.powerReduction > noticed;
+}
+
+/// What a channel's row tells of heat, where that has a limit.
+template <class Meters>
+void addPower(std::vector<std::string>& row, const PredistortArguments& options, const Meters& meters)
+{
+    if (!options.powerLimit)
+        return;
+    row.push_back(significant(meters.power) + " W");
+    row.push_back(turnedDown(meters.powerReduction, true));
+}
+
 void requireValid(const PredistortionControls&);  ///< Throws Error (usage).
 
 /// One channel through a predistorter of its own, by which its delay is taken out again.

@@ -25,7 +25,7 @@ struct RankArguments {
     RankOptions options;
 };
 
-Json json(const RankedLinearization& told)
+Json json(const RankedPredistortion& told)
 {
     if (!told.trouble.empty())
         return {{"trouble", told.trouble}};
@@ -50,7 +50,7 @@ Json json(const RankedModel& model)
     object["load"] = model.load;
     object["fitSeconds"] = model.fitSeconds;
     object["stable"] = model.stable;
-    object["linearization"] = json(model.linearization);
+    object["linearization"] = json(model.predistortion);
     return object;
 }
 
@@ -74,25 +74,25 @@ void keep(const Ranking& ranking, const std::string& folder, Json& document, Ter
 }
 
 /// What it is worth to invert each class, least distortion left first, and why the others are not.
-void sayLinearizations(const Ranking& ranking, Terminal& terminal)
+void sayPredistortion(const Ranking& ranking, Terminal& terminal)
 {
     std::vector<const RankedModel*> worthIt;
     for (const auto& m : ranking.models)
-        if (m.trouble.empty() && m.linearization.trouble.empty())
+        if (m.trouble.empty() && m.predistortion.trouble.empty())
             worthIt.push_back(&m);
     std::stable_sort(worthIt.begin(), worthIt.end(),
-                     [](const auto* a, const auto* b) { return a->linearization.leftDb < b->linearization.leftDb; });
+                     [](const auto* a, const auto* b) { return a->predistortion.leftDb < b->predistortion.leftDb; });
     std::vector<std::vector<std::string>> rows;
     for (const auto* m : worthIt) {
-        const auto& told = m->linearization;
+        const auto& told = m->predistortion;
         rows.push_back({m->name, fixed(told.beforeDb, 1), fixed(told.modelDb, 1), fixed(told.leftDb, 1),
                         fixed(100.0 * told.load, 2) + " %", fixed(1e3 * told.latency, 1) + " ms"});
     }
     if (!rows.empty())
         terminal.table({"inverted", "distortion dB", "left on the model", "left on the take", "load", "latency"}, rows);
     for (const auto& m : ranking.models)
-        if (m.trouble.empty() && !m.linearization.trouble.empty())
-            terminal.say(m.name + " is not inverted. " + m.linearization.trouble);
+        if (m.trouble.empty() && !m.predistortion.trouble.empty())
+            terminal.say(m.name + " is not inverted. " + m.predistortion.trouble);
     terminal.say(ranking.straightSentence);
 }
 
@@ -122,7 +122,7 @@ void run(const RankArguments& arguments, Terminal& terminal)
         if (!m.trouble.empty())
             terminal.say(m.name + ": " + m.trouble);
     terminal.say(ranking.sentence);
-    sayLinearizations(ranking, terminal);
+    sayPredistortion(ranking, terminal);
     Json document {{"format", "excursion-ranking"},
                    {"version", 1},
                    {"take", arguments.take},

@@ -9,6 +9,7 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/ModelFile.h"
+#include "Engine/Loudspeaker/Seen.h"
 
 #include <nlohmann/json.hpp>
 
@@ -52,7 +53,7 @@ void run(const WhatIfArguments& options, Terminal& terminal)
 {
     const auto model = readModel(options.model);
     const auto open = openTake(options.take);
-    requireSameKind(model, open);
+    requireSameKind(model, seenIn(open.take.either()));
     if (open.take.asResponses())
         throw Error(Error::Kind::data,
                     "'" + options.take

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Document/Engineering.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "Plots/Plots.h"
 #include "Plots/Words.h"
 

@@ -4,6 +4,27 @@
 #include <cmath>
 
 namespace excursion::plugin {
+namespace {
+
+/// As one gesture of its own, which a host records as such.
+template <class Parameter, class Value>
+void change(Parameter& parameter, Value value)
+{
+    parameter.beginChangeGesture();
+    parameter = value;
+    parameter.endChangeGesture();
+}
+
+/// What was put is a step of the history.
+template <class Value, class Put>
+void note(History* history, const juce::String& name, Value before, Value now, Put put)
+{
+    if (history != nullptr && before != now)
+        history->did(
+            name, [put, before] { put(before); }, [put, now] { put(now); });
+}
+
+}  // namespace
 
 Dial::Dial(SliderStyle style, TextEntryBoxPosition place) : Slider(style, place)
 {
@@ -105,9 +126,7 @@ void NumberDial::put(double value)
 
 void NumberDial::remember(double before)
 {
-    if (const double now = number_.get(); history_ != nullptr && now != before)
-        history_->did(
-            number_.getName(80), [this, before] { put(before); }, [this, now] { put(now); });
+    note(history_, number_.getName(80), before, number_.get(), [this](double value) { put(value); });
 }
 
 void NumberDial::follow()
@@ -123,18 +142,14 @@ OnOffButton::OnOffButton(OnOff& which, History* history) : switch_(which), histo
     button_.onClick = [this] {
         const bool before = switch_.get(), now = button_.getToggleState();
         put(now);
-        if (history_ != nullptr && before != now)
-            history_->did(
-                button_.getButtonText(), [this, before] { put(before); }, [this, now] { put(now); });
+        note(history_, button_.getButtonText(), before, now, [this](bool on) { put(on); });
     };
     follow();
 }
 
 void OnOffButton::put(bool on)
 {
-    switch_.beginChangeGesture();
-    switch_ = on;
-    switch_.endChangeGesture();
+    change(switch_, on);
     follow();
 }
 
@@ -147,18 +162,14 @@ ChoiceBox::ChoiceBox(Choice& choice, History* history) : choice_(choice), histor
     box_.onChange = [this] {
         const int before = choice_.getIndex(), now = box_.getSelectedItemIndex();
         put(now);
-        if (history_ != nullptr && before != now)
-            history_->did(
-                choice_.getName(80), [this, before] { put(before); }, [this, now] { put(now); });
+        note(history_, choice_.getName(80), before, now, [this](int index) { put(index); });
     };
     follow();
 }
 
 void ChoiceBox::put(int index)
 {
-    choice_.beginChangeGesture();
-    choice_ = index;
-    choice_.endChangeGesture();
+    change(choice_, index);
     follow();
 }
 

@@ -77,6 +77,7 @@ private:
     void showView();
     void noteModel(const AnyModel& before, const AnyModel& now);
     void noteRehearsal();
+    bool mayStep(const juce::String& wish);
     void noteLadder(const std::shared_ptr<const Findings>&);
 
     juce::SharedResourcePointer<look::Look> look_;

@@ -25,22 +25,27 @@ bool holdsModel(const juce::File& file)
 
 }  // namespace
 
+/// Whether the history may step; says why not while the session works.
+bool Editor::mayStep(const juce::String& wish)
+{
+    const bool busy = owner_.session().status().busy;
+    if (busy)
+        tell("Wait until the work is done, or cancel it, before you " + wish + ".", false);
+    return !busy;
+}
+
 void Editor::undo()
 {
-    if (owner_.session().status().busy) {
-        tell("Wait until the work is done, or cancel it, before you take something back.", false);
+    if (!mayStep("take something back"))
         return;
-    }
     history_.undo();
     update();
 }
 
 void Editor::redo()
 {
-    if (owner_.session().status().busy) {
-        tell("Wait until the work is done, or cancel it, before you do something again.", false);
+    if (!mayStep("do something again"))
         return;
-    }
     history_.redo();
     update();
 }

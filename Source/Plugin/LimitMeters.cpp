@@ -57,7 +57,7 @@ void LimitMeters::tick()
 {
     const auto meters = processor_.collectMeters();
     const double range = box_ ? measuredDisplacement(box_->played) : measuredDisplacement(processor_.model());
-    const auto limits = processor_.parameters().controls(range).linearization;
+    const auto limits = processor_.parameters().controls(range).predistortion;
     if (!processor_.standstill().empty())
         excursion_.show(0.0, "no engine runs at this rate: the signal goes through as it is", 0.0);
     else if (!givesExcursion_)

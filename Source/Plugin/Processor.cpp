@@ -75,7 +75,7 @@ std::vector<std::unique_ptr<Chain>> Processor::chains(const AnyModel& model, std
         const auto controls = parameters_.controls(measured);
         for (std::size_t k = 0; k < channels; ++k)
             result.push_back(std::make_unique<Chain>(
-                std::make_unique<BlackBoxEngine>((*box)->played, rate, controls.linearization), rate, controls));
+                std::make_unique<BlackBoxEngine>((*box)->played, rate, controls.predistortion), rate, controls));
     } else {
         const auto& loaded = std::get<Model>(model);
         const auto running = asSwitched(loaded, parameters_.recipe(), options());

@@ -185,8 +185,7 @@ void addPictures(Page& page, const Collection& all)
     }
     if (!plots.empty()) {
         page.section("Over the batch");
-        const int columns = columnsFor(plots.size());
-        page.figures(std::move(plots), columns,
+        page.figures(std::move(plots),
                      "Units in the order of the batch; the shade is the 95 % of each value's standard error. Drawn is "
                      "what has limits, drifts or stands out.");
     }
@@ -196,8 +195,7 @@ void addPictures(Page& page, const Collection& all)
     if (plots.empty())
         return;
     page.section("Laws of all units");
-    const int columns = columnsFor(plots.size());
-    page.figures(std::move(plots), columns, "Each law over what its unit visited.");
+    page.figures(std::move(plots), "Each law over what its unit visited.");
 }
 
 void addValues(Page& page, const Collection& all)

@@ -21,7 +21,4 @@ void addResiduals(Page&, const LadderFile&);  ///< missing force and voltage, be
 void addRanking(Page&, const LadderFile&);    ///< what competed at each rung, and why
 void addParameters(Page&, const LadderFile&);
 
-/// Columns in which so many pictures leave no hole, at most three.
-int columnsFor(std::size_t pictures);
-
 }  // namespace excursion

@@ -11,8 +11,7 @@ void addLaws(Page& page, const LadderFile& file)
     if (plots.empty())
         return;
     page.section("The laws of the driver");
-    const int columns = columnsFor(plots.size());
-    page.figures(std::move(plots), columns,
+    page.figures(std::move(plots),
                  "Each curve is drawn over the range that the take visited; the shade is its 95 % confidence band, the "
                  "dashes its value at rest.");
     for (std::size_t k = 1; k < model.components.size(); ++k)

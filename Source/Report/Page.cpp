@@ -123,6 +123,12 @@ void Page::figures(std::vector<Plot> plots, int columns, const std::string& howT
     body_ += "</div><figcaption>" + escapeHtml(howToRead) + "</figcaption></figure>\n";
 }
 
+void Page::figures(std::vector<Plot> plots, const std::string& howToRead)
+{
+    const int columns = plots.size() == 1 ? 1 : plots.size() % 3 == 0 ? 3 : 2;
+    figures(std::move(plots), columns, howToRead);
+}
+
 std::string Page::html() const
 {
     const auto pictures = draw(plots_);

@@ -40,6 +40,8 @@ public:
     void facts(const std::vector<std::pair<std::string, std::string>>&);  ///< name and value pairs in a row
     /// Pictures side by side in one to three columns; the page sets their size.
     void figures(std::vector<Plot>, int columns, const std::string& howToRead);
+    /// In as many columns as leave no hole, at most three.
+    void figures(std::vector<Plot>, const std::string& howToRead);
 
     /// The whole page; draws all plots at once. Throws as draw() does.
     std::string html() const;

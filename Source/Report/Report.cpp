@@ -6,8 +6,6 @@
 
 namespace excursion {
 
-int columnsFor(std::size_t pictures) { return pictures == 1 ? 1 : pictures % 3 == 0 ? 3 : 2; }
-
 std::string reportHtml(const LadderFile& file)
 {
     Page page("Excursion report" + (file.take.driver.empty() ? "" : " \u00b7 " + file.take.driver));

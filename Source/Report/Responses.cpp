@@ -10,8 +10,7 @@ void addResponses(Page& page, const LadderFile& file)
     if (plots.empty())
         return;
     page.section("Frequency responses");
-    const int columns = columnsFor(plots.size());
-    page.figures(std::move(plots), columns,
+    page.figures(std::move(plots),
                  "Measured at the quietest level, where the driver is most linear: the final model should lie on the "
                  "measured line.");
 }

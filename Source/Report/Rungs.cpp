@@ -58,8 +58,7 @@ void addRungs(Page& page, const LadderFile& file)
     std::vector<Plot> plots;
     for (const auto& channel : channels)
         plots.push_back(fallPlot(ladder, channel.quantity));
-    const int columns = columnsFor(plots.size());
-    page.figures(std::move(plots), columns,
+    page.figures(std::move(plots),
                  "Each rung adds one effect and refits everything: the model is complete where the error meets the "
                  "noise floor.");
 }

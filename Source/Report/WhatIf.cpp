@@ -51,11 +51,9 @@ void addWhatIf(Page& page, const LadderFile& file)
     page.paragraph(advice(*file.whatIf));
     addFalls(page, distortion);
     auto plots = distortionPlots(distortion);
-    const int columns = columnsFor(plots.size());
-    page.figures(std::move(plots), columns,
-                 "Even and odd distortion together over the signal in each band, at "
-                     + nominal(distortion.level, file.ladder.model().electrical() ? "V" : "N")
-                     + " rms: of the whole model, and of the effects that alone make most.");
+    page.figures(std::move(plots), "Even and odd distortion together over the signal in each band, at "
+                                       + nominal(distortion.level, file.ladder.model().electrical() ? "V" : "N")
+                                       + " rms: of the whole model, and of the effects that alone make most.");
     std::vector<std::vector<Page::Cell>> rows;
     for (const auto& limit : stroke.limits)
         rows.push_back({capitalized(limit.name) + " " + limit.criterion, side(limit.inward, limit.inwardEnd),

@@ -114,7 +114,7 @@ void judge(const Measurement& sound, Random& random, Count& count)
     clip(take, take.channels[limit.channel], limit);
     sense(sound, take, limit.noiseDb, random);
     for (std::size_t c = 0; c < take.channels.size(); ++c) {
-        const auto piles = pileUps(take, take.channels[c]);
+        const auto piles = pileUps(AveragedPeriods(take), take.channels[c]);
         if (c != limit.channel) {
             count.wrongChannels += !piles.empty();
             continue;
@@ -128,7 +128,7 @@ void judge(const Measurement& sound, Random& random, Count& count)
     auto clean = sound;
     sense(sound, clean, random.uniform(35.0, 110.0), random);
     for (const auto& channel : clean.channels)
-        count.falseAlarms += !pileUps(clean, channel).empty();
+        count.falseAlarms += !pileUps(AveragedPeriods(clean), channel).empty();
 }
 
 }  // namespace

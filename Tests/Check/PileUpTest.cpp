@@ -56,7 +56,7 @@ Measurement wave(const std::function<double(double)>& ofTurns, double turns, dou
     return take;
 }
 
-std::size_t found(const Measurement& take) { return pileUps(take, take.channels.front()).size(); }
+std::size_t found(const Measurement& take) { return pileUps(AveragedPeriods(take), take.channels.front()).size(); }
 
 }  // namespace
 
@@ -82,7 +82,7 @@ TEST_CASE("clipping ahead of noise is found, on its channel, level and side, in 
             }
             for (const auto& channel : take.channels) {
                 INFO(name(quantity) << " clips, " << name(channel.quantity) << ", " << sign);
-                const auto piles = pileUps(take, channel);
+                const auto piles = pileUps(AveragedPeriods(take), channel);
                 REQUIRE(piles.size() == (channel.quantity == quantity ? 1 : 0));
                 if (piles.empty())
                     continue;
@@ -116,7 +116,7 @@ TEST_CASE("clipping ahead of noise is found without knowing the excitation")
         synthetic::addNoise(channel.samples, 1e-3 * synthetic::rms(channel.samples), random);
     take.excitation.reset();
     for (const auto& channel : take.channels)
-        CHECK(pileUps(take, channel).size() == (channel.quantity == Quantity::displacement ? 2 : 0));
+        CHECK(pileUps(AveragedPeriods(take), channel).size() == (channel.quantity == Quantity::displacement ? 2 : 0));
 }
 
 TEST_CASE("tops that are flat by nature are not clipping")
@@ -172,7 +172,7 @@ TEST_CASE("a displacement that a stiff suspension compresses is not clipped")
             synthetic::addNoise(channel.samples, std::pow(10.0, -2.0 - 0.1 * static_cast<double>(seed)) * scale,
                                 random);
             INFO("seed " << seed << ", " << name(channel.quantity));
-            CHECK(pileUps(take, channel).empty());
+            CHECK(pileUps(AveragedPeriods(take), channel).empty());
         }
     }
 }

@@ -2,6 +2,7 @@
 #include "Engine/Check/TakeCheck.h"
 
 #include "Check/SoundTake.h"
+#include "Engine/Check/PreparedTake.h"
 #include "Engine/Error.h"
 #include "Estimate/SyntheticTake.h"
 
@@ -241,13 +242,13 @@ TEST_CASE("a stated period in which nothing repeats is told")
     auto take = soundTake();
     CHECK(find(check(take), "excitation", Quantity::voltage) == nullptr);
     take.excitation->lines.clear();
-    CHECK(find(check(take), "excitation", Quantity::voltage) == nullptr);  // they are found
+    CHECK(find(PreparedTake(take).report(), "excitation", Quantity::voltage) == nullptr);  // they are found
     std::mt19937 random(7);
     std::normal_distribution<double> noise;
     for (auto& channel : take.channels)
         for (auto& x : channel.samples)
             x = noise(random);
-    const auto report = check(take);
+    const auto report = PreparedTake(take).report();
     const auto* problem = find(report, "excitation", Quantity::voltage);
     REQUIRE(problem);
     CHECK(problem->fatal);

@@ -3,6 +3,7 @@
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/FitEffects.h"
+#include "Engine/Estimate/MakeRecord.h"
 
 #include <catch2/catch.hpp>
 

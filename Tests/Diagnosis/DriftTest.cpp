@@ -7,7 +7,9 @@
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Error.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Drift.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <catch2/catch.hpp>
 

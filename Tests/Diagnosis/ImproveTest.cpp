@@ -3,6 +3,7 @@
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "SeedDriver.h"
 
 #include <catch2/catch.hpp>

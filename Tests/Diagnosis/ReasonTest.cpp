@@ -2,6 +2,7 @@
 #include "Diagnosis/SyntheticLadder.h"
 
 #include "Engine/Diagnosis/Reason.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <catch2/catch.hpp>
 

@@ -134,13 +134,13 @@ TEST_CASE("A stiffness that wanders is never called complete, and noise never wa
     for (const double noiseDb : {-50.0, -70.0}) {
         CAPTURE(noiseDb);
         const auto still = duffingTake(0.0, noiseDb, 5);
-        CHECK_FALSE(wanderDb(still, *still.find(Quantity::displacement)));
+        CHECK_FALSE(wanderDb(AveragedPeriods(still), *still.find(Quantity::displacement)));
         const auto ladder = improve(still);
         CHECK(name(ladder.verdict) == "complete");
         CHECK(ladder.rungs.size() == 1);
     }
     const auto wandering = duffingTake(0.0, -70.0, 5, 0.02);
-    const auto amount = wanderDb(wandering, *wandering.find(Quantity::displacement));
+    const auto amount = wanderDb(AveragedPeriods(wandering), *wandering.find(Quantity::displacement));
     REQUIRE(amount);
     CHECK((*amount > -45.0 && *amount < -25.0));
     const auto ladder = improve(wandering);
@@ -165,7 +165,7 @@ TEST_CASE("Noise that is as large as each level is no wandering", "[remainder]")
                                   * std::normal_distribution<double>(
                                       0.0, channel.quantity == Quantity::force ? 1e-4 : 1e-3)(random);
         }
-    CHECK_FALSE(wanderDb(take, *take.find(Quantity::displacement)));
+    CHECK_FALSE(wanderDb(AveragedPeriods(take), *take.find(Quantity::displacement)));
 }
 
 TEST_CASE("A ladder says what is known and how surely", "[remainder]")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Separate.h"
 
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "SeedDriver.h"
 

@@ -2,6 +2,7 @@
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/Trial.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/OutputError.h"
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Estimate/Periods.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 #include "Engine/Error.h"
 #include "Estimate/SyntheticTake.h"
 
 #include <catch2/catch.hpp>
+
+#include <thread>
+#include <vector>
 
 using namespace excursion;
 
@@ -69,7 +72,7 @@ TEST_CASE("the scatter over the periods is the noise of the averaged period")
     auto& channel = take.channels.front();
     synthetic::addNoise(channel.samples, 0.01, random);
 
-    const auto noise = periodNoise(take, channel, 0);
+    const auto noise = AveragedPeriods(take).noise(channel, 0);
     CHECK(noise.degreesOfFreedom == 2 * 25 * 3);
     double mean = 0.0;
     for (std::size_t k = 1; k + 1 < noise.variance.size(); ++k)
@@ -84,7 +87,38 @@ TEST_CASE("noise is unknown from a single period")
     synthetic::Plan plan;
     plan.periods = 1;
     const auto take = synthetic::record({}, plan, random);
-    const auto noise = periodNoise(take, take.channels.front(), 0);
+    const auto noise = AveragedPeriods(take).noise(take.channels.front(), 0);
     CHECK(noise.variance.empty());
     CHECK(noise.degreesOfFreedom == 0);
+}
+
+TEST_CASE("an averaged period is computed once, for each channel, level and realization, whichever thread asks")
+{
+    std::mt19937_64 random(5);
+    synthetic::Plan plan;
+    plan.period = 256;
+    const auto take = synthetic::record({}, plan, random);
+    const AveragedPeriods averages(take);
+    const auto levels = static_cast<int>(take.excitation->levels.size());
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&] {
+            for (const auto& channel : take.channels)
+                for (int level = 0; level < levels; ++level)
+                    averages.noise(channel, level);
+        });
+    for (auto& thread : threads)
+        thread.join();
+    for (const auto& channel : take.channels)
+        for (int level = 0; level < levels; ++level)
+            for (int m = 0; m < take.excitation->realizations; ++m) {
+                const auto& spectrum = averages.spectrum(channel, level, m);
+                CHECK(&spectrum == &averages.spectrum(channel, level, m));
+                CHECK(spectrum.mean == averagedPeriod(take, channel, level, m).mean);
+                CHECK(spectrum.variance == averagedPeriod(take, channel, level, m).variance);
+                CHECK(averages.inTime(channel, level, m) == averagePeriod(take, channel, level, m));
+            }
+    auto music = take;
+    music.excitation.reset();
+    CHECK_THROWS_AS(AveragedPeriods(music).inTime(music.channels.front(), 0, 0), Error);
 }

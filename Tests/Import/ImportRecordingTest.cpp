@@ -2,10 +2,7 @@
 // Recordings with known faults become takes whose time is right to a small part of a sample, or are refused for the
 // right reason.
 #include "Engine/Check/TakeCheck.h"
-#include "Engine/Import/ImportRecording.h"
-#include "Engine/Take/WavFile.h"
-#include "Import/FaultSimulator.h"
-#include "Scratch.h"
+#include "Import/PlayedRecording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,57 +11,6 @@
 using namespace excursion;
 using namespace excursion::test;
 using Kind = Error::Kind;
-
-namespace {
-
-const Played& smallPlay()
-{
-    static const Played played = play({});
-    return played;
-}
-
-std::filesystem::path save(const Scratch& scratch, const std::string& name, const Recorded& recorded)
-{
-    writeWav(scratch / name, static_cast<int>(recorded.sampleRate), recorded.channels, SampleFormat::float32);
-    return scratch / name;
-}
-
-RecordingOptions optionsFor(const Played& played, std::vector<std::filesystem::path> files,
-                            const std::vector<std::string>& map)
-{
-    RecordingOptions options;
-    options.files = std::move(files);
-    options.plan = played.plan;
-    for (const auto& mapping : map)
-        options.map.push_back(parseChannelMapping(mapping));
-    return options;
-}
-
-struct Likeness {
-    double late = 0.0, gain = 0.0, left = 0.0;  ///< samples; ratio; rms of what is left over rms of the signal
-};
-
-/// How a channel of a take differs from what was played, by least squares: y = g x - g d x'.
-Likeness against(const std::vector<double>& y, const std::vector<double>& truth, std::size_t lead, std::size_t from,
-                 std::size_t to)
-{
-    double xx = 0, xd = 0, dd = 0, yx = 0, yd = 0, yy = 0;
-    for (auto n = from; n < to; ++n) {
-        const auto at = 2 * (n + lead);
-        const double x = truth[at], d = truth[at + 1] - truth[at - 1];
-        xx += x * x;
-        xd += x * d;
-        dd += d * d;
-        yx += y[n] * x;
-        yd += y[n] * d;
-        yy += y[n] * y[n];
-    }
-    const double determinant = xx * dd - xd * xd, g = (yx * dd - yd * xd) / determinant,
-                 s = (yd * xx - yx * xd) / determinant;
-    return {-s / g, g, std::sqrt(std::max(0.0, yy - g * yx - s * yd) / yy)};
-}
-
-}  // namespace
 
 TEST_CASE("A recording with offset, drift, another rate and 16 bits becomes the take that was played", "[import][slow]")
 {
@@ -317,114 +263,4 @@ TEST_CASE("Recordings that cannot become a take are refused", "[import]")
         CHECK(parseChannelMapping("2=current:-500mA").fullScale == Approx(-0.5));
         CHECK(parseChannelMapping("a b.wav:2=displacement:5 mm").file == "a b.wav");
     }
-}
-
-namespace {
-
-/// What one random recording came to.
-struct Outcome {
-    std::string fault, told;
-    double error = -1.0;  ///< samples; below 0: refused
-    bool right = false;
-};
-
-Outcome randomRecording(std::uint64_t seed, const std::vector<const Played*>& plays, const Scratch& scratch)
-{
-    std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    const auto& played = *plays[random() % plays.size()];
-    const bool swapped = uniform(random) < 0.2, inverted = uniform(random) < 0.2;
-    auto r = recorder(swapped ? std::vector<std::size_t> {1, 0, 2, 3} : std::vector<std::size_t> {0, 1, 2, 3});
-    r.fullScale = {20.0, 10.0, 0.01, 20.0};
-    if (swapped)
-        std::swap(r.fullScale[0], r.fullScale[1]);
-    static constexpr double rates[] {44100, 48000, 48000, 88200, 96000};
-    r.sampleRate = rates[random() % 5];
-    r.ppm = uniform(random) < 0.2 ? 0.0 : 400 * uniform(random) - 200;
-    r.lead = 0.05 + 29.95 * uniform(random) * uniform(random);
-    r.tail = 0.02 + 5 * uniform(random) * uniform(random);
-    r.noise = std::pow(10.0, -5 + 2 * uniform(random));
-    r.bits = uniform(random) < 0.4 ? 16 : 24;
-    r.seed = seed;
-    for (auto& scale : r.fullScale)
-        scale *= 1 + 0.1 * (uniform(random) - 0.5);
-    if (inverted)
-        r.fullScale[random() % 4] *= -1;
-    Outcome outcome;
-    std::string expected;
-    const double length = static_cast<double>(played.plan.length()) / played.plan.sampleRate;
-    switch (random() % 12) {
-    case 0:
-        outcome.fault = "block lost";
-        r.drop = 1 << (random() % 11);
-        r.dropAt = r.lead + length * (0.2 + 0.6 * uniform(random));
-        expected = "samples near";
-        break;
-    case 1:
-        outcome.fault = "begins late";
-        r.lead = -length * (0.1 + 0.4 * uniform(random));
-        expected = "start the recorder before the player";
-        break;
-    case 2:
-        outcome.fault = "ends early";
-        r.tail = -length * (0.05 + 0.5 * uniform(random));
-        break;
-    default: break;
-    }
-    auto recorded = record(played, r);
-    const auto file = save(scratch, "random.wav", recorded);
-    try {
-        const auto imported = importRecording(
-            optionsFor(played, {file}, {"1=voltage:20", "2=current:10", "3=displacement:10mm", "4=pressure:20"}));
-        outcome.error = clockError(imported.files[0].alignment, recorded, imported.take);
-        outcome.told = imported.remarks.empty() ? "" : imported.remarks.front();
-        outcome.right = expected.empty() && outcome.error < 0.02
-                        && (outcome.fault.empty() || imported.take.length() < played.plan.length());
-    } catch (const Error& e) {
-        outcome.told = e.what();
-        outcome.right = !expected.empty() && outcome.told.find(expected) != std::string::npos;
-    }
-    outcome.fault += (swapped ? " swapped" : "") + std::string(inverted ? " inverted" : "") + " rate "
-                     + std::to_string(r.sampleRate) + " ppm " + std::to_string(r.ppm) + " bits "
-                     + std::to_string(r.bits) + " lead " + std::to_string(r.lead);
-    return outcome;
-}
-
-void randomRecordings(std::uint64_t from, std::uint64_t to, const std::vector<const Played*>& plays, bool tell)
-{
-    const Scratch scratch;
-    double worst = 0.0;
-    int aligned = 0, refusals = 0;
-    for (auto seed = from; seed < to; ++seed) {
-        const auto outcome = randomRecording(seed, plays, scratch);
-        INFO("seed " << seed << ": " << outcome.fault << "; error " << outcome.error << " samples; " << outcome.told);
-        CHECK(outcome.right);
-        if (tell)
-            std::cout << seed << (outcome.right ? " right " : " WRONG ") << outcome.error << " | " << outcome.fault
-                      << " | " << outcome.told << "\n";
-        worst = std::max(worst, outcome.error);
-        (outcome.error >= 0 ? aligned : refusals) += 1;
-    }
-    if (tell)
-        std::cout << aligned << " aligned, the worst within " << worst << " samples; " << refusals << " refused\n";
-}
-
-}  // namespace
-
-TEST_CASE("Random faults: a few", "[import][slow]") { randomRecordings(1, 6, {&smallPlay()}, false); }
-
-TEST_CASE("Random faults: sixty, on plans of several lengths", "[.recordings]")
-{
-    PlayedOptions wide, bass;
-    wide.bandHigh = 20000;
-    wide.period = 16384;
-    wide.realizations = 3;
-    wide.seed = 5;
-    bass.bandLow = 10;
-    bass.bandHigh = 500;
-    bass.period = 32768;
-    bass.levels = {0.5, 1.5};
-    bass.seed = 8;
-    const auto second = play(wide), third = play(bass);
-    randomRecordings(100, 160, {&smallPlay(), &second, &third}, true);
 }

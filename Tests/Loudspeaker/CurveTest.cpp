@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Curve.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Loudspeaker/EffectBench.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Laws that are fed the motion that a take shows: against simulations, against differences, and on takes of the virtual
 // bench.
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/Fit.h"

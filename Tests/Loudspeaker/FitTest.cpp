@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fits to takes of the virtual bench, which shares no code with the model.
 #include "Bench/Bench.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include <catch2/catch.hpp>
@@ -236,6 +238,36 @@ TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own
         const auto &a = own.baseParameter(name), &b = borrowed.baseParameter(name);
         INFO(name);
         CHECK(std::abs(a.value - b.value) < a.standardError);
+    }
+}
+
+TEST_CASE("With the slopes of its start a fit arrives where those of every place lead", "[fit]")
+{
+    bench::Loudspeaker truth;
+    const auto record = [&] {
+        auto made = makeRecord(bench::measure(truth, smallSetup()));
+        adapt(made, startModel(made));
+        return made;
+    }();
+    const auto sections = estimationSections(record);
+    auto model = startModel(record);
+    REQUIRE(fit(model, record, sections, {{3, 1e-2}}).usable());
+    for (const auto* name : {"Re", "Bl", "K", "Rms"})
+        for (auto& p : model.components.front().parameters)
+            if (p.name == name)
+                p.value *= 1.002;
+    auto other = model;
+    FitOptions kept, exact;
+    kept.search = exact.search = {20, 1e-9};
+    kept.keptGradient = exact.exactGradient = true;
+    const auto byKept = fit(model, record, sections, kept), byExact = fit(other, record, sections, exact);
+    REQUIRE(byKept.usable());
+    CHECK(byKept.initialCost > 1.5 * byKept.finalCost);
+    CHECK(byKept.finalCost == Approx(byExact.finalCost).epsilon(1e-6));
+    for (const auto* name : {"Re", "Bl", "K", "Rms"}) {
+        const auto& p = model.baseParameter(name);
+        CHECK(std::abs(p.value - other.baseParameter(name).value) < 0.02 * p.standardError);
+        CHECK(p.standardError == Approx(other.baseParameter(name).standardError).epsilon(0.02));
     }
 }
 

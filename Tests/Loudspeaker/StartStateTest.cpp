@@ -91,7 +91,7 @@ TEST_CASE("The derivative of the start state is that of finite differences", "[o
     const auto theta = parameterVector(model);
     REQUIRE(start[0].gradient.cols() == theta.size());
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
-        const double step = theta[k] != 0.0 ? 1e-5 * std::abs(theta[k]) : 1e-5;
+        const double step = theta[k] != 0.0 ? 1e-4 * std::abs(theta[k]) : 1e-4;
         const auto moved = [&](double by) {
             auto there = model;
             auto changed = theta;

@@ -54,8 +54,8 @@ void checkLimits(Processor& processor, std::mt19937& random, double rate, int ch
     play(0.1);
     const double range = box ? measuredDisplacement(box->played) : measuredDisplacement(processor.model());
     const auto controls = processor.parameters().controls(range);
-    CHECK(loudest * controls.fullScale <= controls.linearization.voltageLimit * (1.0 + 1e-6));
-    CHECK(processor.collectMeters().displacement <= 1.01 * controls.linearization.displacementLimit);
+    CHECK(loudest * controls.fullScale <= controls.predistortion.voltageLimit * (1.0 + 1e-6));
+    CHECK(processor.collectMeters().displacement <= 1.01 * controls.predistortion.displacementLimit);
 }
 
 /// Whatever a host and a person do, one after the other.

@@ -122,17 +122,17 @@ TEST_CASE("The plugin's controls are those of its recipe, and no limit of the vo
         CHECK(controls.mode == recipe.mode);
         CHECK(controls.fullScale == recipe.fullScale);
         CHECK(controls.trim == Approx(std::pow(10.0, recipe.trimDb / 20.0)).epsilon(1e-14));
-        CHECK(controls.linearization.amount == expected.amount);
-        CHECK(controls.linearization.displacementLimit == expected.displacementLimit);
-        CHECK(controls.linearization.voltageLimit == expected.voltageLimit);
-        CHECK(controls.linearization.powerLimit == expected.powerLimit);
-        CHECK(controls.linearization.margin == expected.margin);
+        CHECK(controls.predistortion.amount == expected.amount);
+        CHECK(controls.predistortion.displacementLimit == expected.displacementLimit);
+        CHECK(controls.predistortion.voltageLimit == expected.voltageLimit);
+        CHECK(controls.predistortion.powerLimit == expected.powerLimit);
+        CHECK(controls.predistortion.margin == expected.margin);
         CHECK(expected.voltageLimit == std::min(recipe.voltageLimit, recipe.fullScale));
         CHECK(expected.powerLimit == recipe.powerLimit);
         CHECK(expected.margin == recipe.margin);
-        CHECK(controls.linearization.target == recipe.target);
+        CHECK(controls.predistortion.target == recipe.target);
         CHECK(expected.target == recipe.target);
-        CHECK(controls.linearization.isValid(nullptr));
+        CHECK(controls.predistortion.isValid(nullptr));
     }
     CHECK(controlsOf(Recipe {}, model).powerLimit == std::numeric_limits<double>::infinity());
 }

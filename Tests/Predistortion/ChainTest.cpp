@@ -145,11 +145,11 @@ TEST_CASE("No change bends the signal more than three times as much as the signa
             CHECK(changed([](ChainControls& c) { c.trim = 0.001; }) < 3.0);
             CHECK(changed([](ChainControls& c) { c.fullScale = 1.0; }) < 3.0);
             CHECK(changed([](ChainControls& c) { c.fullScale = 12.0; }) < 3.0);
-            CHECK(changed([](ChainControls& c) { c.linearization.amount = 0.0; }) < 3.0);
-            CHECK(changed([](ChainControls& c) { c.linearization.displacementLimit = 20e-3; }) < 3.0);
-            CHECK(changed([](ChainControls& c) { c.linearization.voltageLimit = 1.0; }) < 3.0);
-            CHECK(changed([](ChainControls& c) { c.linearization.displacementLimit = 0.3e-3; }) < 3.0);
-            CHECK(changed([](ChainControls& c) { c.linearization.powerLimit = 0.1; }) < 3.0);
+            CHECK(changed([](ChainControls& c) { c.predistortion.amount = 0.0; }) < 3.0);
+            CHECK(changed([](ChainControls& c) { c.predistortion.displacementLimit = 20e-3; }) < 3.0);
+            CHECK(changed([](ChainControls& c) { c.predistortion.voltageLimit = 1.0; }) < 3.0);
+            CHECK(changed([](ChainControls& c) { c.predistortion.displacementLimit = 0.3e-3; }) < 3.0);
+            CHECK(changed([](ChainControls& c) { c.predistortion.powerLimit = 0.1; }) < 3.0);
         }
     }
 }
@@ -185,7 +185,7 @@ TEST_CASE("Bypass is bit by bit the signal as it was, whatever is moved meanwhil
         auto now = controls(Mode::bypass);
         now.fullScale = 1.0 + static_cast<double>(n % 7);
         now.trim = 0.1 * static_cast<double>(n % 11);
-        now.linearization = {0.1 * static_cast<double>(n % 10), 1e-4 * static_cast<double>(1 + n % 9),
+        now.predistortion = {0.1 * static_cast<double>(n % 10), 1e-4 * static_cast<double>(1 + n % 9),
                              static_cast<double>(1 + n % 5), 1.0, 0.1};
         chain.set(now);
         chain.process(u.data() + n, out.data() + n, 480);
@@ -204,7 +204,7 @@ TEST_CASE("From the sample at which it is switched on nothing passes the limit o
         for (std::size_t n = 0; n < u.size(); n += 480) {
             auto now = controls(n < change ? Mode::bypass : Mode::linearize);
             now.fullScale = 50.0;
-            now.linearization.voltageLimit = 25.0;
+            now.predistortion.voltageLimit = 25.0;
             chain.set(now);
             chain.process(u.data() + n, u.data() + n, 480);
         }
@@ -257,7 +257,7 @@ constexpr double heatRate = 48000.0;
 ChainControls cooled(double powerLimit)
 {
     ChainControls controls {Mode::linearize, 8.0, 1.0, {}};
-    controls.linearization.powerLimit = powerLimit;
+    controls.predistortion.powerLimit = powerLimit;
     return controls;
 }
 

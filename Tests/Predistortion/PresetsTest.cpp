@@ -2,6 +2,7 @@
 // The factory's drivers and recipes, read from the source folder.
 #include "Predistortion/Drivers.h"
 
+#include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/ModelFile.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Predistortion/Chain.h"

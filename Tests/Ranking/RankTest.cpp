@@ -74,7 +74,7 @@ TEST_CASE("Classes of models are ranked by what they leave of records that they 
     // The two that are right take most distortion away, the driver more than what knows no physics; what is linear, or
     // explains too little, takes none, and says so.
     for (const auto& model : ranking.models) {
-        const auto& told = model.linearization;
+        const auto& told = model.predistortion;
         CAPTURE(model.name, told.trouble, told.beforeDb, told.modelDb, told.leftDb, told.load, told.latency);
         if (!told.trouble.empty())
             continue;
@@ -85,10 +85,10 @@ TEST_CASE("Classes of models are ranked by what they leave of records that they 
         CHECK(told.latency > 0.0);
         CHECK(told.latency < 0.01);
     }
-    CHECK(named(ranking, "driver-with-effects").linearization.gainDb() > 40.0);
-    CHECK(named(ranking, "pnlss").linearization.gainDb() > 25.0);
-    CHECK(named(ranking, "linear").linearization.trouble == "It is linear: there is nothing to correct.");
-    CHECK_FALSE(named(ranking, "driver").linearization.trouble.empty());
+    CHECK(named(ranking, "driver-with-effects").predistortion.gainDb() > 40.0);
+    CHECK(named(ranking, "pnlss").predistortion.gainDb() > 25.0);
+    CHECK(named(ranking, "linear").predistortion.trouble == "It is linear: there is nothing to correct.");
+    CHECK_FALSE(named(ranking, "driver").predistortion.trouble.empty());
     CHECK(ranking.straightest == "driver-with-effects");
     CHECK(ranking.straightSentence.find("\"driver-with-effects\" linearizes best") == 0);
 }

@@ -3,6 +3,7 @@
 // is then asked about the arrow, noise that grows to 1.3 times what the multisines reached.
 #include "Engine/Diagnosis/Improve.h"
 #include "Engine/Import/ImportMat.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/ModelFile.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Scratch.h"

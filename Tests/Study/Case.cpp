@@ -4,6 +4,8 @@
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/Improve.h"
+#include "Engine/Estimate/MakeRecord.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Check/Hum.h"
 
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Numerics/Median.h"
 #include "Engine/Signal/Fft.h"
 
@@ -15,16 +14,16 @@ namespace {
 
 /// Power spectrum of the used periods less their average, Hann-windowed, averaged over realizations and levels,
 /// scaled so that the sum over lines is the mean square of the residual.
-std::vector<double> residualSpectrum(const Measurement& take, const Channel& channel)
+std::vector<double> residualSpectrum(const AveragedPeriods& averages, const Channel& channel)
 {
-    const Excitation& e = *take.excitation;
+    const Excitation& e = averages.excitation();
     const auto length = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(e.periods);
     std::vector<double> power(length / 2 + 1, 0.0), residual(length);
     const double records = static_cast<double>(e.realizations) * static_cast<double>(e.levels.size());
     for (int level = 0; level < static_cast<int>(e.levels.size()); ++level)
         for (int m = 0; m < e.realizations; ++m) {
-            const auto used = usedPeriods(take, channel, level, m);
-            const auto mean = averagePeriod(take, channel, level, m);
+            const auto used = usedPeriods(averages.take(), channel, level, m);
+            const auto& mean = averages.inTime(channel, level, m);
             for (std::size_t n = 0; n < length; ++n) {
                 const double window =
                     0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
@@ -38,12 +37,12 @@ std::vector<double> residualSpectrum(const Measurement& take, const Channel& cha
     return power;
 }
 
-double signalPower(const Measurement& take, const Channel& channel)
+double signalPower(const AveragedPeriods& averages, const Channel& channel)
 {
-    const Excitation& e = *take.excitation;
+    const Excitation& e = averages.excitation();
     double power = 0.0;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto period = averagePeriod(take, channel, static_cast<int>(e.levels.size()) - 1, m);
+        const auto& period = averages.inTime(channel, static_cast<int>(e.levels.size()) - 1, m);
         double mean = 0.0;
         for (const double value : period)
             mean += value / e.period;
@@ -55,24 +54,24 @@ double signalPower(const Measurement& take, const Channel& channel)
 
 /// The share of a sinusoid's power that is left when the average of P periods is taken away: 1 - |D|^2 with
 /// D = 1/P sum_p exp(2 pi j f N p / fs).
-double shareLeft(double frequency, const Measurement& take)
+double shareLeft(double frequency, const Excitation& e, double sampleRate)
 {
-    const Excitation& e = *take.excitation;
     std::complex<double> sum = 0.0;
     for (int p = 0; p < e.periods; ++p)
-        sum += std::polar(1.0 / e.periods, 2.0 * std::numbers::pi * frequency * e.period / take.sampleRate * p);
+        sum += std::polar(1.0 / e.periods, 2.0 * std::numbers::pi * frequency * e.period / sampleRate * p);
     return std::max(0.1, 1.0 - std::norm(sum));
 }
 
 }  // namespace
 
-std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
+std::optional<Hum> findHum(const AveragedPeriods& averages, const Channel& channel)
 {
-    const Excitation& e = periodicExcitation(take);
-    const double signal = signalPower(take, channel);
+    const auto& take = averages.take();
+    const Excitation& e = averages.excitation();
+    const double signal = signalPower(averages, channel);
     if (e.periods < 2 || !(signal > 0.0))
         return std::nullopt;
-    const auto power = residualSpectrum(take, channel);
+    const auto power = residualSpectrum(averages, channel);
     const double spacing = take.sampleRate / (static_cast<double>(e.period) * e.periods);
     double all = 0.0;
     for (const double p : power)
@@ -113,7 +112,7 @@ std::optional<Hum> findHum(const Measurement& take, const Channel& channel)
             ++hum.harmonics;
             highest = std::max(highest, standsOut);
             seen += sum;
-            total += sum / shareLeft(harmonic * mains, take);
+            total += sum / shareLeft(harmonic * mains, e, take.sampleRate);
         }
         if (hum.harmonics < 2 && highest < 25.0)
             continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Take/Measurement.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 #include <optional>
 
@@ -18,6 +18,6 @@ struct Hum {
 
 /// Empty when fewer than two harmonics stand 15 dB above their surroundings and none 25 dB, or
 /// there is a single period.
-std::optional<Hum> findHum(const Measurement&, const Channel&);
+std::optional<Hum> findHum(const AveragedPeriods&, const Channel&);
 
 }  // namespace excursion

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Check/Overload.h"
 
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Numerics/QrFactors.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
@@ -31,13 +30,13 @@ struct Line {
 };
 
 /// The lines that the excitation leaves out, without what goes with the partner; `signal` receives the channel's power.
-std::vector<Line> leftOut(const Measurement& take, const Channel& channel, const Channel& partner, int level,
+std::vector<Line> leftOut(const AveragedPeriods& averages, const Channel& channel, const Channel& partner, int level,
                           int realization, double offset, double scale, double& signal)
 {
-    const auto& excited = excitedLines(take);
-    const auto beside = averagedPeriod(take, partner, level, realization);
-    const auto averaged = averagedPeriod(take, channel, level, realization);
-    const auto y = averagePeriod(take, channel, level, realization);
+    const auto& excited = averages.lines();
+    const auto& beside = averages.spectrum(partner, level, realization);
+    const auto& averaged = averages.spectrum(channel, level, realization);
+    const auto& y = averages.inTime(channel, level, realization);
     std::vector<std::vector<std::complex<double>>> powers;
     std::vector<double> power(y.size());
     for (int n = 2; n <= highestPower; ++n) {
@@ -86,17 +85,18 @@ std::vector<std::pair<double, double>> surroundings(const std::vector<Line>& lin
     return around;
 }
 
-std::optional<Overload> overloadAt(const Measurement& take, const Channel& channel, const Channel& partner, int level)
+std::optional<Overload> overloadAt(const AveragedPeriods& averages, const Channel& channel, const Channel& partner,
+                                   int level)
 {
-    const Excitation& e = periodicExcitation(take);
+    const Excitation& e = averages.excitation();
     // An offset says nothing about a bend, and powers of it would stand for the signal itself.
     const double samples = static_cast<double>(e.period) * e.realizations;
     double offset = 0.0, squares = 0.0, most = 0.0, least = 0.0;
     for (int m = 0; m < e.realizations; ++m)
-        for (const double value : averagePeriod(take, channel, level, m))
+        for (const double value : averages.inTime(channel, level, m))
             offset += value / samples;
     for (int m = 0; m < e.realizations; ++m)
-        for (const double value : averagePeriod(take, channel, level, m)) {
+        for (const double value : averages.inTime(channel, level, m)) {
             squares += (value - offset) * (value - offset) / samples;
             most = std::max(most, value - offset);
             least = std::min(least, value - offset);
@@ -109,7 +109,7 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
     std::vector<Line> used;
     std::vector<double> weight;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto lines = leftOut(take, channel, partner, level, m, offset, scale, signal);
+        const auto lines = leftOut(averages, channel, partner, level, m, offset, scale, signal);
         const auto around = surroundings(lines);
         for (std::size_t i = 0; i < lines.size(); ++i) {
             bent += std::norm(lines[i].value) - lines[i].noise;
@@ -178,11 +178,11 @@ std::optional<Overload> overloadAt(const Measurement& take, const Channel& chann
 
 }  // namespace
 
-std::optional<Overload> findOverload(const Measurement& take, const Channel& channel, const Channel& partner)
+std::optional<Overload> findOverload(const AveragedPeriods& averages, const Channel& channel, const Channel& partner)
 {
     std::optional<Overload> worst;
-    for (int level = 0; level < static_cast<int>(periodicExcitation(take).levels.size()); ++level)
-        if (const auto here = overloadAt(take, channel, partner, level);
+    for (int level = 0; level < static_cast<int>(averages.excitation().levels.size()); ++level)
+        if (const auto here = overloadAt(averages, channel, partner, level);
             here && here->explained > explainedFrom && here->db > faintest)
             if (!worst || here->db > worst->db)
                 worst = here;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Take/Measurement.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 #include <optional>
 
@@ -26,6 +26,6 @@ struct Overload {
 };
 
 /// At the level where it is the strongest; nothing when there is none.
-std::optional<Overload> findOverload(const Measurement&, const Channel&, const Channel& partner);
+std::optional<Overload> findOverload(const AveragedPeriods&, const Channel&, const Channel& partner);
 
 }  // namespace excursion

@@ -3,7 +3,6 @@
 
 #include "Engine/Check/Hum.h"
 #include "Engine/Check/PeriodShift.h"
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
@@ -30,14 +29,14 @@ struct Powers {
     std::vector<double> noise;  ///< of one period
 };
 
-Powers powersOf(const Measurement& take, const Channel& channel, int level)
+Powers powersOf(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = *take.excitation;
+    const Excitation& e = averages.excitation();
     Powers powers;
     powers.mean.assign(static_cast<std::size_t>(e.period / 2 + 1), 0.0);
     powers.noise = powers.mean;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto averaged = averagedPeriod(take, channel, level, m);
+        const auto& averaged = averages.spectrum(channel, level, m);
         for (std::size_t k = 0; k < powers.mean.size(); ++k) {
             powers.mean[k] += std::norm(averaged.mean[k]) / e.realizations;
             if (e.periods > 1)
@@ -67,15 +66,15 @@ SignalAndNoise between(const Powers& powers, const std::vector<int>& lines, int 
 
 /// Power by which the first used period differs from the later ones beyond what noise explains, over the signal's.
 /// Needs three periods: with two, settling and noise look the same.
-std::optional<double> settling(const Measurement& take, const Channel& channel, int level)
+std::optional<double> settling(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = *take.excitation;
+    const Excitation& e = averages.excitation();
     if (e.periods < 3)
         return std::nullopt;
     double difference = 0.0, expected = 0.0, signal = 0.0;
     const double later = e.periods - 1.0;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto spectra = periodSpectra(take, channel, level, m);
+        const auto spectra = periodSpectra(averages.take(), channel, level, m);
         for (std::size_t k = 1; k < spectra.front().size(); ++k) {
             std::complex<double> mean = 0.0;
             for (std::size_t p = 1; p < spectra.size(); ++p)
@@ -96,26 +95,27 @@ std::optional<double> settling(const Measurement& take, const Channel& channel, 
 
 }  // namespace
 
-std::optional<double> signalToNoise(const Measurement& take, const Channel& channel, int level)
+std::optional<double> signalToNoise(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = periodicExcitation(take);
-    const auto& lines = excitedLines(take);
+    const Excitation& e = averages.excitation();
+    const auto& lines = averages.lines();
     if (e.periods < 2)
         return std::nullopt;
-    return between(powersOf(take, channel, level), lines, e.periods, lines.front(), lines.back()).db();
+    return between(powersOf(averages, channel, level), lines, e.periods, lines.front(), lines.back()).db();
 }
 
-bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigures& figures,
+bool checkPeriods(const AveragedPeriods& averages, const Channel& channel, ChannelFigures& figures,
                   std::vector<Problem>& problems)
 {
-    const Excitation& e = periodicExcitation(take);
-    const auto& lines = excitedLines(take);
+    const auto& take = averages.take();
+    const Excitation& e = averages.excitation();
+    const auto& lines = averages.lines();
     const std::string who(name(channel.quantity));
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     if (e.periods < 2)
         return true;
 
-    const auto powers = powersOf(take, channel, loudest);
+    const auto powers = powersOf(averages, channel, loudest);
     double mean = 0.0, noise = 0.0;
     for (const int k : lines) {
         mean += powers.mean[static_cast<std::size_t>(k)];
@@ -155,15 +155,15 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
                             "The periods of the " + who + " channel scatter by " + rounded(*figures.repeatabilityDb, 0)
                                 + " dB of the signal; look for a loose contact, wind or a neighbour's noise."});
 
-    figures.settlingDb = settling(take, channel, loudest);
+    figures.settlingDb = settling(averages, channel, loudest);
     if (figures.settlingDb && *figures.settlingDb > -60.0)
         problems.push_back({"not-settled", channel.quantity, *figures.settlingDb, "dB",
-                            *figures.settlingDb > -20.0 && changedShare(take, channel, loudest) < changedFrom,
+                            *figures.settlingDb > -20.0 && changedShare(averages, channel, loudest) < changedFrom,
                             "The " + who + " channel has not settled in its first used period, by "
                                 + rounded(*figures.settlingDb, 0)
                                 + " dB of the signal; play one more settling period."});
 
-    if (const auto hum = findHum(take, channel))
+    if (const auto hum = findHum(averages, channel))
         problems.push_back({"hum", channel.quantity, hum->db, "dB", hum->db > -40.0 && hum->aboveNoise > 6.0,
                             "The " + who + " channel hums at " + rounded(hum->mains, 0) + " Hz and harmonics, "
                                 + rounded(hum->db, 0)
@@ -171,11 +171,12 @@ bool checkPeriods(const Measurement& take, const Channel& channel, ChannelFigure
     return true;
 }
 
-void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
+void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
                  std::vector<Problem>& problems)
 {
-    const Excitation& e = periodicExcitation(take);
-    const int top = excitedLines(take).back();
+    const auto& take = averages.take();
+    const Excitation& e = averages.excitation();
+    const int top = averages.lines().back();
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     struct Drift {
         std::size_t channel;
@@ -187,9 +188,9 @@ void checkClocks(const Measurement& take, const std::vector<bool>& alive, std::v
     for (std::size_t c = 0; c < take.channels.size(); ++c) {
         if (!alive[c])
             continue;
-        for (const auto& jump : periodJumps(take, take.channels[c]))
+        for (const auto& jump : periodJumps(averages, take.channels[c]))
             jumps.emplace_back(c, jump);
-        const auto shift = periodShift(take, take.channels[c], loudest);
+        const auto shift = periodShift(averages, take.channels[c], loudest);
         // A channel that cannot tell 50 ppm has no say.
         if (!shift || shift->standardError * 1e6 / e.period > 50.0)
             continue;

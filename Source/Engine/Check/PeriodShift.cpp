@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Check/PeriodShift.h"
 
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Numerics/Median.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
@@ -185,6 +184,13 @@ std::vector<Spectrum> earlySpectra(const Measurement& take, const Channel& chann
     return spectra;
 }
 
+/// Of a used period, where it stands.
+Spectrum spectrumOf(const Measurement& take, const Channel& channel, int level, int realization, int period,
+                    const std::vector<int>& lines)
+{
+    return onLines(fft(onePeriod(take, channel, level, realization, period)), lines);
+}
+
 /// Power of the difference of two periods over the power of the first, but for their ends.
 double relativeDifference(std::span<const double> earlier, std::span<const double> later)
 {
@@ -202,10 +208,11 @@ double relativeDifference(std::span<const double> earlier, std::span<const doubl
 
 }  // namespace
 
-std::optional<PeriodShift> periodShift(const Measurement& take, const Channel& channel, int level)
+std::optional<PeriodShift> periodShift(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = periodicExcitation(take);
-    const auto& lines = excitedLines(take);
+    const auto& take = averages.take();
+    const Excitation& e = averages.excitation();
+    const auto& lines = averages.lines();
     if (e.periods < 2)
         return std::nullopt;
     Spectrum sum(lines.size(), 0.0);
@@ -223,10 +230,11 @@ std::optional<PeriodShift> periodShift(const Measurement& take, const Channel& c
     return shiftOf(sum, power, lines, e.period);
 }
 
-std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& channel)
+std::vector<PeriodJump> periodJumps(const AveragedPeriods& averages, const Channel& channel)
 {
-    const Excitation& e = periodicExcitation(take);
-    const auto& lines = excitedLines(take);
+    const auto& take = averages.take();
+    const Excitation& e = averages.excitation();
+    const auto& lines = averages.lines();
     std::vector<PeriodJump> jumps;
     for (int level = 0; level < static_cast<int>(e.levels.size()); ++level) {
         std::vector<PeriodJump> pairs;
@@ -249,20 +257,21 @@ std::vector<PeriodJump> periodJumps(const Measurement& take, const Channel& chan
             const auto p = static_cast<std::size_t>(jump.period);
             jump.change = isChange(spectra, p, lines, e.period);
             jump.gainDb = gainOf(spectra[std::max<std::size_t>(p, 1) - 1],
-                                 onLines(fft(onePeriod(take, channel, level, jump.realization, e.periods - 1)), lines));
+                                 spectrumOf(take, channel, level, jump.realization, e.periods - 1, lines));
         }
     }
     return jumps;
 }
 
-double changedShare(const Measurement& take, const Channel& channel, int level)
+double changedShare(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = periodicExcitation(take);
-    const auto& lines = excitedLines(take);
+    const auto& take = averages.take();
+    const Excitation& e = averages.excitation();
+    const auto& lines = averages.lines();
     double sum = 0.0;
     for (int m = 0; m < e.realizations; ++m)
-        sum += coherenceOf(onLines(fft(onePeriod(take, channel, level, m, 0)), lines),
-                           onLines(fft(onePeriod(take, channel, level, m, e.periods - 1)), lines));
+        sum += coherenceOf(spectrumOf(take, channel, level, m, 0, lines),
+                           spectrumOf(take, channel, level, m, e.periods - 1, lines));
     return sum / e.realizations;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Take/Measurement.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 #include <optional>
 #include <vector>
@@ -22,7 +22,7 @@ struct PeriodShift {
 };
 
 /// The mean shift over all pairs of periods of one level; empty when a realization has a single period.
-std::optional<PeriodShift> periodShift(const Measurement&, const Channel&, int level);
+std::optional<PeriodShift> periodShift(const AveragedPeriods&, const Channel&, int level);
 
 /// A pair of neighbouring periods that differ far more than such pairs do elsewhere in this channel.
 struct PeriodJump {
@@ -34,7 +34,7 @@ struct PeriodJump {
     bool change = false;
     double gainDb = 0.0;  ///< by which it has changed, from the period before that pair until the last one
 };
-std::vector<PeriodJump> periodJumps(const Measurement&, const Channel&);
+std::vector<PeriodJump> periodJumps(const AveragedPeriods&, const Channel&);
 
 /// From which such a share a difference is a change of the loudspeaker, or of a gain.
 inline constexpr double changedFrom = 0.4;
@@ -42,6 +42,6 @@ inline constexpr double changedFrom = 0.4;
 /// Of that by which the first used period differs from the last one, the share that a gain which is smooth over
 /// frequency makes of it: about 1 for a loudspeaker that has changed, as a coil that grows warm, and about 0 for a
 /// motion that had not settled. At most 1; mean over realizations.
-double changedShare(const Measurement&, const Channel&, int level);
+double changedShare(const AveragedPeriods&, const Channel&, int level);
 
 }  // namespace excursion

@@ -20,7 +20,7 @@ constexpr double smallestFault = 0.25;  ///< samples
 /// The response of one channel to another where the loudspeaker is the most linear, and at the loudest level.
 class Responses {
 public:
-    explicit Responses(const Measurement& take) : take_(take) {}
+    explicit Responses(const AveragedPeriods& averages) : averages_(averages), take_(averages.take()) {}
 
     /// The verdict on `output` against `input`.
     PhysicalDelay judge(Quantity output, Quantity input, const std::function<PhysicalDelay(const Frf&)>& law) const
@@ -35,7 +35,8 @@ public:
             if (channel.quantity == output && channel.samples.size() > samples)
                 std::rotate(channel.samples.begin(), channel.samples.end() - static_cast<std::ptrdiff_t>(samples),
                             channel.samples.end());
-        const auto precise = Responses(later).confirmed(output, input, law);
+        const AveragedPeriods averages(later);
+        const auto precise = Responses(averages).confirmed(output, input, law);
         if (precise.clear) {
             verdict = precise;
             verdict.seconds -= static_cast<double>(samples) / take_.sampleRate;
@@ -63,8 +64,8 @@ public:
     {
         const int loudest = this->loudest();
         for (int level = 0; level < loudest; ++level) {
-            const auto a = signalToNoise(take_, *take_.find(output), level);
-            const auto b = signalToNoise(take_, *take_.find(input), level);
+            const auto a = signalToNoise(averages_, *take_.find(output), level);
+            const auto b = signalToNoise(averages_, *take_.find(input), level);
             if (a && b && *a > 30.0 && *b > 30.0)
                 return level;
         }
@@ -89,6 +90,7 @@ private:
         return verdict;
     }
 
+    const AveragedPeriods& averages_;
     const Measurement& take_;
 };
 
@@ -124,10 +126,11 @@ Problem polarityProblem(Quantity channel, bool fatal)
 
 }  // namespace
 
-void checkPhysics(const Measurement& take, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
+void checkPhysics(const AveragedPeriods& averages, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
                   std::vector<Problem>& problems)
 {
-    const Responses responses(take);
+    const auto& take = averages.take();
+    const Responses responses(averages);
     const auto living = [&](Quantity q) {
         for (std::size_t c = 0; c < take.channels.size(); ++c)
             if (take.channels[c].quantity == q && alive[c])

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Check/CheckReport.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 namespace excursion {
 
@@ -9,7 +10,7 @@ namespace excursion {
 /// all pairs: an output that disagrees with the others, or the voltage when the outputs agree among themselves.
 /// @param alive    which channels may be used
 /// @param figures  one for each channel; receives the delays
-void checkPhysics(const Measurement&, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
+void checkPhysics(const AveragedPeriods&, const std::vector<bool>& alive, std::vector<ChannelFigures>& figures,
                   std::vector<Problem>&);
 
 }  // namespace excursion

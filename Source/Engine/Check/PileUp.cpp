@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Check/PileUp.h"
 
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Signal/Fft.h"
 
 #include <algorithm>
@@ -35,14 +34,14 @@ double smallestStep(const std::vector<double>& x)
     return finest;
 }
 
-Strip averagedLevel(const Measurement& take, const Channel& channel, int level)
+Strip averagedLevel(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const Excitation& e = *take.excitation;
+    const Excitation& e = averages.excitation();
     const auto period = static_cast<std::size_t>(e.period), periods = static_cast<std::size_t>(e.periods);
     Strip strip;
     for (int m = 0; m < e.realizations; ++m) {
-        const auto used = usedPeriods(take, channel, level, m);
-        const auto mean = averagePeriod(take, channel, level, m);
+        const auto used = usedPeriods(averages.take(), channel, level, m);
+        const auto& mean = averages.inTime(channel, level, m);
         for (std::size_t n = 0; n < period; ++n) {
             double square = 0.0;
             for (std::size_t p = 0; p < periods; ++p)
@@ -266,14 +265,15 @@ bool hasPeriods(const Measurement& take)
 
 }  // namespace
 
-std::vector<PileUp> pileUps(const Measurement& take, const Channel& channel)
+std::vector<PileUp> pileUps(const AveragedPeriods& averages, const Channel& channel)
 {
+    const auto& take = averages.take();
     std::vector<PileUp> found;
     const bool repeated = hasPeriods(take);
     const int levels = repeated ? static_cast<int>(take.excitation->levels.size()) : 1;
     const double resolution = smallestStep(channel.samples);
     for (int level = 0; level < levels; ++level) {
-        auto strip = repeated ? averagedLevel(take, channel, level) : wholeRecord(channel);
+        auto strip = repeated ? averagedLevel(averages, channel, level) : wholeRecord(channel);
         strip.resolution = resolution;
         std::vector<PileUp> ofLevel;
         for (const bool high : {true, false})

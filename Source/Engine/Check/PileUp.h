@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Take/Measurement.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 #include <vector>
 
@@ -39,6 +39,6 @@ struct PileUp {
 
 /// Of every level and side of a channel. Where the take has two used periods or more they are averaged; else the
 /// record is judged as a whole, more cautiously: half of the bump must be stretches of three samples or more.
-std::vector<PileUp> pileUps(const Measurement&, const Channel&);
+std::vector<PileUp> pileUps(const AveragedPeriods&, const Channel&);
 
 }  // namespace excursion

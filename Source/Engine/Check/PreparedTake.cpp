@@ -2,9 +2,11 @@
 #include "Engine/Check/PreparedTake.h"
 
 #include "Engine/Error.h"
+#include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Take/FindExcitation.h"
 
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -21,11 +23,17 @@ Take completed(Take take)
 }  // namespace
 
 struct PreparedTake::State {
-    explicit State(Take given) : take(completed(std::move(given))) {}
+    explicit State(Take given) : take(completed(std::move(given)))
+    {
+        if (const auto* measurement = std::get_if<Measurement>(&take))
+            averages.emplace(*measurement);
+    }
 
-    Take take;
-    mutable std::once_flag checked;
+    const Take take;
+    std::optional<AveragedPeriods> averages;  // what the check and the record ask for, of a take in time
+    mutable std::once_flag checked, cut;
     mutable CheckReport report;
+    mutable Record record;
 };
 
 PreparedTake::PreparedTake(Take take) : state_(std::make_shared<const State>(std::move(take))) {}
@@ -33,6 +41,8 @@ PreparedTake::PreparedTake(Take take) : state_(std::make_shared<const State>(std
 PreparedTake::PreparedTake(Measurement measurement) : PreparedTake(Take(std::move(measurement))) {}
 
 PreparedTake::PreparedTake(Spectra spectra) : PreparedTake(Take(std::move(spectra))) {}
+
+const Take& PreparedTake::either() const { return state_->take; }
 
 const Measurement* PreparedTake::inTime() const { return std::get_if<Measurement>(&state_->take); }
 
@@ -47,9 +57,17 @@ const Measurement& PreparedTake::measurement() const
 
 const CheckReport& PreparedTake::report() const
 {
-    std::call_once(state_->checked,
-                   [this] { state_->report = std::visit([](const auto& take) { return check(take); }, state_->take); });
+    std::call_once(state_->checked, [this] {
+        state_->report = state_->averages ? check(*state_->averages) : check(std::get<Spectra>(state_->take));
+    });
     return state_->report;
+}
+
+const Record& PreparedTake::record() const
+{
+    measurement();  // refuses a frequency response
+    std::call_once(state_->cut, [this] { state_->record = makeRecord(*state_->averages); });
+    return state_->record;
 }
 
 }  // namespace excursion

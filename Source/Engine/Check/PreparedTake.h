@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Check/TakeCheck.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Take/Measurement.h"
 
 #include <memory>
@@ -9,8 +10,8 @@
 namespace excursion {
 
 /// A take that was made ready, once, for all that is asked of it: its excitation is completed (completeExcitation()),
-/// and it is checked. All that works on a take as a whole asks for one of these. Copies share the take; any thread may
-/// read it.
+/// it is checked, and it is cut into sections that models are compared with. All that works on a take as a whole asks
+/// for one of these. Copies share the take; any thread may read it.
 class PreparedTake {
 public:
     // Implicit, so that a raw take is prepared where a prepared one is asked for.
@@ -18,6 +19,7 @@ public:
     PreparedTake(Measurement);
     PreparedTake(Spectra);
 
+    const Take& either() const;
     /// Null where the take is a frequency response, or is none.
     const Measurement* inTime() const;
     const Spectra* asResponses() const;
@@ -27,6 +29,11 @@ public:
 
     /// Made when it is first asked for.
     const CheckReport& report() const;
+
+    /// The take cut into sections (MakeRecord.h, with its default options), made when it is first asked for; a copy of
+    /// it is adapted to a model (adapt()). Throws Error (data) as makeRecord() does, and when the take is a frequency
+    /// response.
+    const Record& record() const;
 
 private:
     struct State;

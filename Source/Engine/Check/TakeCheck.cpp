@@ -9,7 +9,6 @@
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Estimate/Welch.h"
-#include "Engine/Take/FindExcitation.h"
 #include "Engine/Take/Motion.h"
 
 #include <algorithm>
@@ -46,9 +45,10 @@ bool isCoherent(const Measurement& take, const Channel& channel, std::vector<Pro
 bool followsCone(Quantity q) { return isMotion(q) || q == Quantity::pressure; }
 
 /// Sensors that bend; one that clips is told as that.
-void checkOverload(const Measurement& take, const std::vector<bool>& alive, std::vector<Problem>& problems)
+void checkOverload(const AveragedPeriods& averages, const std::vector<bool>& alive, std::vector<Problem>& problems)
 {
     constexpr double fatalFrom = -50.0;
+    const auto& take = averages.take();
     for (std::size_t c = 0; c < take.channels.size(); ++c) {
         const auto quantity = take.channels[c].quantity;
         const bool clips = std::any_of(problems.begin(), problems.end(), [quantity](const Problem& p) {
@@ -59,11 +59,11 @@ void checkOverload(const Measurement& take, const std::vector<bool>& alive, std:
         std::optional<Overload> overload;
         for (std::size_t other = 0; other < take.channels.size() && !overload; ++other)
             if (other != c && alive[other] && followsCone(quantity) && followsCone(take.channels[other].quantity))
-                overload = findOverload(take, take.channels[c], take.channels[other]);
+                overload = findOverload(averages, take.channels[c], take.channels[other]);
         const bool mayBeTheMotor = !overload && quantity == Quantity::displacement;
         const bool inputLives = alive[static_cast<std::size_t>(&take.input() - take.channels.data())];
         if (!overload && inputLives)  // the other channel may be too noisy to tell
-            overload = findOverload(take, take.channels[c], take.input());
+            overload = findOverload(averages, take.channels[c], take.input());
         if (overload)
             problems.push_back(
                 {"overload", quantity, overload->compression, "dB", overload->db > fatalFrom && !mayBeTheMotor,
@@ -99,25 +99,19 @@ void addAssumptions(const std::vector<std::string>& remarks, std::vector<Problem
 
 }  // namespace
 
-CheckReport check(const Measurement& take)
+CheckReport check(const AveragedPeriods& averages)
 {
+    const auto& take = averages.take();
     take.input();  // throws when there is none
     if (take.length() == 0)
         throw Error(Error::Kind::data, "The take has no samples.");
-    if (take.excitation && take.excitation->lines.empty()
-        && take.excitation->totalSamples() <= static_cast<long>(take.length())) {
-        auto completed = take;
-        completeExcitation(completed);
-        if (!completed.excitation->lines.empty())
-            return check(completed);
-    }
     CheckReport report;
     report.channels.resize(take.channels.size());
     auto& problems = report.problems;
 
     std::vector<bool> alive;
     for (std::size_t c = 0; c < take.channels.size(); ++c)
-        alive.push_back(checkWaveform(take, take.channels[c], report.channels[c], problems));
+        alive.push_back(checkWaveform(averages, take.channels[c], report.channels[c], problems));
 
     if (take.input().assumed)
         problems.push_back({"assumption", take.input().quantity, 0.0, "", false,
@@ -146,14 +140,14 @@ CheckReport check(const Measurement& take)
         for (std::size_t c = 0; c < take.channels.size(); ++c)
             if (alive[c])
                 alive[c] = described && take.excitation->periods > 1
-                               ? checkPeriods(take, take.channels[c], report.channels[c], problems)
+                               ? checkPeriods(averages, take.channels[c], report.channels[c], problems)
                                : isCoherent(take, take.channels[c], problems);
         bool labelled = true;
         if (described) {
-            checkClocks(take, alive, report.channels, problems);
+            checkClocks(averages, alive, report.channels, problems);
             labelled = checkLabels(take, alive, problems);
             if (labelled)
-                checkOverload(take, alive, problems);
+                checkOverload(averages, alive, problems);
         }
 
         dropConsequences(problems);
@@ -165,13 +159,15 @@ CheckReport check(const Measurement& take)
                 if (p.kind == "clock-drift" && p.fatal && p.channel == take.channels[c].quantity)
                     judgeable[c] = false;
         if (labelled)
-            checkPhysics(take, judgeable, report.channels, problems);
+            checkPhysics(averages, judgeable, report.channels, problems);
     }
     std::stable_sort(problems.begin(), problems.end(),
                      [](const Problem& a, const Problem& b) { return a.fatal && !b.fatal; });
     addAssumptions(take.remarks, problems);
     return report;
 }
+
+CheckReport check(const Measurement& take) { return check(AveragedPeriods(take)); }
 
 CheckReport check(const Spectra& spectra)
 {

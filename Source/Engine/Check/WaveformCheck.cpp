@@ -19,11 +19,11 @@ double legalOffset(Quantity quantity)
 constexpr long longestLegalStandstill = 16;
 
 /// Behind the noise clipping leaves equal samples, ahead of it a bump. What shows both ways is told once.
-void checkClipping(const Measurement& take, const Channel& channel, ChannelFigures& figures,
+void checkClipping(const AveragedPeriods& averages, const Channel& channel, ChannelFigures& figures,
                    std::vector<Problem>& problems)
 {
     const long equal = clippedSamples(channel);
-    const auto piles = pileUps(take, channel);
+    const auto piles = pileUps(averages, channel);
     long piled = 0;
     bool high = false, low = false;
     for (const auto& pile : piles) {
@@ -46,7 +46,7 @@ void checkClipping(const Measurement& take, const Channel& channel, ChannelFigur
 
 }  // namespace
 
-bool checkWaveform(const Measurement& take, const Channel& channel, ChannelFigures& figures,
+bool checkWaveform(const AveragedPeriods& averages, const Channel& channel, ChannelFigures& figures,
                    std::vector<Problem>& problems)
 {
     const auto& x = channel.samples;
@@ -68,7 +68,7 @@ bool checkWaveform(const Measurement& take, const Channel& channel, ChannelFigur
                             "The " + who + " channel never moves: connect its sensor, or remove the channel."});
         return false;
     }
-    checkClipping(take, channel, figures, problems);
+    checkClipping(averages, channel, figures, problems);
     if (const double offset = std::abs(figures.offset) / figures.rms; offset > legalOffset(channel.quantity))
         problems.push_back({"dc-offset", channel.quantity, figures.offset, channel.unit, false,
                             "The " + who + " channel has an offset of " + std::to_string(std::lround(100.0 * offset))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Datasheet/KnownScale.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Progress.h"
 
 #include <string>

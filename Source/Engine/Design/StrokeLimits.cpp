@@ -2,6 +2,7 @@
 #include "Engine/Design/StrokeLimits.h"
 
 #include "Engine/Loudspeaker/Dynamics.h"
+#include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Numerics/LuFactors.h"
 #include "Engine/Take/Air.h"
 

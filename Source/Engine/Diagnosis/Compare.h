@@ -3,7 +3,7 @@
 
 #include "Engine/Diagnosis/ResidualCurves.h"
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Progress.h"
 
 #include <map>

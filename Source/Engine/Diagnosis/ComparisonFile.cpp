@@ -105,6 +105,26 @@ ResidualCurve residualFrom(const JsonField& field)
     return r;
 }
 
+/// One member a quantity.
+template <class Value, class Write>
+Json byQuantity(const std::map<Quantity, Value>& values, Write write)
+{
+    auto document = Json::object();
+    for (const auto& [quantity, value] : values)
+        document[std::string(name(quantity))] = write(value);
+    return document;
+}
+
+template <class Value, class Read>
+std::map<Quantity, Value> byQuantityFrom(const JsonField& field, Read read)
+{
+    std::map<Quantity, Value> values;
+    for (const auto& key : field.keys())
+        if (const auto quantity = quantityNamed(key))
+            values[*quantity] = read(field.at(key.c_str()));
+    return values;
+}
+
 }  // namespace
 
 Json toJson(const ErrorKinds& kinds)
@@ -136,36 +156,22 @@ ErrorLevel errorLevelFromJson(const JsonField& field)
 
 Json toJson(const std::map<Quantity, ErrorLevel>& errors)
 {
-    auto document = Json::object();
-    for (const auto& [quantity, error] : errors)
-        document[std::string(name(quantity))] = toJson(error);
-    return document;
+    return byQuantity(errors, [](const ErrorLevel& error) { return toJson(error); });
 }
 
 std::map<Quantity, ErrorLevel> errorByChannelFromJson(const JsonField& field)
 {
-    std::map<Quantity, ErrorLevel> errors;
-    for (const auto& key : field.keys())
-        if (const auto quantity = quantityNamed(key))
-            errors[*quantity] = errorLevelFromJson(field.at(key.c_str()));
-    return errors;
+    return byQuantityFrom<ErrorLevel>(field, errorLevelFromJson);
 }
 
 Json toJson(const std::map<Quantity, double>& decibels)
 {
-    auto document = Json::object();
-    for (const auto& [quantity, db] : decibels)
-        document[std::string(name(quantity))] = numberOrNull(db);
-    return document;
+    return byQuantity(decibels, [](double db) { return numberOrNull(db); });
 }
 
 std::map<Quantity, double> decibelsFromJson(const JsonField& field)
 {
-    std::map<Quantity, double> decibels;
-    for (const auto& key : field.keys())
-        if (const auto quantity = quantityNamed(key))
-            decibels[*quantity] = field.at(key.c_str()).numberOrNaN();
-    return decibels;
+    return byQuantityFrom<double>(field, [](const JsonField& db) { return db.numberOrNaN(); });
 }
 
 Json toJson(const Comparison& comparison)

@@ -235,7 +235,8 @@ RankedEffect promisedBy(const Score& score)
     return entry;
 }
 
-Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptions& options, const Progress& progress)
+Diagnosis diagnose(const Model& model, const Record& record, const Comparison& before, const DiagnoseOptions& options,
+                   const Progress& progress)
 {
     std::string reason;
     if (!options.isValid(&reason))
@@ -244,7 +245,6 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     FitOptions quick = options.fit;
     quick.substeps = substepsFor(model, record, options.fit.simulationTolerance);
     quick.search = {10, 3e-3};
-    const auto before = compare(model, record, {quick.substeps, true}, progress.part(0.0, 0.1));
     diagnosis.error = errorByChannel(before);
     diagnosis.remainder = remainderOf(before);
 
@@ -252,7 +252,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     ScoreOptions test;
     test.threads = options.fit.threads;
     chooseResiduals(quick, test, model, record, sections);
-    const auto scores = score(model, record, test, progress.part(0.1, 0.3));
+    const auto scores = score(model, record, test, progress.part(0.0, 0.25));
     const Excess excess(before);
     // Falls are shares of what is left beside what is noise for sure.
     const double sure = before.noiseKnown && !isNoise(before) ? sureNoise : 0.0;
@@ -268,7 +268,7 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
                                      0.5 * options.significantFall)
                                && excess(candidate.chiSquaredPerValue) < 20.0 * bestLeft;
         if (promising && tried < options.trials && (!isNoise(before) || helps(candidate, record, sections, quick))) {
-            const double share = 0.7 / options.trials, begun = 0.3 + share * tried++;
+            const double share = 0.75 / options.trials, begun = 0.25 + share * tried++;
             progress.at(begun, "trying " + entry.effect);
             Model trial;
             const auto summary = tryFit(trial, candidate, record, sections, quick, progress.part(begun, begun + share));
@@ -316,10 +316,10 @@ Diagnosis diagnose(const Model& model, const Record& record, const DiagnoseOptio
     return diagnosis;
 }
 
-Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOptions& options, const Progress& progress)
+Diagnosis diagnose(const Model& model, const Spectra& spectra, const Comparison& before, const DiagnoseOptions& options,
+                   const Progress& progress)
 {
     Diagnosis diagnosis;
-    const auto before = compare(model, spectra);
     diagnosis.error = errorByChannel(before);
     diagnosis.remainder = remainderOf(before);
     constexpr int coarse = 24;  // points an octave: enough to tell what is there
@@ -352,9 +352,9 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const DiagnoseOpt
     return diagnosis;
 }
 
-void nameNext(Diagnosis& diagnosis, const Model& model, const Spectra& spectra, const Step& next)
+void nameNext(Diagnosis& diagnosis, const Model& model, const Spectra& spectra, const Comparison& before,
+              const Step& next)
 {
-    const auto before = compare(model, spectra);
     const auto targets = responsesOf(spectra);
     const auto place = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
                                     [&](const RankedEffect& r) { return r.effect == next.added; });

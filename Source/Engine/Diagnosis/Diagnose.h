@@ -7,7 +7,7 @@
 #include "Engine/Diagnosis/Vote.h"
 #include "Engine/Loudspeaker/Fit.h"
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 
 #include <map>
 #include <string>
@@ -68,13 +68,16 @@ RankedEffect promisedBy(const Score&);
 /// have: the residual is projected on the sensitivities to the effect's parameters, after the model's own parameters
 /// have explained what they can. (2) A refit with the best few, judged on validation data. The model must have been
 /// fitted to the record.
-Diagnosis diagnose(const Model&, const Record&, const DiagnoseOptions& = {}, const Progress& = {});
+/// @param before  the model compared with the record, with spectra (compare())
+Diagnosis diagnose(const Model&, const Record&, const Comparison& before, const DiagnoseOptions& = {},
+                   const Progress& = {});
 
 /// The same for a take that is only a frequency response: the linear effects compete.
-Diagnosis diagnose(const Model&, const Spectra&, const DiagnoseOptions& = {}, const Progress& = {});
+Diagnosis diagnose(const Model&, const Spectra&, const Comparison& before, const DiagnoseOptions& = {},
+                   const Progress& = {});
 
 /// Updates such a diagnosis of the model if the step's effect is known to be missing, because other missing effects
 /// have shown it. The effect comes first, with the step's model if that leaves less.
-void nameNext(Diagnosis&, const Model&, const Spectra&, const Step&);
+void nameNext(Diagnosis&, const Model&, const Spectra&, const Comparison& before, const Step&);
 
 }  // namespace excursion

@@ -74,7 +74,7 @@ Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const
     if (const auto* spectra = take_.asResponses()) {
         data_ = *spectra;
     } else if (report.fitForUse()) {
-        data_ = makeRecord(take_.measurement());
+        data_ = take_.record();
     } else {
         ladder_.verdict = Verdict::badMeasurement;
         ladder_.sentence = report.verdict();
@@ -119,10 +119,10 @@ std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progr
             rungs.push_back(ladder_.rungs.back());
         else
             rungs.back().diagnosis = diagnose(
-                rungs.back().model, spectra, options,
+                rungs.back().model, spectra, rungs.back().comparison, options,
                 progress.part(0.7 + 0.3 * done / count, 0.7 + 0.3 * (done + 1.0) / count));
         auto& last = rungs.back();
-        nameNext(last.diagnosis, last.model, spectra, steps[n]);
+        nameNext(last.diagnosis, last.model, spectra, last.comparison, steps[n]);
         const auto& named = last.diagnosis.ranking.front();
         Rung rung;
         rung.added = named.effect;
@@ -185,8 +185,8 @@ Rung Improvement::judged(Rung rung, const Progress& progress) const
 {
     const auto judge = [&](const Progress& part) {
         rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
-        rung.diagnosis = std::visit([&](const auto& d) { return diagnose(rung.model, d, options_.diagnose, part); },
-                                    data_);
+        rung.diagnosis = std::visit(
+            [&](const auto& d) { return diagnose(rung.model, d, rung.comparison, options_.diagnose, part); }, data_);
     };
     judge(progress.part(0.0, 0.5));
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.

@@ -221,8 +221,7 @@ TakeSummary summarize(const PreparedTake& take, const std::string& path)
 
 std::optional<WhatIf> whatIfOf(const Model& model, const PreparedTake& take, const Progress& progress)
 {
-    const auto* measurement = take.inTime();
-    return measurement ? whatIfOn(model, makeRecord(*measurement), progress) : std::nullopt;
+    return take.inTime() ? whatIfOn(model, take.record(), progress) : std::nullopt;
 }
 
 LadderFile makeLadderFile(Ladder ladder, const PreparedTake& take, const std::string& path)
@@ -230,8 +229,8 @@ LadderFile makeLadderFile(Ladder ladder, const PreparedTake& take, const std::st
     LadderFile file;
     file.take = summarize(take, path);
     if (!ladder.rungs.empty()) {
-        if (const auto* measurement = take.inTime()) {
-            const auto record = makeRecord(*measurement);
+        if (take.inTime()) {
+            const auto& record = take.record();
             file.responses = responsesOf(record, record.levels.empty() ? -1 : 0, 24);
             file.whatIf = whatIfOn(ladder.model(), record, {});
         } else {

@@ -3,6 +3,7 @@
 
 #include "Engine/Document/Figures.h"
 #include "Engine/Document/Words.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,12 +5,13 @@
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/Fit.h"
-#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/LinearResponses.h"
 #include "Engine/Loudspeaker/Seen.h"
 #include "Engine/Numerics/Parallel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace excursion {
 namespace {
@@ -98,9 +99,11 @@ ScoreResult score(const Model& model, const Record& record, const ScoreOptions& 
                 consider(withEffect(model, *effect, operatingRange, start), {});
     }
     std::vector<Model> found(searched.size());
-    const auto still = searched.empty() ? Record {} : withoutLaws(model, record, options.threads);
+    std::optional<LinearResponses> still;
+    if (!searched.empty())
+        still.emplace(withoutLaws(model, record, options.threads));
     inParallel(searched.size(), options.threads, progress, [&](std::size_t k) {
-        if (auto shaped = searched[k]; fitNewestByResponse(shaped, still).usable())
+        if (auto shaped = searched[k]; fitNewestByResponse(shaped, still->gridFor(shaped.components.back())).usable())
             found[k] = std::move(shaped);
         return true;
     });

@@ -4,7 +4,7 @@
 #include "Engine/Diagnosis/Sums.h"
 #include "Engine/Diagnosis/Vote.h"
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 
 #include <map>
 #include <vector>

@@ -6,6 +6,7 @@
 #include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/Motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/OutputError.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 
 #include <map>
 #include <vector>

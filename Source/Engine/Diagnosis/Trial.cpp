@@ -3,7 +3,6 @@
 
 #include "Engine/Diagnosis/RaiseDegrees.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
-#include "Engine/Loudspeaker/FitResponse.h"
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include <algorithm>
@@ -244,14 +243,15 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     return toTheEnd ? stage(30, 1e-4, Slopes::exact, 0.7, 1.0) : stage(15, 1e-3, Slopes::exact, 0.7, 1.0);
 }
 
-bool findAnew(Model& model, const Record& still, const std::function<bool(const Component&)>& which,
+bool findAnew(Model& model, const LinearResponses& still, const std::function<bool(const Component&)>& which,
               const std::function<bool(Model& anew)>& keeps)
 {
     return changeEach(
         model,
         [&](Model& anew, std::size_t k) {
             const auto& component = anew.components[k];
-            return component.effect->linear() && which(component) && fitByResponse(anew, k, still).usable();
+            return component.effect->linear() && which(component)
+                   && fitByResponse(anew, k, still.gridFor(component)).usable();
         },
         keeps);
 }
@@ -286,7 +286,7 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
     const bool woken = wakeShapes(model, record, sections, options);
     double now = quickCost(model, record, sections, options);
     return findAnew(
-               model, withoutLaws(model, record, options.threads),
+               model, LinearResponses(withoutLaws(model, record, options.threads)),
                [](const Component& component) { return !component.effect->parts(component.operatingRange).empty(); },
                [&](Model& anew) {
                    if (!quickFit(anew, record, sections, glance).usable()

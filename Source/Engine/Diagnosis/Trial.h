@@ -3,6 +3,7 @@
 
 #include "Engine/Diagnosis/Score.h"
 #include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/LinearResponses.h"
 
 #include <functional>
 #include <vector>
@@ -40,10 +41,10 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record&, const std:
 
 /// Finds linear effects of a model anew, one after the other, on the responses of the record without laws: no small
 /// step leads from a wrong shape to the right one. True if one is kept.
-/// @param still  the record without the model's laws
+/// @param still  responses of the record without the model's laws (withoutLaws())
 /// @param which  the effects to find
 /// @param keeps  fits what was found with all the rest, and tells whether it stays
-bool findAnew(Model&, const Record& still, const std::function<bool(const Component&)>& which,
+bool findAnew(Model&, const LinearResponses& still, const std::function<bool(const Component&)>& which,
               const std::function<bool(Model& anew)>& keeps);
 
 /// Brings shapes of linear effects back on trial that have shrunk to nothing while laws were missing: where all cells

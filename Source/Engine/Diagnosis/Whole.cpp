@@ -4,7 +4,7 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/WholeSearch.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
-#include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/LinearResponses.h"
 
 #include <algorithm>
 #include <iterator>
@@ -21,13 +21,13 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
                  const std::set<std::string>& without, const WholeSearch& search)
 {
     Model fuller = model;
-    const auto still = withoutLaws(model, record, search.test().threads);
+    const LinearResponses still(withoutLaws(model, record, search.test().threads));
     double now = search.left(model).chiSquaredPerValue;
     for (const auto& s : scores) {  // lowest first
         if (!s.vote.backs() || without.contains(s.effect->id()))
             continue;
         auto next = withComponent(fuller, s.model.components.back());
-        if (s.effect->linear() && fitNewestByResponse(next, still).usable())
+        if (s.effect->linear() && fitNewestByResponse(next, still.gridFor(next.components.back())).usable())
             if (const double then = search.left(next).chiSquaredPerValue; then < now) {
                 fuller = std::move(next);
                 now = then;

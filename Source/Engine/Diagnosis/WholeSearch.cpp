@@ -4,7 +4,6 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
-#include "Engine/Loudspeaker/FitResponse.h"
 
 #include <cmath>
 
@@ -130,9 +129,9 @@ Vote WholeSearch::votedBy(const std::string& effect, const Vote& vote, const Lef
             vote.byLevel};
 }
 
-/// @param still  the record without the model's laws, once that was needed
+/// @param still  responses of the record without the model's laws, once they were needed
 Removal WholeSearch::without(const Model& model, const Left& now, const std::string& effect, const Vote& vote,
-                             bool thorough, std::optional<Record>& still) const
+                             bool thorough, std::optional<LinearResponses>& still) const
 {
     Removal removal {vote, {}};
     auto leaner = withoutEffect(model, effect);
@@ -145,7 +144,7 @@ Removal WholeSearch::without(const Model& model, const Left& now, const std::str
         then = left(leaner);
         if (effectNamed(effect).linear() && lost(then, now) < barelyMissed) {
             if (!still)
-                still = withoutLaws(model, record_, options_.threads);
+                still.emplace(withoutLaws(model, record_, options_.threads));
             if (reshape(leaner, then, now, *still))
                 then = left(leaner);
         }
@@ -165,7 +164,7 @@ WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough,
     Removals tried;
     const auto now = left(model);
     const auto strange = implausible(model);
-    std::optional<Record> still;
+    std::optional<LinearResponses> still;
     for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
         if (base_.has(effect))
             continue;
@@ -249,7 +248,7 @@ bool WholeSearch::bringBack(Model& model, const std::string& effect, const Left&
 {
     return effectNamed(effect).linear() && lost(without, left(model)) > barelyMissed
            && findAnew(
-               model, withoutLaws(model, record_, options_.threads),
+               model, LinearResponses(withoutLaws(model, record_, options_.threads)),
                [&](const Component& component) { return component.effect->id() == effect; },
                [&](Model& anew) {
                    return fit(anew, brief).usable() && !strangeIn(anew).contains(effect)
@@ -285,7 +284,7 @@ std::optional<WholeSearch::Leaner> WholeSearch::withoutOneOf(const std::set<std:
 
 /// What seems to miss a linear effect a little may only have another of its linear effects in a wrong shape, from which
 /// no small step leads to the right one: each is found anew on the responses. Whether that helped.
-bool WholeSearch::reshape(Model& model, const Left& now, const Left& enough, const Record& still) const
+bool WholeSearch::reshape(Model& model, const Left& now, const Left& enough, const LinearResponses& still) const
 {
     auto best = now;
     return findAnew(

@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/Score.h"
 #include "Engine/Diagnosis/Vote.h"
 #include "Engine/Loudspeaker/Fit.h"
+#include "Engine/Loudspeaker/LinearResponses.h"
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include <algorithm>
@@ -105,9 +106,9 @@ private:
     std::set<std::string> strangeIn(const Model&) const;
     std::optional<Leaner> withoutOneOf(const std::set<std::string>& effects, const Model&) const;
     bool bringBack(Model&, const std::string& effect, const Left& without) const;
-    bool reshape(Model&, const Left& now, const Left& enough, const Record& still) const;
+    bool reshape(Model&, const Left& now, const Left& enough, const LinearResponses& still) const;
     Removal without(const Model&, const Left& now, const std::string& effect, const Vote&, bool thorough,
-                    std::optional<Record>& still) const;
+                    std::optional<LinearResponses>& still) const;
     Vote votedBy(const std::string& effect, const Vote&, const Left& without, const Left& with) const;
 
     const Model& base_;

@@ -109,8 +109,8 @@ DistortionResult distortion(const Measurement& take, Quantity outputQuantity, in
     };
     for (int m = 0; m < M; ++m) {
         const auto U = periodSpectra(take, input, level, m), Y = periodSpectra(take, output, level, m);
-        const auto meanU = averagedPeriod(take, input, level, m).mean;
-        const auto averagedY = averagedPeriod(take, output, level, m);
+        const auto meanU = averageOf(U).mean;
+        const auto averagedY = averageOf(Y);
         for (std::size_t i = 0; i < excited.size(); ++i)
             result.excitedPower[i] += std::norm(averagedY.mean[static_cast<std::size_t>(excited[i])]) / M;
         for (int k = excited.front(); k <= excited.back() && P > 1; ++k)

@@ -92,7 +92,11 @@ std::vector<std::vector<std::complex<double>>> periodSpectra(const Measurement& 
 
 AveragedPeriod averagedPeriod(const Measurement& take, const Channel& channel, int level, int realization)
 {
-    const auto spectra = periodSpectra(take, channel, level, realization);
+    return averageOf(periodSpectra(take, channel, level, realization));
+}
+
+AveragedPeriod averageOf(const std::vector<std::vector<std::complex<double>>>& spectra)
+{
     const auto P = static_cast<double>(spectra.size());
     AveragedPeriod result;
     result.mean.resize(spectra.front().size());
@@ -106,22 +110,6 @@ AveragedPeriod averagedPeriod(const Measurement& take, const Channel& channel, i
         for (std::size_t k = 0; k < Y.size(); ++k)
             result.variance[k] += std::norm(Y[k] - result.mean[k]) / (P * (P - 1.0));
     return result;
-}
-
-PeriodNoise periodNoise(const Measurement& take, const Channel& channel, int level)
-{
-    const Excitation& e = periodicExcitation(take);
-    PeriodNoise noise;
-    if (e.periods < 2)
-        return noise;
-    noise.variance.assign(static_cast<std::size_t>(e.period / 2 + 1), 0.0);
-    noise.degreesOfFreedom = 2 * e.realizations * (e.periods - 1);
-    for (int m = 0; m < e.realizations; ++m) {
-        const auto averaged = averagedPeriod(take, channel, level, m);
-        for (std::size_t k = 0; k < noise.variance.size(); ++k)
-            noise.variance[k] += averaged.variance[k] / e.realizations;
-    }
-    return noise;
 }
 
 }  // namespace excursion

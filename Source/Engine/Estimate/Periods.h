@@ -40,12 +40,7 @@ struct AveragedPeriod {
     std::vector<double> variance;            ///< of Ybar_k: 1/(P (P-1)) sum_p |Y_kp - Ybar_k|^2; empty when P = 1
 };
 AveragedPeriod averagedPeriod(const Measurement&, const Channel&, int level, int realization);
-
-/// The noise of one channel at one level, pooled over the realizations.
-struct PeriodNoise {
-    std::vector<double> variance;  ///< of the averaged period Ybar_k; empty when P = 1: unknown
-    int degreesOfFreedom = 0;      ///< of each line, real: 2 M (P - 1); 0 when unknown
-};
-PeriodNoise periodNoise(const Measurement&, const Channel&, int level);
+/// The same of spectra that are known, [period][line].
+AveragedPeriod averageOf(const std::vector<std::vector<std::complex<double>>>& spectra);
 
 }  // namespace excursion

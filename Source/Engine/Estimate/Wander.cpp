@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Estimate/Wander.h"
 
-#include "Engine/Estimate/Periods.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,30 +15,32 @@ struct Band {
     int lines = 0;
 };
 
-std::vector<double> powerOf(const Measurement& take, const Channel& channel, int level)
+std::vector<double> powerOf(const AveragedPeriods& averages, const Channel& channel, int level)
 {
+    const int realizations = averages.excitation().realizations;
     std::vector<double> power;
-    for (int realization = 0; realization < take.excitation->realizations; ++realization) {
-        const auto period = averagedPeriod(take, channel, level, realization);
+    for (int realization = 0; realization < realizations; ++realization) {
+        const auto& period = averages.spectrum(channel, level, realization);
         power.resize(period.mean.size(), 0.0);
         for (std::size_t k = 0; k < power.size(); ++k)
-            power[k] += std::norm(period.mean[k]) / take.excitation->realizations;
+            power[k] += std::norm(period.mean[k]) / realizations;
     }
     return power;
 }
 
 /// Means in bands of a third of an octave, or of as many lines as it takes to know a variance.
-std::vector<Band> bandsOf(const Measurement& take, const Channel& channel, int level, const PeriodNoise& noise)
+std::vector<Band> bandsOf(const AveragedPeriods& averages, const Channel& channel, int level)
 {
-    const auto inputNoise = periodNoise(take, take.input(), level);
+    const auto& take = averages.take();
+    const auto &noise = averages.noise(channel, level), &inputNoise = averages.noise(take.input(), level);
     if (noise.variance.empty() || inputNoise.variance.empty())
         return {};
-    const auto output = powerOf(take, channel, level), input = powerOf(take, take.input(), level);
+    const auto output = powerOf(averages, channel, level), input = powerOf(averages, take.input(), level);
     const int enough = std::max(1, 32 / std::max(1, noise.degreesOfFreedom));
     std::vector<Band> bands;
     double begin = 0.0;
     int lines = enough;
-    for (const int line : excitedLines(take)) {
+    for (const int line : averages.lines()) {
         const auto k = static_cast<std::size_t>(line);
         if (lines >= enough && line >= begin * std::cbrt(2.0)) {
             bands.emplace_back();
@@ -106,15 +106,13 @@ Split splitOf(const std::vector<Band>& bands)
 
 }  // namespace
 
-std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
+std::optional<double> wanderDb(const AveragedPeriods& averages, const Channel& channel)
 {
-    const auto& e = periodicExcitation(take);
+    const auto& e = averages.excitation();
     if (e.periods < 2 || e.levels.size() < 2)
         return std::nullopt;
     const int loudest = static_cast<int>(e.levels.size()) - 1;
-    const auto scatter = periodNoise(take, channel, loudest);
-    const auto loud = bandsOf(take, channel, loudest, scatter),
-               quiet = bandsOf(take, channel, 0, periodNoise(take, channel, 0));
+    const auto loud = bandsOf(averages, channel, loudest), quiet = bandsOf(averages, channel, 0);
     constexpr std::size_t fewest = 4;
     if (loud.size() < fewest || quiet.size() != loud.size()
         || !std::all_of(loud.begin(), loud.end(), [](const Band& b) { return b.scatter > 0.0; }))
@@ -134,7 +132,7 @@ std::optional<double> wanderDb(const Measurement& take, const Channel& channel)
     for (const auto& band : loud)
         wander += band.lines * split.share * band.power;
     for (int k = e.lines.front(); k <= e.lines.back(); ++k)
-        all += scatter.variance[static_cast<std::size_t>(k)];
+        all += averages.noise(channel, loudest).variance[static_cast<std::size_t>(k)];
     if (wander < worthAWord * all)
         return std::nullopt;
     const double rise = std::log10(loudly.power / std::max(quietly.power, 1e-300));

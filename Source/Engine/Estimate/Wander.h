@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Take/Measurement.h"
+#include "Engine/Estimate/AveragedPeriods.h"
 
 #include <optional>
 
@@ -15,6 +15,6 @@ namespace excursion {
 /// and 10 log10 c is told where the second term is far more than the first in some band and rises there from the
 /// quietest level to the loudest. None where it is noise, or where the take cannot tell: one used period, one level,
 /// too few lines.
-std::optional<double> wanderDb(const Measurement&, const Channel&);
+std::optional<double> wanderDb(const AveragedPeriods&, const Channel&);
 
 }  // namespace excursion

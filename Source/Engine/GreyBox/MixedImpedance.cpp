@@ -178,11 +178,7 @@ bool MixedImpedanceOptions::isValid(std::string* reason) const
 
 MixedImpedanceFit fitMixedImpedance(const FrequencyData& data, const MixedImpedanceOptions& options)
 {
-    std::string reason;
-    if (!options.isValid(&reason))
-        throw Error(Error::Kind::usage, "The impedance cannot be fitted: " + reason + ".");
-    if (!data.isValid(&reason))
-        throw Error(Error::Kind::data, "The impedance cannot be fitted: " + reason + ".");
+    requireFitting(options, data, "The impedance cannot be fitted");
     if (data.value.cols() != 1 || data.lines() < P || !(data.frequency.front() > 0.0))
         throw Error(Error::Kind::data, "An impedance is fitted to one response on at least 6 lines above 0 Hz.");
     const bool known = data.deviation.size() != 0;

@@ -1,32 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Import/AlignRecording.h"
-#include "Engine/Import/Loopback.h"
+#include "Engine/Import/ImportedRecording.h"
 #include "Engine/Import/RecordingOptions.h"
 #include "Engine/Progress.h"
 
-#include <optional>
-#include <string>
-#include <vector>
-
 namespace excursion {
-
-/// What became of one file.
-struct ImportedFile {
-    std::string name;
-    double sampleRate = 0.0, seconds = 0.0;
-    Alignment alignment;  ///< not without a plan
-    std::string witness;  ///< the channel that told the time
-    std::optional<InterfaceResponse> loopback;
-};
-
-struct ImportedRecording {
-    Measurement take;
-    std::optional<SweepExcitation> sweep {};  ///< of a plan of sweeps: those that were recorded, at their levels
-    std::vector<ImportedFile> files;
-    std::vector<std::string> remarks;  ///< sentences for a person: what was assumed, left out or is odd
-};
 
 /// Makes a take of recordings of a plan. Each file is laid beside the plan by itself (alignRecording) and read on the
 /// plan's clock; all its channels are shifted and resampled alike. Where only what a loudspeaker has passed tells the

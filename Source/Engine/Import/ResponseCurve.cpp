@@ -2,8 +2,7 @@
 #include "Engine/Import/ResponseCurve.h"
 
 #include "Engine/Error.h"
-#include "Engine/Import/PlainText.h"
-#include "Engine/Import/TextTable.h"
+#include "Engine/Import/CurveTable.h"
 #include "Engine/Signal/MinimumPhase.h"
 
 #include <algorithm>
@@ -49,25 +48,15 @@ double ResponseCurve::db(double frequency) const { return toDb((*this)(frequency
 ResponseCurve readMicrophoneCurve(const std::filesystem::path& path, double reference)
 {
     constexpr double radian = std::numbers::pi / 180.0;
-    const auto refuse = [&](const std::string& why) {
-        throw Error(Error::Kind::input, "'" + path.string() + "' " + why);
-    };
-    const TextTable table(readPlainText(path), path.string());
-    if (table.titles().size() < 2 || table.rows() < 2)
-        refuse("has " + std::to_string(table.rows()) + " lines of " + std::to_string(table.titles().size())
-               + " numbers; a microphone's curve has frequencies in Hz and its response in dB.");
+    const auto table = readCurveTable(path, 3, "a microphone's curve has frequencies in Hz and its response in dB");
     const auto frequency = table.column(0), db = table.column(1);
     const auto degrees = table.titles().size() > 2 ? table.column(2) : std::vector<double>();
-    if (db.size() != frequency.size() || (!degrees.empty() && degrees.size() != frequency.size()))
-        refuse("has columns of different lengths.");
     std::vector<double> magnitude;
     for (std::size_t k = 0; k < frequency.size(); ++k) {
-        if (!(frequency[k] > (k == 0 ? 0.0 : frequency[k - 1])))
-            refuse("has a frequency that is not positive or not above the one before it in line "
-                   + std::to_string(table.lineOf(k)) + ".");
         if (std::abs(db[k]) > largestCorrection)
-            refuse("has a correction beyond 60 dB at " + std::to_string(frequency[k])
-                   + " Hz; a microphone's response in dB is expected.");
+            throw Error(Error::Kind::input, "'" + path.string() + "' has a correction beyond 60 dB at "
+                                                + std::to_string(frequency[k])
+                                                + " Hz; a microphone's response in dB is expected.");
         magnitude.push_back(std::pow(10.0, db[k] / 20.0));
     }
     const bool phases = std::any_of(degrees.begin(), degrees.end(), [](double d) { return d != 0.0; });

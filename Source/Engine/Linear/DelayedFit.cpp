@@ -25,11 +25,7 @@ constexpr int largestSteps = 40;
 
 void require(const FrequencyData& data, const DelayedFitOptions& options)
 {
-    std::string reason;
-    if (!options.isValid(&reason))
-        throw Error(Error::Kind::usage, "A delay cannot be fitted: " + reason + ".");
-    if (!data.isValid(&reason))
-        throw Error(Error::Kind::data, "A delay cannot be fitted: " + reason + ".");
+    requireFitting(options, data, "A delay cannot be fitted");
     if (data.inputs != 1)
         throw Error(Error::Kind::data,
                     "A delay is fitted to responses to one input; these are to " + std::to_string(data.inputs) + ".");

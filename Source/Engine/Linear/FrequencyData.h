@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Error.h"
 #include "Engine/Estimate/Frf.h"
 
 #include <Eigen/Core>
 
+#include <string>
 #include <vector>
 
 namespace excursion {
@@ -32,5 +34,17 @@ FrequencyData frequencyDataOf(const Frf&);
 /// rms response is 1. Without deviations 1 over the rms response. So neither units nor the level of the noise enter a
 /// numerical decision.
 Eigen::MatrixXd weightsOf(const FrequencyData&);
+
+/// Before a fit to a frequency response. Throws Error: usage for options that are not valid, data for responses.
+/// @param refusal  what a sentence begins with: "A delay cannot be fitted"
+template <class Options>
+void requireFitting(const Options& options, const FrequencyData& data, const std::string& refusal)
+{
+    std::string reason;
+    if (!options.isValid(&reason))
+        throw Error(Error::Kind::usage, refusal + ": " + reason + ".");
+    if (!data.isValid(&reason))
+        throw Error(Error::Kind::data, refusal + ": " + reason + ".");
+}
 
 }  // namespace excursion

@@ -182,11 +182,7 @@ LinearIdentification judged(StateSpace model, const FrequencyData& data, double 
 
 LinearIdentification identify(const FrequencyData& data, const IdentifyOptions& options, const Progress& progress)
 {
-    std::string reason;
-    if (!options.isValid(&reason))
-        throw Error(Error::Kind::usage, "The frequency response cannot be identified: " + reason + ".");
-    if (!data.isValid(&reason))
-        throw Error(Error::Kind::data, "The frequency response cannot be identified: " + reason + ".");
+    requireFitting(options, data, "The frequency response cannot be identified");
     if (2 * data.lines() * data.outputs < 2 * options.order + 1 || options.order >= data.lines())
         throw Error(Error::Kind::data, "A model of order " + std::to_string(options.order) + " needs more than the "
                                            + std::to_string(data.lines()) + " lines of the frequency response.");

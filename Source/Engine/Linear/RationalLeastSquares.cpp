@@ -70,11 +70,7 @@ bool RationalOptions::isValid(std::string* reason) const
 
 RationalFit fitRational(const FrequencyData& data, const RationalOptions& options)
 {
-    std::string reason;
-    if (!options.isValid(&reason))
-        throw Error(Error::Kind::usage, "A rational response cannot be fitted: " + reason + ".");
-    if (!data.isValid(&reason))
-        throw Error(Error::Kind::data, "A rational response cannot be fitted: " + reason + ".");
+    requireFitting(options, data, "A rational response cannot be fitted");
     if (data.inputs != 1)
         throw Error(Error::Kind::data,
                     "A rational response is fitted to one input; the data has " + std::to_string(data.inputs) + ".");

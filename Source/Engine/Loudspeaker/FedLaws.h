@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/LawDrive.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Loudspeaker/ShownMotion.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 

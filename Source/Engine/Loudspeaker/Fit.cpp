@@ -9,6 +9,7 @@
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
+#include "Engine/Take/Motion.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>

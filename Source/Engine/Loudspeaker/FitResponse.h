@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Numerics/LeastSquares.h"
 #include "Engine/Take/Measurement.h"
 
@@ -67,11 +67,8 @@ SearchSummary addByResponse(Model&, const Effect&, const std::vector<ResponseTar
 
 /// The same for a linear effect that the model already has, as its newest: its present values are ignored.
 SearchSummary fitNewestByResponse(Model&, const std::vector<ResponseTarget>&);
-/// The same on the responses of a record, with the resolution that the effect needs.
-SearchSummary fitNewestByResponse(Model&, const Record&);
 /// The same for component k.
 SearchSummary fitByResponse(Model&, std::size_t k, const std::vector<ResponseTarget>&);
-SearchSummary fitByResponse(Model&, std::size_t k, const Record&);
 
 /// Fits a model that has a new effect. Other effects that have several parts are also searched again, as the new one
 /// may have uncovered more parts. The parts are unchanged if that brings little.

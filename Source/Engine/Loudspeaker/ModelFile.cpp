@@ -6,6 +6,7 @@
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Curve.h"
+#include "Engine/Loudspeaker/Laws.h"
 
 #include <algorithm>
 #include <cmath>

@@ -208,18 +208,7 @@ SearchSummary fitNewestByResponse(Model& model, const std::vector<ResponseTarget
     return summary;
 }
 
-SearchSummary fitNewestByResponse(Model& model, const Record& record)
-{
-    constexpr int usual = 12, fine = 48;  // points an octave
-    const auto& newest = model.components.back();
-    return fitNewestByResponse(
-        model, linearResponsesOf(record, newest.effect->parts(newest.operatingRange).empty() ? usual : fine));
-}
-
-namespace {
-
-template <class Targets>
-SearchSummary fitAsNewest(Model& model, std::size_t k, const Targets& targets)
+SearchSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets)
 {
     auto trial = model;
     const auto place = trial.components.begin() + static_cast<std::ptrdiff_t>(k);
@@ -233,14 +222,6 @@ SearchSummary fitAsNewest(Model& model, std::size_t k, const Targets& targets)
     model.covariance.resize(0, 0);  // of another order
     return summary;
 }
-
-}  // namespace
-
-SearchSummary fitByResponse(Model& model, std::size_t k, const std::vector<ResponseTarget>& targets)
-{
-    return fitAsNewest(model, k, targets);
-}
-SearchSummary fitByResponse(Model& model, std::size_t k, const Record& record) { return fitAsNewest(model, k, record); }
 
 SearchSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& targets)
 {

@@ -235,24 +235,4 @@ std::vector<Eigen::Index> freeParameters(const Model& model)
     return result;
 }
 
-std::vector<std::size_t> estimationSections(const Record& record)
-{
-    std::vector<std::size_t> result;
-    for (std::size_t n = 0; n < record.sections.size(); ++n)
-        if (!record.sections[n].validation)
-            result.push_back(n);
-    return result;
-}
-
-std::vector<std::size_t> validationSections(const Record& record)
-{
-    std::vector<std::size_t> result;
-    for (std::size_t n = 0; n < record.sections.size(); ++n)
-        if (record.sections[n].validation)
-            result.push_back(n);
-    if (result.empty())
-        return estimationSections(record);
-    return result;
-}
-
 }  // namespace excursion

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Loudspeaker/Residual.h"
 #include "Engine/Progress.h"
 
@@ -65,9 +65,5 @@ void addPrior(const Model&, const std::vector<Eigen::Index>& active, NormalEquat
 
 /// Indices of the free parameters of a model.
 std::vector<Eigen::Index> freeParameters(const Model&);
-
-/// Indices of the estimation sections, and of those held out (all sections if none is held out).
-std::vector<std::size_t> estimationSections(const Record&);
-std::vector<std::size_t> validationSections(const Record&);
 
 }  // namespace excursion

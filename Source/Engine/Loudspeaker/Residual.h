@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Numerics/NormalEquations.h"
 
 #include <Eigen/Core>

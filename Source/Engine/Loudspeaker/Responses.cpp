@@ -132,14 +132,17 @@ std::vector<ResponseTarget> responsesOf(const Record& record, int level, int poi
     const double low = std::max(record.bandLow * 0.99, 1e-3);
     const int cells = std::max(4,
                                static_cast<int>(std::ceil(std::log2(record.bandHigh * 1.01 / low) * pointsPerOctave)));
+    std::vector<std::pair<const Section*, std::vector<Complex>>> used;  // with the spectrum of the input
+    for (const auto& section : record.sections)
+        if (!section.validation && (level < 0 || section.level < 0 || section.level == level))
+            used.emplace_back(&section, fft(std::span(section.input).last(section.window)));
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         std::vector<Cell> grid(static_cast<std::size_t>(cells) + 1);
         double totalInput = 0.0;
         std::size_t lines = 0;
-        for (const auto& section : record.sections) {
-            if (section.validation || (level >= 0 && section.level >= 0 && section.level != level))
-                continue;
-            const auto U = fft(std::span(section.input).last(section.window));
+        for (const auto& one : used) {
+            const auto& section = *one.first;
+            const auto& U = one.second;
             const auto add = [&](std::size_t k) {
                 const double f = record.frequency(section, k);
                 if (f < low || f > record.bandHigh * 1.01)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Seen.h"
 
+#include "Engine/Error.h"
+
 #include <algorithm>
+#include <variant>
 
 namespace excursion {
 
@@ -23,6 +26,11 @@ Seen seenIn(const Spectra& spectra)
     return seen;
 }
 
+Seen seenIn(const Take& take)
+{
+    return std::visit([](const auto& kind) { return seenIn(kind); }, take);
+}
+
 std::string whyUnseen(const Effect& effect, const Seen& seen)
 {
     if (effect.electrical() && !seen.coil)
@@ -35,6 +43,15 @@ std::string whyUnseen(const Effect& effect, const Seen& seen)
                      [&](Quantity quantity) { return effect.shownBy(quantity); }))
         return "No channel of the take can show the effect \"" + effect.id() + "\"; measure the pressure as well.";
     return "";
+}
+
+void requireSameKind(const Model& model, const Seen& seen)
+{
+    if (model.electrical() == seen.coil)
+        return;
+    throw Error(Error::Kind::data,
+                seen.coil ? "The model has no coil, but the take drives one by a voltage; fit a model to this take."
+                          : "The model has a coil, but the take drives the cone by a force; fit a model to this take.");
 }
 
 }  // namespace excursion

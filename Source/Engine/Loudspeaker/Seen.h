@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Loudspeaker/Effect.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Loudspeaker/Model.h"
+#include "Engine/Estimate/Record.h"
 
 #include <string>
 #include <vector>
@@ -19,8 +19,12 @@ struct Seen {
 Seen seenIn(const Record&);
 Seen seenIn(const Measurement&);
 Seen seenIn(const Spectra&);
+Seen seenIn(const Take&);
 
 /// Why this effect cannot be seen in the take, as a sentence that says what to do about it; empty if it can.
 std::string whyUnseen(const Effect&, const Seen&);
+
+/// Throws Error (data) when one of model and take has a coil and the other has none.
+void requireSameKind(const Model&, const Seen&);
 
 }  // namespace excursion

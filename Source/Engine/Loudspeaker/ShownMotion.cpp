@@ -2,6 +2,7 @@
 #include "Engine/Loudspeaker/ShownMotion.h"
 
 #include "Engine/Signal/Fft.h"
+#include "Engine/Take/Motion.h"
 
 #include <cmath>
 #include <cstdlib>

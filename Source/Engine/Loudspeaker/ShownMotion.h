@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/LawMemory.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 
 #include <complex>
 #include <vector>

@@ -11,12 +11,6 @@
 
 namespace excursion {
 
-bool hasPeriods(const Record& record)
-{
-    return std::all_of(record.sections.begin(), record.sections.end(),
-                       [](const Section& s) { return s.periodic && s.window == s.input.size(); });
-}
-
 ShownMotions shownMotions(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                           const ShownMotions& before, unsigned threads)
 {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Model.h"
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/Record.h"
 #include "Engine/Loudspeaker/ShownMotion.h"
 
 #include <cstddef>
@@ -12,9 +12,6 @@ namespace excursion {
 
 /// The motions of some sections of a record, one per section.
 using ShownMotions = std::vector<ShownMotion>;
-
-/// Whether the sections of a record are periods, as needed for motions.
-bool hasPeriods(const Record&);
 
 /// Motions of the sections as the take shows them. Where it shows nothing, they are what the model expects from the
 /// motions `before`, or without these, from its linear part.

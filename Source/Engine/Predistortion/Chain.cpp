@@ -17,7 +17,7 @@ constexpr double plainTime = 0.0003;  // s, see Glide: gone within the latency
 }  // namespace
 
 Chain::Chain(const Model& model, const RealTimeOptions& options, const ChainControls& controls)
-    : Chain(std::make_unique<DriverEngine>(model, options, controls.linearization), options.sampleRate, controls)
+    : Chain(std::make_unique<DriverEngine>(model, options, controls.predistortion), options.sampleRate, controls)
 {
 }
 
@@ -62,9 +62,9 @@ void Chain::set(const ChainControls& controls)
         loudest_ = 0.0;
     }
     wet_.turn(mode != Mode::bypass);
-    engine_->set(controls.linearization);
+    engine_->set(controls.predistortion);
     engine_->turn(bends);
-    limit_ = bends ? controls.linearization.voltageLimit : std::numeric_limits<double>::infinity();
+    limit_ = bends ? controls.predistortion.voltageLimit : std::numeric_limits<double>::infinity();
     if (controls.fullScale > 0.0 && std::isfinite(controls.fullScale) && controls.trim >= 0.0
         && std::isfinite(controls.trim)) {
         fullScale_.aim(controls.fullScale);

@@ -20,7 +20,7 @@ struct ChainControls {
     double fullScale = 10.0;  ///< V for a sample of 1.0
     /// factor: on the input when the signal is linearized for a loudspeaker, else on the output; not used in bypass
     double trim = 1.0;
-    PredistortionControls linearization;
+    PredistortionControls predistortion;
 };
 
 /// One channel of the plugin: sample -> V -> predistorter (-> loudspeaker) -> sample. The mode switches either of the

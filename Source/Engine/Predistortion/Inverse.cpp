@@ -98,14 +98,20 @@ Inverse::Inverse(const Model& model, double sampleRate) : electrical_(model.elec
     forcePerCurrent_ = byCurrent(atRest.force);
 }
 
-void Inverse::reset()
+template <class Act>
+void Inverse::forEachMemory(const Act& act)
 {
-    together_.reset();
+    act(together_);
     for (auto& part : lagging_)
-        part.memory.reset();
+        act(part.memory);
     for (auto& part : curved_)
         if (part.memory)
-            part.memory->reset();
+            act(*part.memory);
+}
+
+void Inverse::reset()
+{
+    forEachMemory([](auto& memory) { memory.reset(); });
     now_ = past_ = {};
     ease_ = 1.0;
 }
@@ -133,12 +139,7 @@ double Inverse::again(const MotionPoint& to)
 
 void Inverse::takeBack()
 {
-    together_.stepBack();
-    for (auto& part : lagging_)
-        part.memory.stepBack();
-    for (auto& part : curved_)
-        if (part.memory)
-            part.memory->stepBack();
+    forEachMemory([](auto& memory) { memory.stepBack(); });
     now_ = past_;
 }
 

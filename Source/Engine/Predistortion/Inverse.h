@@ -52,6 +52,9 @@ public:
 private:
     double solve(const MotionPoint&, double guess);  ///< one Newton step from this current, A
     void takeBack();
+    /// Every memory, of whichever kind.
+    template <class Act>
+    void forEachMemory(const Act& act);
 
     /// An effect that is evaluated at every sample.
     struct Curved {

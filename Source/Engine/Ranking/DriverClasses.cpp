@@ -38,7 +38,7 @@ FittedClass driverClass(const Model& model, const RankedTake& data)
 
 FittedClass fitDriverClass(const RankedTake& data, const Progress& progress)
 {
-    auto record = makeRecord(data.take.measurement());
+    auto record = data.take.record();
     return driverClass(fitEffects(record, {}, {}, nullptr, progress), data);
 }
 

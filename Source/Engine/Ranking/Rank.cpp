@@ -6,7 +6,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
 #include "Engine/Linear/OrderSweep.h"
-#include "Engine/Ranking/Linearization.h"
+#include "Engine/Ranking/Predistortion.h"
 #include "Engine/Ranking/ModelClasses.h"
 #include "Engine/Validity.h"
 
@@ -91,21 +91,21 @@ RankedModel judge(const Fitting& fitting, const RankedTake& data, const Progress
 /// Which class linearizes best: among those within half a decibel, the one with the least load.
 void tellStraightest(Ranking& ranking)
 {
-    const auto worthIt = [](const RankedModel& m) { return m.trouble.empty() && m.linearization.trouble.empty(); };
+    const auto worthIt = [](const RankedModel& m) { return m.trouble.empty() && m.predistortion.trouble.empty(); };
     double least = std::numeric_limits<double>::infinity();
     for (const auto& model : ranking.models)
         if (worthIt(model))
-            least = std::min(least, model.linearization.leftDb);
+            least = std::min(least, model.predistortion.leftDb);
     const RankedModel* chosen = nullptr;
     for (const auto& model : ranking.models)
-        if (worthIt(model) && model.linearization.leftDb < least + 0.5
-            && (!chosen || model.linearization.load < chosen->linearization.load))
+        if (worthIt(model) && model.predistortion.leftDb < least + 0.5
+            && (!chosen || model.predistortion.load < chosen->predistortion.load))
             chosen = &model;
     if (!chosen) {
         ranking.straightSentence = "No class of models linearizes this take.";
         return;
     }
-    const auto& told = chosen->linearization;
+    const auto& told = chosen->predistortion;
     ranking.straightest = chosen->name;
     ranking.straightSentence = "\"" + chosen->name + "\" linearizes best: it brings the distortion from "
                                + plainText(told.beforeDb, 1) + " to " + plainText(told.leftDb, 1) + " dB, with "
@@ -200,7 +200,7 @@ Ranking rank(const PreparedTake& given, const RankOptions& options, const Progre
     for (auto& model : ranking.models)
         if (model.trouble.empty()) {
             progress.at(0.95, "inverting " + model.name);
-            model.linearization = linearizationOf(model, std::string(name(ranking.output)), take.sampleRate,
+            model.predistortion = predistortionOf(model, std::string(name(ranking.output)), take.sampleRate,
                                                   ranking.noiseDb, progress.part(0.95, 0.95));
         }
     tellStraightest(ranking);

@@ -7,9 +7,9 @@
 
 namespace excursion {
 
-/// What it is worth to invert a class, see linearizationOf(). Distortion is the power of what is not the linear
+/// What it is worth to invert a class, see predistortionOf(). Distortion is the power of what is not the linear
 /// part's output, over that.
-struct RankedLinearization {
+struct RankedPredistortion {
     double beforeDb = 0.0;  ///< as the model was fitted
     double modelDb = 0.0;   ///< left of it on the model itself
     double leftDb = 0.0;    ///< left of it on the take, with what the model does not explain
@@ -35,7 +35,7 @@ struct RankedModel {
     nlohmann::ordered_json document = nullptr;
     /// a sentence where the class could not be fitted; the figures then mean nothing
     std::string trouble;
-    RankedLinearization linearization;
+    RankedPredistortion predistortion;
 };
 
 }  // namespace excursion

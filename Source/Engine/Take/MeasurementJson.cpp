@@ -44,6 +44,14 @@ std::vector<JsonField> atLeastOne(const JsonField& field, const std::string& exp
     return field.items();
 }
 
+std::vector<JsonField> exactlyTwo(const JsonField& field, const std::string& expected)
+{
+    auto items = atLeastOne(field, expected);
+    if (items.size() != 2)
+        field.refuse(expected);
+    return items;
+}
+
 Channel parseChannel(const JsonField& field)
 {
     Channel channel;
@@ -94,9 +102,7 @@ std::optional<SweepExcitation> parseSweep(const JsonField& field, double sampleR
     e.seconds = positive(field.at("seconds"), "a positive number of s");
     const auto bandField = field.at("band");
     constexpr auto expected = "two ascending frequencies in Hz, above 0 and below half the sample rate";
-    const auto band = atLeastOne(bandField, expected);
-    if (band.size() != 2)
-        bandField.refuse(expected);
+    const auto band = exactlyTwo(bandField, expected);
     e.bandLow = positive(band[0], "a frequency above 0 Hz");
     e.bandHigh = positive(band[1], "a frequency above 0 Hz");
     if (e.bandLow >= e.bandHigh || e.bandHigh >= sampleRate / 2)
@@ -104,9 +110,7 @@ std::optional<SweepExcitation> parseSweep(const JsonField& field, double sampleR
     e.fadeIn = e.fadeOut = 0.0;
     if (field.has("fades")) {
         constexpr auto fades = "two durations in s, 0 or more: of the fade-in and the fade-out";
-        const auto items = atLeastOne(field.at("fades"), fades);
-        if (items.size() != 2)
-            field.at("fades").refuse(fades);
+        const auto items = exactlyTwo(field.at("fades"), fades);
         e.fadeIn = notNegative(items[0], "a duration in s, 0 or more");
         e.fadeOut = notNegative(items[1], "a duration in s, 0 or more");
     }
@@ -146,9 +150,7 @@ Excitation parseMultisine(const JsonField& field, double sampleRate)
     e.bandHigh = sampleRate / 2;
     if (field.has("band")) {
         const auto expected = "two ascending frequencies in Hz, not above half the sample rate";
-        const auto band = atLeastOne(field.at("band"), expected);
-        if (band.size() != 2)
-            field.at("band").refuse(expected);
+        const auto band = exactlyTwo(field.at("band"), expected);
         e.bandLow = notNegative(band[0], "a frequency in Hz, 0 or more");
         e.bandHigh = notNegative(band[1], "a frequency in Hz");
         if (e.bandLow >= e.bandHigh || e.bandHigh > sampleRate / 2)

@@ -3,6 +3,7 @@
 
 #include "Engine/Document/Engineering.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Seen.h"
 #include "Engine/Predistortion/RealTime.h"
 
 #include <algorithm>
@@ -14,18 +15,6 @@ namespace {
 constexpr double farther = 1.05;   // than was measured, which is of no matter
 constexpr double explained = 4.0;  // chi squared per value up to which drift is all there is
 constexpr double certain = 3.0;    // standard errors, from which on a parameter has drifted
-
-void requireSameKind(const Model& model, const PreparedTake& take)
-{
-    const auto* spectra = take.asResponses();
-    const bool coil = spectra ? spectra->find(Quantity::voltage) != nullptr
-                              : take.measurement().input().quantity == Quantity::voltage;
-    if (model.electrical() == coil)
-        return;
-    throw Error(Error::Kind::data,
-                coil ? "The model has no coil, but the take drives one by a voltage; fit a model to this take."
-                     : "The model has a coil, but the take drives the cone by a force; fit a model to this take.");
-}
 
 /// Whether any parameter moved by more than its errors let it.
 bool drifted(const Drift& drift)
@@ -39,7 +28,7 @@ bool drifted(const Drift& drift)
 Adaptation adaptTo(const Model& model, const PreparedTake& take, const std::vector<std::string>& names,
                    const Progress& progress)
 {
-    requireSameKind(model, take);
+    requireSameKind(model, seenIn(take.either()));
     Adaptation result;
     if (const auto* spectra = take.asResponses()) {
         result.before = compare(model, *spectra);
@@ -47,7 +36,7 @@ Adaptation adaptTo(const Model& model, const PreparedTake& take, const std::vect
         result.after = compare(result.drift.model, *spectra);
         return result;
     }
-    auto record = makeRecord(take.measurement());
+    auto record = take.record();
     adapt(record, model);
     result.before = compare(model, record, {0, false}, progress.part(0.0, 0.1));
     result.drift = followDrift(model, record, names, {}, progress.part(0.1, 0.9));

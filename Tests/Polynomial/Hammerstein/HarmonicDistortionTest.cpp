@@ -3,6 +3,7 @@
 #include "Bench/Bench.h"
 #include "Bench/Draw.h"
 #include "Engine/Polynomial/Hammerstein/HarmonicDistortionFile.h"
+#include "Engine/Polynomial/Hammerstein/SweepModel.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Take/SweepTake.h"
 #include "Scratch.h"

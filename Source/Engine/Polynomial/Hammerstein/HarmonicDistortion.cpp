@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Polynomial/Hammerstein/HarmonicDistortion.h"
 
-#include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
-#include "Engine/Polynomial/InputOutputRecord.h"
+#include "Engine/Polynomial/Hammerstein/SweepBlocks.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
-#include "Engine/Take/SweepTake.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -21,77 +18,9 @@ namespace {
 using Eigen::Index;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double seldom = 4.6;           // times the mean of a power of noise: exceeded once in a hundred
-constexpr double takenOff = 0.01;        // of the drive's own harmonics, in power, that may be left
-constexpr double longestResponse = 0.5;  // s of a response
-constexpr double highestOfRate = 0.45;   // of the sample rate: where converters' filters begin
-constexpr double windowEdge = 0.02;      // s, see HammersteinSweepOptions
-
-/// A take of sweeps, cut into blocks.
-class SweepBlocks {
-public:
-    explicit SweepBlocks(const SweepTake& sweepTake) : take_(sweepTake.take)
-    {
-        if (!sweepTake.sweep)
-            throw Error(Error::Kind::data,
-                        "The take does not say which sweeps it was played with, so harmonics cannot be told apart by "
-                        "their time; play a plan of 'excursion excite --sweep', and import the recording with it.");
-        plan = *sweepTake.sweep;
-        std::string reason;
-        if (!plan.isValid(take_.sampleRate, &reason))
-            throw Error(Error::Kind::data, "The sweeps of the take make no sense. " + reason);
-        length = static_cast<std::size_t>(plan.blockSamples(take_.sampleRate));
-        if (static_cast<std::size_t>(plan.totalSamples(take_.sampleRate)) > take_.length())
-            throw Error(Error::Kind::data, "The take is shorter than its sweeps.");
-    }
-
-    std::span<const double> block(const Channel& channel, std::size_t level, int repeat) const
-    {
-        const auto index = level * static_cast<std::size_t>(plan.repeats) + static_cast<std::size_t>(repeat);
-        return std::span(channel.samples).subspan(index * length, length);
-    }
-
-    std::vector<double> mean(const Channel& channel, std::size_t level) const
-    {
-        std::vector<double> sum(length, 0.0);
-        for (int r = 0; r < plan.repeats; ++r) {
-            const auto one = block(channel, level, r);
-            for (std::size_t n = 0; n < length; ++n)
-                sum[n] += one[n] / plan.repeats;
-        }
-        return sum;
-    }
-
-    double rate() const { return take_.sampleRate; }
-
-    SweepExcitation plan;
-    std::size_t length = 0;
-
-private:
-    const Measurement& take_;
-};
-
-/// As many taps as the harmonics' distance allows, that of the first one that is not asked for included, and the
-/// silence, half of which is left to tell the noise.
-HammersteinSweepOptions cutting(const SweepBlocks& blocks, const HarmonicOptions& options)
-{
-    const auto L = blocks.plan.sweep(blocks.rate(), 0).rate();
-    const double apart = L * std::log((options.highest + 1.0) / options.highest);
-    double kept = std::min(apart, longestResponse);
-    if (blocks.plan.silence >= 8.0 * windowEdge)
-        kept = std::min(kept, blocks.plan.silence / 2.0);
-    if (kept < 3.0 * windowEdge)
-        throw Error(Error::Kind::data,
-                    "The sweeps are too short to keep " + std::to_string(options.highest)
-                        + " harmonics apart: the last two come " + figure(1e3 * apart, "%.0f")
-                        + " ms apart, and a response needs 60 ms; ask for fewer harmonics, or play longer sweeps.");
-    HammersteinSweepOptions result;
-    result.degree = options.highest;
-    result.edge = windowEdge;
-    const double taps = (kept - 2.0 * windowEdge) * blocks.rate() - 4.0;
-    result.length = static_cast<Index>(std::clamp(taps, 1.0, 65536.0));
-    return result;
-}
+constexpr double seldom = 4.6;          // times the mean of a power of noise: exceeded once in a hundred
+constexpr double takenOff = 0.01;       // of the drive's own harmonics, in power, that may be left
+constexpr double highestOfRate = 0.45;  // of the sample rate: where converters' filters begin
 
 /// The mean over three lines of an even grid and more, in bands of the relative width.
 std::vector<double> smoothedPower(const std::vector<double>& power, double octaves)
@@ -151,7 +80,7 @@ std::vector<double> silentPower(const SweepBlocks& blocks, const std::vector<dou
         return {};
     const auto silence = std::span(mean).subspan(begin);
     const double offset = std::accumulate(silence.begin(), silence.end(), 0.0) / static_cast<double>(silence.size());
-    const auto grid = 2 * (lines - 1), fade = static_cast<std::size_t>(std::ceil(windowEdge * blocks.rate()));
+    const auto grid = 2 * (lines - 1), fade = static_cast<std::size_t>(std::ceil(sweepWindowEdge * blocks.rate()));
     std::vector<double> power(lines, 0.0);
     std::size_t parts = 0;
     for (std::size_t at = 0; at + kept <= silence.size(); at += std::max<std::size_t>(1, kept / 2), ++parts) {
@@ -176,7 +105,7 @@ Answer answerOf(const SweepBlocks& blocks, const Channel& channel, std::size_t l
     answer.harmonics = harmonicResponses(sweep, mean, cut);
     const auto& frequency = answer.harmonics.frequency;
     const auto kept = static_cast<std::size_t>(cut.length)
-                      + 2 * static_cast<std::size_t>(std::ceil(windowEdge * blocks.rate()));
+                      + 2 * static_cast<std::size_t>(std::ceil(sweepWindowEdge * blocks.rate()));
     if (auto power = silentPower(blocks, mean, kept, frequency.size()); !power.empty()) {
         power[0] = 0.0;
         for (std::size_t k = 1; k < power.size(); ++k)
@@ -310,14 +239,14 @@ HarmonicDistortion harmonicDistortion(const SweepTake& sweepTake, const Harmonic
     const SweepBlocks blocks(sweepTake);
     const auto& take = sweepTake.take;
     const auto& input = take.input();
-    const auto cut = cutting(blocks, options);
+    const auto cut = cutting(blocks, options.highest);
     const auto sweep = blocks.plan.sweep(blocks.rate(), 0);
     auto ends = cut;
     ends.length = 1;  // the fundamental's end rings behind it, where no harmonic is
     auto band = knownBand(sweep, ends);
     HarmonicDistortion result;
     result.highest = options.highest;
-    result.response = static_cast<double>(cut.length) / blocks.rate() + 2.0 * windowEdge;
+    result.response = static_cast<double>(cut.length) / blocks.rate() + 2.0 * sweepWindowEdge;
     band.low += 1.0 / result.response;
     band.high -= 1.0 / result.response;
     if (!(band.low * 2.0 < band.high))
@@ -354,59 +283,6 @@ HarmonicDistortion harmonicDistortion(const SweepTake& sweepTake, const Harmonic
         result.remarks.emplace_back(
             "The silence behind the sweeps is too short to tell the noise, and none is repeated: what is shown may be "
             "noise. Play a second of silence, or each sweep twice.");
-    return result;
-}
-
-SweepModel sweepModel(const SweepTake& sweepTake, Quantity output, const HarmonicOptions& options)
-{
-    std::string reason;
-    if (!options.isValid(&reason))
-        throw Error(Error::Kind::usage, "A model of the sweeps cannot be made: " + reason + ".");
-    const SweepBlocks blocks(sweepTake);
-    const auto* channel = sweepTake.take.find(output);
-    const auto& input = sweepTake.take.input();
-    if (!channel || channel == &input)
-        throw Error(Error::Kind::data,
-                    "The take has no channel \"" + std::string(name(output)) + "\" beside its input.");
-    auto cut = cutting(blocks, options);
-    cut.length = std::clamp<Index>(cut.length, 128, 8192);
-    const auto levels = blocks.plan.levels.size();
-    const auto loudest = blocks.plan.sweep(blocks.rate(), levels - 1);
-    const auto band = knownBand(loudest, cut);
-    const auto timeOf = [&](double f) {
-        return static_cast<Index>(loudest.rate() * std::log(f / blocks.plan.bandLow) * blocks.rate());
-    };
-    const Index from = timeOf(options.highest * band.low + 1.0 / windowEdge), to = timeOf(band.high - 1.0 / windowEdge);
-    if (to <= from)
-        throw Error(Error::Kind::data, "The sweeps are too narrow, or too short, for a model of degree "
-                                           + std::to_string(options.highest)
-                                           + ": where all its branches are known there is no band left.");
-    const auto judged = [&](const Eigen::MatrixXd& y) -> Eigen::MatrixXd {
-        const Eigen::MatrixXd part = y.middleRows(from, to - from);
-        return part.array() - part.mean();
-    };
-    const auto column = [&](const std::vector<double>& x) -> Eigen::MatrixXd {
-        return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
-    };
-    const auto errorAt = [&](const ParallelHammerstein& model, std::size_t level) {
-        InputOutputRecord record;
-        record.output = judged(column(blocks.mean(*channel, level)));
-        return outputErrorDb({judged(simulate(model, column(blocks.mean(input, level))))}, {record});
-    };
-    SweepModel result;
-    result.level = blocks.plan.levels.back();
-    const auto answer = blocks.mean(*channel, levels - 1);
-    double least = std::numeric_limits<double>::infinity();
-    for (; cut.length >= 128; cut.length /= 2) {
-        auto model = identifyHammerstein(loudest, answer, cut).model;
-        const double error = errorAt(model, levels - 1);
-        if (error < least) {
-            least = error;
-            result.model = std::move(model);
-        }
-    }
-    for (std::size_t level = 0; level < levels; ++level)
-        result.errorDb.push_back(errorAt(result.model, level));
     return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Ranking/Linearization.h"
+#include "Engine/Ranking/Predistortion.h"
 
 #include "Engine/BlackBox/BlackBoxPredistorter.h"
 #include "Engine/BlackBox/ModelDocument.h"
@@ -50,10 +50,10 @@ double predistort(AnyPredistorter& predistorter, std::vector<double>& signal, do
     return seconds * rate / static_cast<double>(length);
 }
 
-RankedLinearization ofBox(const JsonField& document, double rate, const Progress& progress)
+RankedPredistortion ofBox(const JsonField& document, double rate, const Progress& progress)
 {
     const PlayedBox played(blackBoxOf(modelDocumentFrom(document)), progress);
-    RankedLinearization told;
+    RankedPredistortion told;
     if (!played.rehearsal) {
         told.trouble = played.refusal;
         return told;
@@ -81,9 +81,9 @@ Eigen::VectorXd lastPeriod(const Model& model, const std::vector<double>& volts,
     return last;
 }
 
-RankedLinearization ofDriver(const JsonField& document, const std::string& output, double rate)
+RankedPredistortion ofDriver(const JsonField& document, const std::string& output, double rate)
 {
-    RankedLinearization told;
+    RankedPredistortion told;
     const auto model = modelFromJson(document);
     if (output == "current") {
         told.trouble = "A driver is inverted for its motion, and then its current is less linear than before: "
@@ -113,10 +113,10 @@ double powerOf(double db) { return std::pow(10.0, db / 10.0); }
 
 }  // namespace
 
-RankedLinearization linearizationOf(const RankedModel& model, const std::string& output, double sampleRate,
+RankedPredistortion predistortionOf(const RankedModel& model, const std::string& output, double sampleRate,
                                     std::optional<double> noiseDb, const Progress& progress)
 {
-    RankedLinearization told;
+    RankedPredistortion told;
     try {
         if (!model.stable)
             throw Error(Error::Kind::data, "It is not stable.");

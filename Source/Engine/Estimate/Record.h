@@ -60,23 +60,11 @@ struct Record {
     }
 };
 
-struct RecordOptions {
-    /// Keep one realization (or the last third of an aperiodic take) for validation: the one with the smallest
-    /// excursion, as no model is valid where it was never measured.
-    bool holdOut = true;
-    double windowSeconds = 0.5;   ///< for aperiodic sections, at least 2048 samples
-    double leadInSeconds = 0.25;  ///< before an aperiodic window, at least 1024 samples
-    /// The smallest error assumed for the weight of a line, relative to the channel's rms: sensors and integration are
-    /// not more accurate. -105 dB.
-    double relativeFloor = 5.6e-6;
+/// Whether the sections of a record are periods, compared as a whole.
+bool hasPeriods(const Record&);
 
-    bool isValid(std::string* reason) const;
-};
-
-/// How often a measured motion must be integrated to give displacement; nothing for other quantities.
-std::optional<int> integrationsToDisplacement(Quantity);
-
-/// Throws Error (data) if the take has no output channel or is too short.
-Record makeRecord(const Measurement&, const RecordOptions& = {});
+/// Indices of the estimation sections, and of those held out (all sections if none is held out).
+std::vector<std::size_t> estimationSections(const Record&);
+std::vector<std::size_t> validationSections(const Record&);
 
 }  // namespace excursion

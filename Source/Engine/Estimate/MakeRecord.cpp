@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Loudspeaker/Record.h"
+#include "Engine/Estimate/MakeRecord.h"
 
 #include "Engine/Error.h"
-#include "Engine/Estimate/Periods.h"
 #include "Engine/Estimate/Wander.h"
 #include "Engine/Signal/Fft.h"
-#include "Engine/Take/FindExcitation.h"
+#include "Engine/Take/Motion.h"
 #include "Engine/Validity.h"
 
 #include <algorithm>
@@ -94,11 +93,11 @@ void silenceNoise(std::vector<double>& period, const std::vector<double>& varian
 }
 
 /// Peaks upwards and downwards of an averaged period integrated n times within the excited band, in any unit.
-std::pair<double, double> integratedPeaks(const Measurement& take, const Channel& channel, int level, int realization,
-                                          int integrations)
+std::pair<double, double> integratedPeaks(const AveragedPeriods& averages, const Channel& channel, int level,
+                                          int realization, int integrations)
 {
-    const auto& e = *take.excitation;
-    auto spectrum = fft(averagePeriod(take, channel, level, realization));
+    const auto& e = averages.excitation();
+    auto spectrum = fft(averages.inTime(channel, level, realization));
     const auto first = static_cast<std::size_t>(e.lines.front()), last = static_cast<std::size_t>(e.lines.back());
     for (std::size_t k = 0; k < spectrum.size(); ++k)
         spectrum[k] = k >= first && k <= last
@@ -112,9 +111,10 @@ std::pair<double, double> integratedPeaks(const Measurement& take, const Channel
 /// The realization that goes least far at the loudest level: of the peaks of displacement, velocity and current to
 /// either side (what the channels tell of them; the input's low frequencies when they tell nothing of the cone), each
 /// relative to where the others go, its largest is the lowest.
-int quietestRealization(const Measurement& take)
+int quietestRealization(const AveragedPeriods& averages)
 {
-    const auto& e = *take.excitation;
+    const auto& take = averages.take();
+    const auto& e = averages.excitation();
     const int loudest = static_cast<int>(e.levels.size()) - 1;
     std::vector<std::pair<const Channel*, int>> motions;
     for (const auto& channel : take.channels)
@@ -131,7 +131,7 @@ int quietestRealization(const Measurement& take)
     for (const auto& [channel, integrations] : motions) {
         std::vector<double> up, down;
         for (int realization = 0; realization < e.realizations; ++realization) {
-            const auto [high, low] = integratedPeaks(take, *channel, loudest, realization, integrations);
+            const auto [high, low] = integratedPeaks(averages, *channel, loudest, realization, integrations);
             up.push_back(high);
             down.push_back(low);
         }
@@ -174,19 +174,21 @@ void thinOut(Section& section, std::size_t factor)
         variance *= share * share;
 }
 
-void addPeriodicSections(const Measurement& take, const RecordOptions& options, std::size_t factor, Record& record)
+void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& options, std::size_t factor,
+                         Record& record)
 {
-    const auto& e = *take.excitation;
+    const auto& take = averages.take();
+    const auto& e = averages.excitation();
     record.levels = e.levels;
     record.noiseKnown = e.periods > 1;
-    const int held = options.holdOut && e.realizations > 1 ? quietestRealization(take) : -1;
+    const int held = options.holdOut && e.realizations > 1 ? quietestRealization(averages) : -1;
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
-        const auto scatter = periodNoise(take, take.input(), level).variance;
+        const auto& scatter = averages.noise(take.input(), level).variance;
         const auto inputVariance = scatter.empty() ? scatter : smoothVariance(scatter, e.lines);
         std::vector<std::vector<double>> variance;
         for (const auto quantity : record.channels) {
-            auto noise = periodNoise(take, *take.find(quantity), level).variance;
+            const auto& noise = averages.noise(*take.find(quantity), level).variance;
             variance.push_back(noise.empty() ? noise : smoothVariance(noise, e.lines));
         }
         for (int realization = 0; realization < e.realizations; ++realization) {
@@ -200,15 +202,14 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
             section.begin = period * played * (level * e.realizations + realization);
             section.end = section.begin + period * played;
             section.middle = section.end - 0.5 * period * e.periods;
-            section.input = averagePeriod(take, take.input(), level, realization);
+            section.input = averages.inTime(take.input(), level, realization);
             section.window = section.input.size();
             section.excited = e.lines;
             section.inputVariance = inputVariance;
             if (!inputVariance.empty())
                 silenceNoise(section.input, inputVariance, e.lines);
             for (std::size_t c = 0; c < record.channels.size(); ++c) {
-                section.measured.push_back(
-                    fft(averagePeriod(take, *take.find(record.channels[c]), level, realization)));
+                section.measured.push_back(fft(averages.inTime(*take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
             }
             if (factor > 1)
@@ -217,7 +218,7 @@ void addPeriodicSections(const Measurement& take, const RecordOptions& options, 
         }
     }
     for (const auto quantity : record.channels)
-        record.wanderDb.push_back(wanderDb(take, *take.find(quantity)));
+        record.wanderDb.push_back(wanderDb(averages, *take.find(quantity)));
     record.leadIn = static_cast<std::size_t>(e.period) / factor
                     * static_cast<std::size_t>(std::max(1, e.settlePeriods));
 }
@@ -256,52 +257,6 @@ void addAperiodicSections(const Measurement& take, const RecordOptions& options,
 
 }  // namespace
 
-std::optional<int> integrationsToDisplacement(Quantity quantity)
-{
-    switch (quantity) {
-    case Quantity::displacement: return 0;
-    case Quantity::velocity: return 1;
-    case Quantity::acceleration: return 2;
-    default: return std::nullopt;
-    }
-}
-
-std::optional<std::size_t> Record::channelIndex(Quantity quantity) const
-{
-    const auto found = std::find(channels.begin(), channels.end(), quantity);
-    if (found == channels.end())
-        return std::nullopt;
-    return static_cast<std::size_t>(found - channels.begin());
-}
-
-std::pair<std::size_t, std::size_t> Record::lineRange(const Section& section) const
-{
-    const double resolution = sampleRate / static_cast<double>(section.window);
-    const auto first = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(lowFrequency / resolution)));
-    const auto last = std::min<std::size_t>(section.window / 2 - 1,
-                                            static_cast<std::size_t>(highFrequency / resolution));
-    return {first, std::max(first, last)};
-}
-
-std::size_t Record::driveBegin(const Section& section, std::size_t atLeast) const
-{
-    const std::size_t N = section.input.size();
-    return section.periodic ? (N - std::max(leadIn, atLeast) % N) % N : 0;
-}
-
-std::vector<double> Record::drive(const Section& section, std::size_t atLeast) const
-{
-    if (!section.periodic)
-        return section.input;
-    const auto& period = section.input;
-    const std::size_t N = period.size();
-    const std::size_t begin = driveBegin(section, atLeast);
-    std::vector<double> samples(std::max(leadIn, atLeast) + N);
-    for (std::size_t n = 0; n < samples.size(); ++n)
-        samples[n] = period[(n + begin) % N];
-    return samples;
-}
-
 bool RecordOptions::isValid(std::string* reason) const
 {
     if (!(windowSeconds > 0.0) || !(leadInSeconds >= 0.0))
@@ -311,8 +266,9 @@ bool RecordOptions::isValid(std::string* reason) const
     return true;
 }
 
-Record makeRecord(const Measurement& take, const RecordOptions& options)
+Record makeRecord(const AveragedPeriods& averages, const RecordOptions& options)
 {
+    const auto& take = averages.take();
     std::string reason;
     if (!options.isValid(&reason))
         throw Error(Error::Kind::usage, "The take cannot be prepared: " + reason + ".");
@@ -333,21 +289,13 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
                     "displacement, velocity, acceleration or pressure.");
 
     const bool periodic = take.excitation && take.excitation->settlePeriods > 0;
-    if (periodic && take.excitation->lines.empty()) {
-        Measurement completed = take;
-        completeExcitation(completed);
-        excitedLines(completed);  // refuses a take in which nothing repeats
-        return makeRecord(completed, options);
-    }
     record.bandLow = 0.0;
     record.bandHigh = trustedBand * take.sampleRate;
     if (periodic) {
-        periodicExcitation(take);  // checks the structure against the length
+        const auto& lines = averages.lines();  // refuses a record that is too short, or in which nothing repeats
         const double resolution = take.sampleRate / take.excitation->period;
-        if (!take.excitation->lines.empty()) {
-            record.bandLow = resolution * take.excitation->lines.front();
-            record.bandHigh = resolution * take.excitation->lines.back();
-        }
+        record.bandLow = resolution * lines.front();
+        record.bandHigh = resolution * lines.back();
         // Above the distortion's band there is nothing to compare, and fewer samples are simulated sooner.
         std::size_t factor = 1;
         while (static_cast<std::size_t>(take.excitation->period) % (2 * factor) == 0
@@ -355,7 +303,7 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
                       <= take.sampleRate / static_cast<double>(2 * factor))
             factor *= 2;
         record.sampleRate = take.sampleRate / static_cast<double>(factor);
-        addPeriodicSections(take, options, factor, record);
+        addPeriodicSections(averages, options, factor, record);
     } else {
         record.wanderDb.resize(record.channels.size());
         addAperiodicSections(take, options, record);
@@ -364,6 +312,11 @@ Record makeRecord(const Measurement& take, const RecordOptions& options)
         record.bandLow = std::min(10.0, 0.01 * take.sampleRate);
     record.highFrequency = std::min(trustedBand * record.sampleRate, distortionBand * record.bandHigh);
     return record;
+}
+
+Record makeRecord(const Measurement& take, const RecordOptions& options)
+{
+    return makeRecord(AveragedPeriods(take), options);
 }
 
 }  // namespace excursion

@@ -17,9 +17,9 @@ namespace excursion {
 /// as an error that is the noise's could still be a tenth of it.
 /// @param model  a fitted one with its document, stimulus and errors
 /// @param output quantity, "displacement"
-/// @returns a linearization with trouble, one sentence, where the class cannot be inverted, where less than 3 dB
+/// @returns one with trouble, one sentence, where the class cannot be inverted, where less than 3 dB
 /// would go, or where what it is to make linear is not what it makes linear. Throws Error (cancelled).
-RankedLinearization linearizationOf(const RankedModel& model, const std::string& output, double sampleRate,
+RankedPredistortion predistortionOf(const RankedModel& model, const std::string& output, double sampleRate,
                                     std::optional<double> noiseDb, const Progress& = {});
 
 }  // namespace excursion
