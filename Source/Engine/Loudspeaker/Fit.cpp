@@ -296,19 +296,17 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     run.substeps = std::max(stableSubsteps(model, record.sampleRate),
                             options.substeps > 0 ? options.substeps
                                                  : substepsFor(model, record, options.simulationTolerance));
-    if (options.exactGradient || options.keptGradient)
+    if (options.exactGradient)
         run.gradientSubsteps = run.substeps;
     const bool slopesFed = options.fedGradient && hasPeriods(record);
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
     std::vector<KnownSlopes> known(sections.size());
-    std::vector<SectionSlopes> kept(sections.size());
     auto summary = search(
         model,
         [&](const std::vector<Eigen::Index>& active, bool gradient) {
             run.gradient = gradient;
             return slopesFed ? playedError(model, record, sections, motions, active, run, progress, &known)
-                             : outputError(model, record, sections, active, run, progress,
-                                           options.keptGradient && gradient ? &kept : nullptr);
+                             : outputError(model, record, sections, active, run, progress);
         },
         record.noiseKnown, options, progress);
     summary.substeps = run.substeps;

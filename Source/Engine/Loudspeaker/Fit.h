@@ -18,9 +18,6 @@ struct FitOptions {
     unsigned threads = 2;
     /// sensitivities as fine as the simulation: slower iterations, but fewer if some directions are poorly determined
     bool exactGradient = false;
-    /// sensitivities where the search begins, as fine as the simulation, for all of its steps: near the least error
-    /// they hardly change, and an iteration takes no longer than a simulation
-    bool keptGradient = false;
     /// sensitivities of fed laws around an exact simulation (playedError()): iterations take a tenth of the time, but a
     /// few more are needed
     bool fedGradient = false;

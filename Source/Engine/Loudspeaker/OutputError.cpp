@@ -28,15 +28,14 @@ class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section,
                const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, std::size_t leadIn,
-               const StartState& from, SectionSlopes* kept)
+               const StartState& from)
         : model_(model),
           record_(record),
           section_(section),
           residual_(record, section),
           active_(active),
           options_(options),
-          from_(from),
-          kept_(kept)
+          from_(from)
     {
         const auto drive = record.drive(section, leadIn);
         drive_.emplace(drive, record.sampleRate, options.substeps);
@@ -65,16 +64,10 @@ public:
             fit.channels.emplace_back(residual[c]);
         }
         if (options_.gradient && columns > 0) {
-            SectionSlopes found;
-            auto& J = kept_ ? *kept_ : found;
-            if (J.empty()) {
-                J.assign(channels, Eigen::MatrixXd::Zero(residual_.rows(), columns));
-                fit.finite = sensitivities(sensors, J);
-                if (!fit.finite) {
-                    J.clear();
-                    return fit;
-                }
-            }
+            std::vector<Eigen::MatrixXd> J(channels, Eigen::MatrixXd::Zero(residual_.rows(), columns));
+            fit.finite = sensitivities(sensors, J);
+            if (!fit.finite)
+                return fit;
             for (std::size_t c = 0; c < channels; ++c)
                 fit.channels[c].differentiateBy(J[c], residual[c]);
         }
@@ -84,7 +77,7 @@ public:
     }
 
 private:
-    bool sensitivities(Sensors& sensors, SectionSlopes& J) const
+    bool sensitivities(Sensors& sensors, std::vector<Eigen::MatrixXd>& J) const
     {
         std::vector<Trace> traces;  // of all channels, each once
         for (const auto quantity : record_.channels)
@@ -126,7 +119,6 @@ private:
     const std::vector<Eigen::Index>& active_;
     const OutputErrorOptions& options_;
     const StartState& from_;
-    SectionSlopes* kept_;
     std::optional<Drive> drive_, gradientDrive_;
     std::size_t start_ = 0;
 };
@@ -157,26 +149,17 @@ std::size_t settlingTime(const Model& model, const Record& record)
 
 std::vector<SectionFit> outputError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                                     const std::vector<Eigen::Index>& active, const OutputErrorOptions& wanted,
-                                    const Progress& progress, std::vector<SectionSlopes>* kept)
+                                    const Progress& progress)
 {
     const auto leadIn = settlingTime(model, record);
     const int stable = stableSubsteps(model, record.sampleRate);
     OutputErrorOptions options = wanted;
     options.substeps = std::max(wanted.substeps, stable);
     options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
-    const auto P = static_cast<Eigen::Index>(active.size());
-    const bool known = kept && std::all_of(kept->begin(), kept->end(), [P](const SectionSlopes& J) {
-                           return !J.empty() && J.front().cols() == P;
-                       });
-    if (kept && !known)
-        kept->assign(sections.size(), {});
-    const auto from = startStates(model, record, sections, leadIn, options.gradient && P > 0 && !known,
-                                  options.threads);
+    const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
-        fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n],
-                             kept ? &(*kept)[n] : nullptr)
-                      .run();
+        fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
         return fits[n].finite;
     });
     return fits;

@@ -38,19 +38,13 @@ struct OutputErrorOptions {
 /// periods. With hysteresis at least two periods, in which the cone goes everywhere twice.
 std::size_t settlingTime(const Model&, const Record&);
 
-/// Derivatives of a section's residuals, one matrix a channel: rows of Residual x active parameters. Empty until they
-/// are found.
-using SectionSlopes = std::vector<Eigen::MatrixXd>;
-
 /// Simulates the model on the sections and compares (output error). Sections run in parallel; the result does not
 /// depend on the number of threads.
 /// @param sections  indices into record.sections
 /// @param active    indices of the parameters to differentiate by, in the order of parametersOf(); N and g follow it
-/// @param kept      if given, one per section: slopes that are found once and then used for other parameters nearby, as
-///                  they take most of the time
 std::vector<SectionFit> outputError(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                     const std::vector<Eigen::Index>& active, const OutputErrorOptions&,
-                                    const Progress& = {}, std::vector<SectionSlopes>* kept = nullptr);
+                                    const Progress& = {});
 
 /// All sections and channels together; none if one of them is not finite.
 std::optional<NormalEquations> sumOf(const std::vector<SectionFit>&);
