@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Diagnosis/CreepingTake.h"
+
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/Trial.h"
@@ -27,24 +29,10 @@ TEST_CASE("A law that is tried while others are missing leaves the coil an induc
 
 TEST_CASE("Creep that has shrunk to a single relaxation becomes the chain that it is", "[diagnosis]")
 {
-    bench::BenchSetup setup;
-    setup.excitation.period = 4096;
-    setup.excitation.periods = 2;
-    setup.excitation.realizations = 2;
-    setup.excitation.levels = {2.0};
-    setup.excitation.bandLow = 20.0;
-    setup.excitation.bandHigh = 6000.0;
-    setup.noiseDb = -70.0;
-    bench::Loudspeaker truth;
-    bench::Creep creep;
-    creep.family = bench::Creep::Family::chain;
-    creep.cells = {{0.014, 10.0}, {0.034, 23.0}, {0.037, 119.0}, {0.022, 666.0}, {0.010, 3320.0}};
-    truth.creep = creep;
-    auto record = makeRecord(bench::measure(truth, setup));
-    auto model = startModel(record);
-    adapt(record, model);
+    const CreepingTake creeping;
+    const auto& record = creeping.record;
+    auto model = creeping.base;
     const auto sections = estimationSections(record);
-    fit(model, record, sections);
     model = withEffect(model, effectNamed("creep"), visitedRange(model, record), 1);
     auto& own = model.components.back().parameters;
     REQUIRE(own[2].name == "width");

@@ -241,36 +241,6 @@ TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own
     }
 }
 
-TEST_CASE("With the slopes of its start a fit arrives where those of every place lead", "[fit]")
-{
-    bench::Loudspeaker truth;
-    const auto record = [&] {
-        auto made = makeRecord(bench::measure(truth, smallSetup()));
-        adapt(made, startModel(made));
-        return made;
-    }();
-    const auto sections = estimationSections(record);
-    auto model = startModel(record);
-    REQUIRE(fit(model, record, sections, {{3, 1e-2}}).usable());
-    for (const auto* name : {"Re", "Bl", "K", "Rms"})
-        for (auto& p : model.components.front().parameters)
-            if (p.name == name)
-                p.value *= 1.002;
-    auto other = model;
-    FitOptions kept, exact;
-    kept.search = exact.search = {20, 1e-9};
-    kept.keptGradient = exact.exactGradient = true;
-    const auto byKept = fit(model, record, sections, kept), byExact = fit(other, record, sections, exact);
-    REQUIRE(byKept.usable());
-    CHECK(byKept.initialCost > 1.5 * byKept.finalCost);
-    CHECK(byKept.finalCost == Approx(byExact.finalCost).epsilon(1e-6));
-    for (const auto* name : {"Re", "Bl", "K", "Rms"}) {
-        const auto& p = model.baseParameter(name);
-        CHECK(std::abs(p.value - other.baseParameter(name).value) < 0.02 * p.standardError);
-        CHECK(p.standardError == Approx(other.baseParameter(name).standardError).epsilon(0.02));
-    }
-}
-
 TEST_CASE("The power of an error is judged channel by channel, over all sections", "[fit]")
 {
     const auto section = [](ErrorPower first, ErrorPower second) {

@@ -242,31 +242,3 @@ TEST_CASE("A prior pulls a parameter towards zero as one more measurement would"
     CHECK(sum.N(6, 6) == Approx(1.0 / 100.0));
     CHECK(sum.N.topLeftCorner(6, 6).isZero());
 }
-
-TEST_CASE("Slopes that are kept are those of the place where they were found", "[output-error]")
-{
-    const auto model = bent();
-    const auto record = someRecord();
-    const auto active = freeParameters(model);
-    OutputErrorOptions options;
-    std::vector<SectionSlopes> kept(2);
-    const auto fresh = outputError(model, record, {0, 1}, active, options);
-    const auto first = outputError(model, record, {0, 1}, active, options, {}, &kept);
-    auto moved = model;
-    moved.components.front().parameters.front().value *= 1.05;
-    const auto next = outputError(moved, record, {0, 1}, active, options, {}, &kept);
-    const auto there = outputError(moved, record, {0, 1}, {}, options);
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t c = 0; c < record.channels.size(); ++c) {
-            REQUIRE(kept[s][c].cols() == static_cast<Eigen::Index>(active.size()));
-            CHECK(first[s].channels[c].N.isApprox(fresh[s].channels[c].N, 1e-12));
-            CHECK(next[s].channels[c].N.isApprox(fresh[s].channels[c].N, 1e-12));
-            CHECK(next[s].channels[c].cost == Approx(there[s].channels[c].cost).epsilon(1e-12));
-            CHECK_FALSE(next[s].channels[c].g.isApprox(first[s].channels[c].g, 1e-6));
-        }
-    // Slopes of other parameters are found anew.
-    const std::vector<Eigen::Index> few(active.begin(), active.begin() + 2);
-    const auto fewer = outputError(moved, record, {0, 1}, few, options, {}, &kept);
-    CHECK(kept[0][0].cols() == 2);
-    CHECK(fewer[0].channels[0].N.rows() == 2);
-}

@@ -68,7 +68,7 @@ Model newestScaled(Model model, double factor)
 
 /// Shapes of a linear effect that are next to nothing, but not from the start, at a share of where they start. Whether
 /// there are any.
-bool wakeShapes(Component& component)
+bool wakeShapesOf(Component& component)
 {
     constexpr double nothing = 0.05, share = 0.15;
     bool any = false;
@@ -213,34 +213,26 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto near = [&](const FitSummary& s) {
         return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
     };
-    enum class Slopes { fed, kept, exact };
-    const auto stage = [&](int iterations, double tolerance, Slopes slopes, double from, double to) {
+    const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
         auto chosen = options;
         chosen.search = {iterations, tolerance};
-        chosen.fedGradient = slopes == Slopes::fed && hasPeriods(record);
-        chosen.keptGradient = slopes == Slopes::kept;
-        chosen.exactGradient = slopes == Slopes::exact;
+        chosen.fedGradient = fedGradient && hasPeriods(record);
+        chosen.exactGradient = !fedGradient;
         return fit(model, record, sections, chosen, progress.part(from, to));
     };
-    auto summary = stage(15, 1e-3, Slopes::fed, 0.0, 0.2);
+    auto summary = stage(15, 1e-3, true, 0.0, 0.2);
     if (summary.usable() && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
-        summary = stage(15, 1e-3, Slopes::exact, 0.2, 0.3);
+        summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
-    // Along a valley at the noise fed slopes fall by next to nothing for long. The last word has the simulation's own
-    // slopes, of which come the standard errors, too.
-    constexpr int mostRounds = 4;
-    constexpr double moved = 2e-3;
-    for (int n = 0; n < mostRounds; ++n) {
-        summary = stage(10, 5e-6, Slopes::kept, 0.3 + 0.1 * n, 0.4 + 0.1 * n);
-        if (!summary.usable() || summary.initialCost - summary.finalCost < moved * summary.finalCost)
-            break;
-    }
+    summary = stage(30, 5e-7, true, 0.3, 0.5);
+    // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
+    // noise the cost falls by next to nothing for long.
     if (near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean)
-        return summary;
+        return stage(1, 5e-5, false, 0.5, 1.0);
     if (!record.noiseKnown)
-        return stage(options.search.maximumIterations, options.search.costTolerance, Slopes::exact, 0.7, 1.0);
-    return toTheEnd ? stage(30, 1e-4, Slopes::exact, 0.7, 1.0) : stage(15, 1e-3, Slopes::exact, 0.7, 1.0);
+        return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
+    return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);
 }
 
 bool findAnew(Model& model, const LinearResponses& still, const std::function<bool(const Component&)>& which,
@@ -263,7 +255,7 @@ bool wakeShapes(Model& model, const Record& record, const std::vector<std::size_
     return changeEach(
         model,
         [&](Model& anew, std::size_t k) {
-            const bool any = wakeShapes(anew.components[k]);
+            const bool any = wakeShapesOf(anew.components[k]);
             if (any && std::isinf(now))
                 now = quickCost(model, record, sections, options);
             return any;

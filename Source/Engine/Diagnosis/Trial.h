@@ -48,12 +48,12 @@ bool findAnew(Model&, const LinearResponses& still, const std::function<bool(con
               const std::function<bool(Model& anew)>& keeps);
 
 /// Brings shapes of linear effects back on trial that have shrunk to nothing while laws were missing: where all cells
-/// of a relaxation are one every slope by its shape is zero, and no search leaves that place. True if that leaves less;
-/// the model then had a quick fit.
+/// of a relaxation are one every slope by its shape is zero, and no search leaves that place. True if that leaves
+/// 0.2 % less; the model then had a quick fit.
 bool wakeShapes(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 
 /// Wakes shapes, and then searches again for linear effects that have several parts, as newly known effects may have
-/// uncovered more parts. True if something leaves less; the model then had a quick fit. Does nothing for a record
+/// uncovered more parts. True if something leaves 5 % less; the model then had a quick fit. Does nothing for a record
 /// without periods.
 bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
 

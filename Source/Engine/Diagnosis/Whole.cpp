@@ -38,7 +38,7 @@ Model withBacked(const Model& model, const Record& record, const std::vector<Sco
     return fuller;
 }
 
-bool isNeeded(const Removal& tried) { return tried.vote.uniqueDb > hardlyNeeded; }
+bool isNeeded(const Removal& removal) { return removal.vote.uniqueDb > hardlyNeeded; }
 
 /// The effects that rounds of voting put into a base, and what the last of them was fitted to.
 Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
@@ -63,7 +63,7 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
         search.chooseResiduals(fuller);
         now = search.left(whole.model);
         auto then = search.left(fuller);
-        if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes in the end
+        if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes before the refinement
             search.findPartsAnew(fuller);
             WholeSearch::Removals tried;
             search.takeOut(fuller, false, isNeeded, tried);
@@ -133,7 +133,7 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     WholeSearch search(base, record, options);
     auto found = grownAndRefined(base, record, search, options, progress.part(0.0, 0.4));
     auto& [whole, tried] = found;
-    if (const auto loud = fittedToLoudest(base, record, options); loud && !isNear(whole, record)) {
+    if (const auto loud = isNear(whole, record) ? std::nullopt : fittedToLoudest(base, record, options)) {
         auto other = grownAndRefined(*loud, record, search, options, progress.part(0.4, 0.8));
         search.chooseResiduals(whole.model);
         if (other.whole.fit.usable()
@@ -152,8 +152,10 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         }
         search.chooseResiduals(whole.model);
     }
-    if (search.restImplausibleParts(whole.model))
+    if (search.restImplausibleParts(whole.model)) {
         whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.87));
+        tried.clear();
+    }
     const auto keeps = [&](const Removal& one) {
         const bool unknownLeft = !record.noiseKnown || whole.fit.chiSquaredPerValue > nearNoise;
         if (!one.plausible)
@@ -162,12 +164,15 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
                            : one.vote.backs() || whole.fit.chiSquaredPerValue * one.times > atNoise || !one.staysNoise;
     };
     constexpr int rounds = 3;  // what has gone may have held up another one
-    for (int n = 0; search.takeOut(whole.model, true, keeps, tried); ++n) {
-        whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
-        if (n + 1 < rounds)
-            continue;
-        tried = search.tryWithout(whole.model, false);
-        break;
+    for (int n = 0; n <= rounds; ++n) {
+        if (!search.left(whole.model).isNoise())
+            tried.clear();  // while something is missing, an effect may only seem to be missed beside others
+        if (n == rounds)
+            tried = search.tryWithout(whole.model, false);
+        else if (search.takeOut(whole.model, true, keeps, tried))
+            whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
+        else
+            break;
     }
     for (const auto& [effect, one] : tried)
         whole.votes[effect] = one.vote;

@@ -12,15 +12,17 @@ namespace excursion {
 
 /// All effects of the catalogue that a take shows, found together.
 struct Whole {
-    Model model;                        ///< the base and the needed effects, refined
-    FitSummary fit;                     ///< not usable if nothing was found
-    std::map<std::string, Vote> votes;  ///< of the model, on each effect that the base does not have
+    Model model;     ///< the base and the needed effects, refined
+    FitSummary fit;  ///< not usable if nothing was found
+    /// of the model, on each effect that the base does not have; or of a fuller one that missed it by 6 dB or more
+    std::map<std::string, Vote> votes;
 };
 
 /// Fits all effects of the catalogue together to a record with periods. In each round, all effects that a vote of the
 /// whole catalogue backs are added at once, everything is fitted quickly, and effects that the others can replace are
-/// removed. A later round may add them again. If this does not end at the noise, another search begins from the linear
-/// model of the loudest level. If something is left that no effect explains, only effects that stand alone stay.
+/// removed. A later round may add them again. If this, refined, does not come near the noise, another search begins
+/// from the linear model of the loudest level. If something is left that no effect explains, only effects that stand
+/// alone stay.
 /// @param base  fitted; its effects stay
 Whole fitWhole(const Model& base, const Record&, const FitOptions&, const Progress& = {});
 

@@ -225,21 +225,37 @@ bool WholeSearch::restImplausibleParts(Model& model) const
 std::set<std::string> WholeSearch::takeOutImplausible(Model& model) const
 {
     auto leaner = model;
-    const bool rested = restImplausibleParts(leaner);
-    std::set<std::string> gone;
-    std::set<std::string> anew;
+    if (restImplausibleParts(leaner)) {
+        if (!fit(leaner, brief).usable())
+            return {};
+        model = leaner;
+    }
+    const auto strange = strangeIn(leaner);
+    if (left(leaner).isNoise())
+        return takeOutOneByOne(model);
+    for (const auto& effect : strange)
+        leaner = withoutEffect(leaner, effect);
+    if (strange.empty() || !fit(leaner, brief).usable())
+        return {};
+    model = std::move(leaner);
+    return strange;
+}
+
+std::set<std::string> WholeSearch::takeOutOneByOne(Model& model) const
+{
+    auto leaner = model;
+    std::set<std::string> gone, anew;
     for (auto strange = strangeIn(leaner); !strange.empty(); strange = strangeIn(leaner)) {
         auto next = withoutOneOf(strange, leaner);
         if (!next || !fit(next->model, brief).usable())
-            return {};
+            break;
         if (anew.insert(next->effect).second && bringBack(leaner, next->effect, left(next->model)))
             continue;
         gone.insert(next->effect);
         leaner = std::move(next->model);
     }
-    if (gone.empty() && anew.empty() && (!rested || !fit(leaner, brief).usable()))
-        return {};
-    model = std::move(leaner);
+    if (!anew.empty())
+        model = std::move(leaner);
     return gone;
 }
 

@@ -74,14 +74,15 @@ public:
     using Removals = std::map<std::string, Removal>;
     /// Every effect of a model but those of the base. By derivatives it says little of an effect that has become a
     /// large part of the linear model, so one that seems to be needed little is really taken out.
-    /// @param thorough  what seems to be missed is fitted with a simulation's own slopes before that is believed: where
-    ///                  laws rule the motion those of fed laws lead no further than near the least error
+    /// @param thorough  what seems to be missed, but by less than 6 dB, is fitted with a simulation's own slopes before
+    ///                  that is believed: where laws rule the motion those of fed laws lead no further than near the
+    ///                  least error
     /// @param before    of a model that had these effects and others: what it missed clearly is not tried again
     Removals tryWithout(const Model&, bool thorough, const Removals& before = {}) const;
 
     /// Takes the effects out of which the others do not lose what `keeps` asks for, the least needed first. Whether
     /// there were any.
-    /// @param tried  as for tryWithout(); and what was found of them all
+    /// @param tried  before as for tryWithout(), after what was found of each effect
     bool takeOut(Model&, bool thorough, const std::function<bool(const Removal&)>& keeps, Removals& tried) const;
 
     /// Puts parts of effects at rest that stand for something else, where others of their effect do not (see
@@ -89,9 +90,9 @@ public:
     bool restImplausibleParts(Model&) const;
 
     /// Takes out what stands for something else, and fits the rest; returns the effects that went. Of those that have
-    /// plausible parts only the others go. The effects go one at a time, the least missed first: one that stands for
-    /// something else bends others, too, and these come right again without it.
-    /// A linear effect that is much missed is found anew before it would go.
+    /// plausible parts only the others go. Where only noise is left they go one at a time, the least missed first: one
+    /// that stands for something else bends others, too, and these come right without it. A linear effect that is much
+    /// missed is found anew there before it would go.
     std::set<std::string> takeOutImplausible(Model&) const;
 
 private:
@@ -104,6 +105,7 @@ private:
     FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
     FitSummary fitExactly(Model&) const;
     std::set<std::string> strangeIn(const Model&) const;
+    std::set<std::string> takeOutOneByOne(Model&) const;
     std::optional<Leaner> withoutOneOf(const std::set<std::string>& effects, const Model&) const;
     bool bringBack(Model&, const std::string& effect, const Left& without) const;
     bool reshape(Model&, const Left& now, const Left& enough, const LinearResponses& still) const;

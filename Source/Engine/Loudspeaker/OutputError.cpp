@@ -156,7 +156,8 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     OutputErrorOptions options = wanted;
     options.substeps = std::max(wanted.substeps, stable);
     options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
-    const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty());
+    const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty(),
+                                  options.threads);
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
         fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
