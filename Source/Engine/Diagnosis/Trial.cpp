@@ -6,9 +6,9 @@
 #include "Engine/Loudspeaker/OutputError.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace excursion {
 namespace {
@@ -56,14 +56,21 @@ bool paysForItself(const Model& higher, const Model& model, const Record& record
     return now->cost - then->cost > priceOfCoefficient * unit * more;
 }
 
-/// Of a step that is too long for the simulation.
-constexpr std::array shares {1.0, 0.5, 0.2, 0.05};
-
 /// The strengths of the newest component times a factor.
 Model newestScaled(Model model, double factor)
 {
     model.components.back() = scaled(std::move(model.components.back()), factor);
     return model;
+}
+
+/// The newest component with the largest share of its step that leaves less: the whole may be too long for the
+/// simulation. None where no share does.
+std::optional<Model> largestShare(const Model& model, const std::function<bool(const Model&)>& leavesLess)
+{
+    for (const double share : {1.0, 0.5, 0.2, 0.05})
+        if (auto candidate = newestScaled(model, share); leavesLess(candidate))
+            return candidate;
+    return std::nullopt;
 }
 
 /// Shapes of a linear effect that are next to nothing, but not from the start, at a share of where they start. Whether
@@ -167,8 +174,7 @@ bool helps(const Score& proposed, const Record& record, const std::vector<std::s
     const auto left = [&](const Model& candidate) { return quickCost(candidate, record, sections, options); };
     const double still = left(newestScaled(proposed.model, 0.0));
     return (!proposed.byResponse.components.empty() && left(proposed.byResponse) < still)
-           || std::any_of(shares.begin(), shares.end(),
-                          [&](double share) { return left(newestScaled(proposed.model, share)) < still; });
+           || largestShare(proposed.model, [&](const Model& candidate) { return left(candidate) < still; });
 }
 
 FitSummary tryFit(Model& model, const Score& proposed, const Record& record, const std::vector<std::size_t>& sections,
@@ -182,15 +188,15 @@ FitSummary tryFit(Model& model, const Score& proposed, const Record& record, con
     const bool simulated = chosen.fedGradient || !hasPeriods(record);  // what left() tells
     Model best = newestScaled(model, 0.0);
     double lowest = left(best);
-    for (const double share : shares) {
-        const Model candidate = newestScaled(model, share);
+    const auto shortened = largestShare(model, [&](const Model& candidate) {
         const double cost = left(candidate);
-        if (cost < lowest && (simulated || canBeSimulated(candidate, record, sections, chosen))) {
+        const bool does = cost < lowest && (simulated || canBeSimulated(candidate, record, sections, chosen));
+        if (does)
             lowest = cost;
-            best = candidate;
-            break;
-        }
-    }
+        return does;
+    });
+    if (shortened)
+        best = *shortened;
     // A linear effect shows in the frequency response alone; in time it would creep along the curved valley in which
     // relaxations trade off against the stiffness. Beside laws the responses tell no more than where that valley is, so
     // what they say may leave a little more at first.

@@ -231,11 +231,13 @@ std::set<std::string> WholeSearch::takeOutImplausible(Model& model) const
         model = leaner;
     }
     const auto strange = strangeIn(leaner);
+    if (strange.empty())
+        return {};
     if (left(leaner).isNoise())
         return takeOutOneByOne(model);
     for (const auto& effect : strange)
         leaner = withoutEffect(leaner, effect);
-    if (strange.empty() || !fit(leaner, brief).usable())
+    if (!fit(leaner, brief).usable())
         return {};
     model = std::move(leaner);
     return strange;
