@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fits to takes of the virtual bench, which shares no code with the model.
+#include "SmallSetup.h"
+
 #include "Bench/Bench.h"
 #include "Engine/Estimate/MakeRecord.h"
 #include "Engine/Loudspeaker/Catalogue.h"
@@ -15,19 +17,6 @@
 using namespace excursion;
 
 namespace {
-
-bench::BenchSetup smallSetup()
-{
-    bench::BenchSetup setup;
-    setup.excitation.period = 4096;
-    setup.excitation.periods = 2;
-    setup.excitation.realizations = 2;
-    setup.excitation.levels = {2.0};
-    setup.excitation.bandLow = 20.0;
-    setup.excitation.bandHigh = 6000.0;
-    setup.noiseDb = -70.0;
-    return setup;
-}
 
 std::vector<std::pair<std::string, double>> truths()
 {
