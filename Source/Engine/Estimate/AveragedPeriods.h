@@ -22,6 +22,7 @@ struct PeriodNoise {
 class AveragedPeriods {
 public:
     explicit AveragedPeriods(const Measurement& take) : take_(take) {}
+    explicit AveragedPeriods(const Measurement&&) = delete;
 
     const Measurement& take() const { return take_; }
     const Excitation& excitation() const { return periodicExcitation(take_); }
