@@ -15,8 +15,7 @@ std::vector<Plot> lawPlots(const Model& model)
         Plot plot;
         plot.title = effectTitle(law.effectId);
         plot.x = {law.info.argument, across.unit, false, 0.0, 0.0, {}};
-        const auto name = law.frequency > 0.0 ? law.info.name + " at " + nominal(law.frequency, "Hz")
-                                              : law.info.name;
+        const auto name = titleOfLaw(law.info.name, law.frequency);
         plot.y = {name, up.unit, false, 0.0, 0.0, {}};
         Series curve {name,
                       Role::model,

@@ -136,22 +136,3 @@ TEST_CASE("A law's band is not that of parameters on which it does not depend, a
     model.covariance(first, first) = unknown;
     CHECK(std::isnan(laws(model).front().halfWidth.front()));
 }
-
-TEST_CASE("Beside a suspension that creeps K(x) is the stiffness at the lowest frequency", "[curve]")
-{
-    auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someOperatingRange(1.0));
-    model = withEffect(std::move(model), effectNamed("creep"), someOperatingRange(1.0));
-    const double K = model.baseParameter("K").value, lowest = model.components[2].operatingRange.lowFrequency;
-    const auto atRest = [&] {
-        const auto law = laws(model).front();
-        return std::pair {law.value[law.value.size() / 2], law.frequency};
-    };
-    CHECK(atRest() == std::pair {K, 0.0});  // creep that is not at work
-    auto& creep = model.components[2].parameters;
-    creep[0].value = 0.5 * K;                   // S
-    creep[1].value = std::log10(2.0 * lowest);  // centre
-    creep[2].value = creep[3].value = 0.0;      // width, tilt: a single relaxation at twice that frequency
-    const auto [value, frequency] = atRest();
-    CHECK(frequency == lowest);
-    CHECK(value == Approx(K + 0.5 * K / 5.0));  // S w^2 / (w^2 + p^2) with p = 2 w
-}

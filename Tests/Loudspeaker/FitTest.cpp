@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 using namespace excursion;
 
@@ -196,6 +197,16 @@ TEST_CASE("Loops in the iron that the coil leaves are a part of Le(x)", "[fit][s
     // On the bench the loops see k(x) i, in the model c(x) multiplies what they make of i: alike where the cone is slow
     // against them.
     CHECK(without.chiSquaredPerValue > 50.0 * with.chiSquaredPerValue);
+    const auto law = laws(model).front();
+    const double omega = 2.0 * std::numbers::pi * law.frequency;
+    const double loops = truth.eddyImpedance({0.0, omega}).imag() / omega;
+    double worst = 0.0;
+    for (std::size_t n = 0; n < law.argument.size(); ++n) {
+        const double Le = truth.inductanceAt(law.argument[n]), told = Le + Le / truth.Le * loops;
+        if (std::abs(law.argument[n]) < 0.9 * law.argument.back())
+            worst = std::max(worst, std::abs(law.value[n] - told) / told);
+    }
+    CHECK(worst < 0.01);  // with a curve of degree 4 for a step
 }
 
 TEST_CASE("With the slopes of fed laws a fit by simulation arrives where its own slopes lead", "[fit]")

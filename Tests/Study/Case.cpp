@@ -34,14 +34,20 @@ double truth(const bench::Loudspeaker& speaker, const std::string& effect, doubl
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The same for a law of a suspension that creeps, at a frequency.
+/// The same for a law that is told at a frequency, of coil and loops or of suspension and damper.
 double truth(const bench::Loudspeaker& speaker, const LawCurve& law, double q)
 {
-    const double spring = truth(speaker, law.effectId, q);
+    const double alone = truth(speaker, law.effectId, q);
     if (law.frequency == 0.0)
-        return spring;
-    const std::complex<double> s {0.0, 2.0 * std::numbers::pi * law.frequency};
-    return spring + speaker.suspensionStiffness(s).real() - speaker.K;
+        return alone;
+    const double omega = 2.0 * std::numbers::pi * law.frequency;
+    const std::complex<double> s {0.0, omega};
+    if (law.info.base == "K")
+        return alone + speaker.suspensionStiffness(s).real() - speaker.K;
+    if (law.info.base == "Rms")
+        return alone + speaker.suspensionStiffness(s).imag() / omega;
+    const bool move = speaker.eddyCurrents && speaker.eddyCurrents->moves && law.info.argument == "x";
+    return alone + (move ? speaker.inductanceAt(q) / speaker.Le : 1.0) * speaker.eddyImpedance(s).imag() / omega;
 }
 
 std::vector<LawCoverage> coverage(const Model& model, const bench::Loudspeaker& speaker, const Outcome& outcome)

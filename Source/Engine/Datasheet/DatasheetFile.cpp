@@ -92,7 +92,7 @@ Json toJson(const Datasheet& sheet)
                                            {"why", f.why.empty() ? Json(nullptr) : Json(f.why)}});
     document["inductance"] = sheet.inductance ? inductanceJson(*sheet.inductance) : Json(nullptr);
     document["laws"] = Json::array();
-    for (const auto& law : sheet.laws)
+    for (const auto& law : sheet.laws) {
         document["laws"].push_back({{"name", law.name},
                                     {"unit", law.unit},
                                     {"argument", law.argument},
@@ -101,6 +101,9 @@ Json toJson(const Datasheet& sheet)
                                     {"value", numbersOrNulls(law.value)},
                                     {"low95", numbersOrNulls(law.low95)},
                                     {"high95", numbersOrNulls(law.high95)}});
+        if (law.frequency > 0.0)
+            document["laws"].back()["frequency"] = law.frequency;
+    }
     document["stroke"] = sheet.stroke ? toJson(*sheet.stroke) : Json(nullptr);
     document["remarks"] = sheet.remarks;
     return document;

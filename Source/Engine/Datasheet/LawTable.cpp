@@ -9,7 +9,8 @@ namespace excursion {
 LawTable tableOf(const LawCurve& law)
 {
     LawTable table {
-        law.info.name, law.info.unit, law.info.argument, law.info.argumentUnit, law.argument, law.value, {}, {}};
+        law.info.name, law.info.unit, law.info.argument, law.info.argumentUnit, law.argument, law.value, {}, {},
+        law.frequency};
     for (std::size_t k = 0; k < law.value.size(); ++k) {
         table.low95.push_back(law.value[k] - law.halfWidth[k]);
         table.high95.push_back(law.value[k] + law.halfWidth[k]);

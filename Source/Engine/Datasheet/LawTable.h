@@ -14,6 +14,7 @@ struct LawTable {
     std::string name;                          ///< "Bl(x)", "K(x)", "Cms(x)", "Le(x)", "Le(i)", "Rms(v)"
     std::string unit, argument, argumentUnit;  ///< SI
     std::vector<double> at, value, low95, high95;
+    double frequency = 0.0;  ///< Hz, of a law that is told at one (LawCurve); else 0
 };
 
 LawTable tableOf(const LawCurve&);

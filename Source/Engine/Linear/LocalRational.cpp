@@ -2,9 +2,9 @@
 #include "Engine/Linear/LocalRational.h"
 
 #include "Engine/Error.h"
+#include "Engine/Numerics/LuFactors.h"
+#include "Engine/Numerics/QrFactors.h"
 #include "Engine/Signal/Fft.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -40,30 +40,37 @@ constexpr Index localOrder = 2, localUnknowns = 3 * localOrder + 2;
 
 LocalValue localValue(const WholeSpectrum& U, const WholeSpectrum& Y, Index line, Index reach)
 {
-    Eigen::MatrixXcd M(2 * reach + 1, localUnknowns);
-    Eigen::VectorXcd right(2 * reach + 1);
+    // Real and imaginary parts apart, as [Re -Im; Im Re], for the decompositions that are compiled anyhow.
+    const Index rows = 2 * reach + 1;
+    Eigen::MatrixXd M(2 * rows, 2 * localUnknowns);
+    Eigen::VectorXd right(2 * rows);
     for (Index k = -reach; k <= reach; ++k) {
         const auto u = U.at(line + k), y = Y.at(line + k);
         const double r = static_cast<double>(k) / static_cast<double>(reach);
-        auto row = M.row(k + reach);
+        const Index row = k + reach;
+        const auto put = [&](Index column, std::complex<double> value) {
+            M(row, column) = M(row + rows, column + localUnknowns) = value.real();
+            M(row + rows, column) = value.imag();
+            M(row, column + localUnknowns) = -value.imag();
+        };
         for (Index p = 0; p <= localOrder; ++p) {
-            row[p] = std::pow(r, p) * u;
-            row[localOrder + 1 + p] = std::pow(r, p);
+            put(p, std::pow(r, p) * u);
+            put(localOrder + 1 + p, std::pow(r, p));
         }
         for (Index p = 1; p <= localOrder; ++p)
-            row[2 * localOrder + 1 + p] = -std::pow(r, p) * y;
-        right[k + reach] = y;
+            put(2 * localOrder + 1 + p, -std::pow(r, p) * y);
+        right[row] = y.real();
+        right[row + rows] = y.imag();
     }
     const Eigen::VectorXd scale = M.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-    M = (M * scale.cast<std::complex<double>>().asDiagonal()).eval();
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(M);
-    const Eigen::VectorXcd theta = qr.solve(right);
-    const double left = (right - M * theta).squaredNorm() / static_cast<double>(M.rows() - M.cols());
-    // the first row of (M^H M)^-1, b0's share of the noise
-    Eigen::MatrixXcd gram = M.adjoint() * M;
+    M *= scale.asDiagonal();
+    const Eigen::VectorXd theta = pivotedSolveVector(M, right);
+    const double left = (right - M * theta).squaredNorm() / static_cast<double>(rows - localUnknowns);
+    // the first element of (M^H M)^-1, b0's share of the noise
+    Eigen::MatrixXd gram = M.transpose() * M;
     gram.diagonal().array() += 1e-14;
-    const Eigen::VectorXcd first = gram.ldlt().solve(Eigen::VectorXcd::Unit(localUnknowns, 0));
-    return {theta[0] * scale[0], std::sqrt(std::max(0.0, left * first[0].real())) * scale[0]};
+    const double share = RealLu(gram).solve(Eigen::VectorXd::Unit(gram.rows(), 0))[0];
+    return {std::complex(theta[0], theta[localUnknowns]) * scale[0], std::sqrt(std::max(0.0, left * share)) * scale[0]};
 }
 
 /// All lines as far as half of `most`, then ever wider apart.

@@ -47,8 +47,10 @@ std::string Effect::sizedBy() const
     return info ? info->base : "";
 }
 
-double Effect::lowestStiffness(const OperatingRange&, const double*) const { return 0.0; }
-
 double Effect::lawAt(const OperatingRange&, const double*, double) const { return 0.0; }
+
+double Effect::delayedLawAt(const OperatingRange&, const double*, double, double) const { return 0.0; }
+
+double Effect::addsTo(std::string_view, const OperatingRange&, const double*, double) const { return 0.0; }
 
 }  // namespace excursion

@@ -186,6 +186,9 @@ public:
     virtual std::optional<LawInfo> law() const { return std::nullopt; }
     /// The difference that the effect adds to the base parameter of its law at `argument`.
     virtual double lawAt(const OperatingRange&, const double* parameters, double argument) const;
+    /// Of a law whose work is partly delayed by what relaxes: what that adds to lawAt() at a frequency in Hz.
+    virtual double delayedLawAt(const OperatingRange&, const double* parameters, double argument,
+                                double frequency) const;
 
     /// Name of the base parameter whose value is OperatingRange::scale; for a law, the one that it modifies. Empty:
     /// none.
@@ -198,9 +201,11 @@ public:
     /// Linear, and yields over time: a suspension that creeps, loops in the iron.
     virtual bool relaxes() const { return false; }
     bool creeps() const { return relaxes() && !electrical(); }
-    /// Of a suspension that creeps: what it adds to the base's stiffness at the lowest frequency of the range. The data
-    /// tells the sum there; how that divides into the two lies below the band.
-    virtual double lowestStiffness(const OperatingRange&, const double* parameters) const;
+    /// What a linear effect that relaxes adds to a base parameter at a frequency in Hz: to K as Re F/x, to Rms as
+    /// Im F/(w x), to Le as Im u/(w i); else 0. The data tells the sum, and how that divides into the two only as far as
+    /// the relaxations lie within the band.
+    virtual double addsTo(std::string_view base, const OperatingRange&, const double* parameters,
+                          double frequency) const;
     virtual int coefficientCount(const OperatingRange&) const = 0;
 
     /// Turns parameters into coefficients, once per run: everything that depends on the parameters alone.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Laws.h"
 
+#include "Engine/Document/Engineering.h"
 #include "Engine/Loudspeaker/Propagate.h"
 
 #include <algorithm>
@@ -13,12 +14,42 @@ double rangeOf(const LawInfo& law, const OperatingRange& e)
     return law.argument == "x" ? e.displacement : law.argument == "v" ? e.velocity : e.current;
 }
 
-/// The creep beside a law of the stiffness; null where there is none.
-const Component* creepBeside(const Model& model, const LawInfo& law)
+bool isBeside(const Component& one, const Component& law)
 {
-    const auto found = std::find_if(model.components.begin(), model.components.end(),
-                                    [](const Component& c) { return c.effect->creeps() && isAtWork(c); });
-    return law.base == "K" && found != model.components.end() ? &*found : nullptr;
+    return one.effect->relaxes() && isAtWork(one) && one.effect->electrical() == law.effect->electrical();
+}
+
+/// What relaxes beside a law adds to the base parameter that the law modifies.
+double addedBeside(const Model& model, const Component& law, const std::string& base, double frequency)
+{
+    double sum = 0.0;
+    for (const auto& one : model.components)
+        if (isBeside(one, law))
+            sum += one.effect->addsTo(base, one.operatingRange, valuesOf(one).data(), frequency);
+    return sum;
+}
+
+/// Hz at which the take tells a law best of what relaxes beside it: a stiffness at the lowest frequency, losses at
+/// resonance, an inductance an octave below the highest frequency, as at that one half of what could tell is missing. 0
+/// where nothing relaxes.
+double frequencyOf(const Model& model, const Component& law, const std::string& base)
+{
+    const auto found = std::find_if(model.components.begin() + 1, model.components.end(),
+                                    [&](const Component& one) { return isBeside(one, law); });
+    if (found == model.components.end())
+        return 0.0;
+    const double low = found->operatingRange.lowFrequency, high = found->operatingRange.highFrequency;
+    if (base == "K")
+        return low;
+    if (base == "Le")
+        return 0.5 * high;
+    if (base != "Rms")
+        return 0.0;
+    auto parameters = model.base().parameters;
+    for (auto& p : parameters)
+        if (p.name == "K")
+            p.value += addedBeside(model, law, p.name, low);
+    return std::clamp(resonanceOf(parameters), low, high);
 }
 
 /// A curve that has no values yet, and the component whose law it is.
@@ -38,8 +69,7 @@ std::vector<Place> placesOf(const Model& model, int points)
         LawCurve curve;
         curve.info = *law;
         curve.effectId = component.effect->id();
-        if (const auto* creep = creepBeside(model, *law))
-            curve.frequency = creep->operatingRange.lowFrequency;
+        curve.frequency = frequencyOf(model, component, law->base);
         for (int n = 0; n < points; ++n)
             curve.argument.push_back(rangeOf(*law, component.operatingRange) * (2.0 * n / (points - 1) - 1.0));
         places.push_back({k, std::move(curve)});
@@ -51,19 +81,29 @@ std::vector<Place> placesOf(const Model& model, int points)
 Eigen::VectorXd valuesAt(const std::vector<Place>& places, const Model& model)
 {
     std::vector<double> values;
-    for (const auto& [k, curve] : places) {
-        const auto& component = model.components[k];
+    for (const auto& place : places) {
+        const auto& component = model.components[place.component];
+        const auto& effect = *component.effect;
+        const auto& range = component.operatingRange;
+        const auto& base = place.curve.info.base;
+        const double frequency = place.curve.frequency;
         const auto own = valuesOf(component);
-        double base = model.baseParameter(curve.info.base).value;
-        if (const auto* creep = creepBeside(model, curve.info))
-            base += creep->effect->lowestStiffness(creep->operatingRange, valuesOf(*creep).data());
-        for (const double q : curve.argument)
-            values.push_back(base + component.effect->lawAt(component.operatingRange, own.data(), q));
+        double atRest = model.baseParameter(base).value;
+        if (frequency > 0.0)
+            atRest += addedBeside(model, component, base, frequency);
+        for (const double q : place.curve.argument)
+            values.push_back(atRest + effect.lawAt(range, own.data(), q)
+                             + (frequency > 0.0 ? effect.delayedLawAt(range, own.data(), q, frequency) : 0.0));
     }
     return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 }  // namespace
+
+std::string titleOfLaw(const std::string& name, double frequency)
+{
+    return frequency > 0.0 ? name + " at " + nominal(frequency, "Hz") : name;
+}
 
 std::vector<LawCurve> laws(const Model& model, int points)
 {

@@ -6,6 +6,20 @@
 #include <limits>
 
 namespace excursion {
+namespace {
+
+/// A small fraction of a parameter's deviation, its prior or its value, whichever is the least; but no smaller one of
+/// the others where a search has ended at a value that is a rounding of zero.
+double stepOf(const Parameter& p, double deviation)
+{
+    constexpr double small = 1e-3;
+    const double spread = std::min(deviation, p.prior);
+    if (!std::isfinite(spread))
+        return small * (p.value != 0.0 ? std::abs(p.value) : 1.0);
+    return small * std::clamp(std::abs(p.value), small * spread, spread);
+}
+
+}  // namespace
 
 Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::VectorXd(const Model&)>& numbers)
 {
@@ -19,12 +33,11 @@ Eigen::VectorXd standardErrorsOf(const Model& model, const std::function<Eigen::
     std::vector<Eigen::Index> unseen;
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
         const auto& p = *all[static_cast<std::size_t>(k)];
-        const double deviation = std::sqrt(covariance(k, k)),
-                     size = std::min(p.value != 0.0 ? std::abs(p.value) : 1.0, p.prior);
+        const double deviation = std::sqrt(covariance(k, k));
         if (deviation == 0.0)  // held, or of no importance
             continue;
         const bool known = std::isfinite(deviation);
-        const double step = 1e-3 * (!known ? size : p.value == 0.0 ? deviation : std::min(deviation, size));
+        const double step = stepOf(p, known ? deviation : std::numeric_limits<double>::infinity());
         auto at = theta;
         const auto numbersAt = [&](double value) {
             at[k] = std::clamp(value, p.lower, p.upper);

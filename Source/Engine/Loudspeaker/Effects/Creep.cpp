@@ -83,11 +83,16 @@ public:
     std::vector<Figure> summary(const OperatingRange& e, const double* parameters) const override
     {
         return {{"creep rate", "N/m per decade",
-                 stiffnessAt(e, parameters, 10.0 * e.lowFrequency) - stiffnessAt(e, parameters, e.lowFrequency)}};
+                 stiffnessAt(e, parameters, 10.0 * e.lowFrequency).real()
+                     - stiffnessAt(e, parameters, e.lowFrequency).real()}};
     }
-    double lowestStiffness(const OperatingRange& e, const double* parameters) const override
+    double addsTo(std::string_view base, const OperatingRange& e, const double* parameters,
+                  double frequency) const override
     {
-        return stiffnessAt(e, parameters, e.lowFrequency);
+        const auto stiffness = stiffnessAt(e, parameters, frequency);
+        return base == "K"     ? stiffness.real()
+               : base == "Rms" ? stiffness.imag() / (2.0 * std::numbers::pi * frequency)
+                               : 0.0;
     }
 
     int memorySize(const OperatingRange&) const override { return cells; }
@@ -135,7 +140,7 @@ public:
     }
 
 private:
-    double stiffnessAt(const OperatingRange& e, const double* parameters, double frequency) const
+    std::complex<double> stiffnessAt(const OperatingRange& e, const double* parameters, double frequency) const
     {
         std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
         prepareFor(e, parameters, c.data());
@@ -143,7 +148,7 @@ private:
         std::complex<double> sum = 0.0;
         for (std::size_t k = 0; k < c.size(); k += 2)
             sum += c[k] * s / (s + c[k + 1]);
-        return sum.real();
+        return sum;
     }
 
     static constexpr int shape = 4;                // parameters ahead of the departures

@@ -93,6 +93,17 @@ public:
                 {"departure", "%", 100.0 * std::sqrt(rest)}};
     }
 
+    double addsTo(std::string_view base, const OperatingRange& e, const double* parameters,
+                  double frequency) const override
+    {
+        if (base != "Le" || !(parameters[0] > 0.0))
+            return 0.0;
+        std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
+        prepareFor(e, parameters, c.data());
+        const double omega = 2.0 * std::numbers::pi * frequency;
+        return impedance(e, c.data(), {0.0, omega}).imag() / omega;
+    }
+
     int memorySize(const OperatingRange& e) const override { return innerCells(e) + 2; }
     int coefficientCount(const OperatingRange& e) const override { return 2 + 2 * memorySize(e); }
 

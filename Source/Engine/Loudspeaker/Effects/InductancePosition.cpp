@@ -46,6 +46,21 @@ public:
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
     }
+    /// Im u/(w i) of the loops with the coil held at x: g_0 sum_n g_n (in out - 1) p_n^2/(p_n^2 + w^2).
+    double delayedLawAt(const OperatingRange& e, const double* p, double x, double frequency) const override
+    {
+        if (!e.relaxed)
+            return 0.0;
+        std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
+        prepareFor(e, p, c.data());
+        const double* loop = c.data() + e.degree + 1;
+        const auto at = couplingAt(loop, lawAt(e, p, x), 0.0);
+        const double omega = 2.0 * std::numbers::pi * frequency;
+        double sum = 0.0;
+        for (int n = 0; n < loops; ++n, loop += 2)
+            sum += loop[1] * (at.in * at.out - 1.0) / (1.0 + std::pow(omega / loop[0], 2));
+        return sum;
+    }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
@@ -84,7 +99,6 @@ public:
     void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T* memory, T* rate,
                Balance<T>& sum) const
     {
-        using std::sqrt;
         const auto [value, slope] = curve::at(e.degree, c, at.x, e.displacement);
         sum.inductance += value;
         if (!e.relaxed) {
@@ -93,13 +107,7 @@ public:
             return;
         }
         const T* loop = c + e.degree + 1;
-        const T &d = loop[2 * loops], &way = loop[2 * loops + 1];
-        // A trial of a search may go where the coil would have no inductance left.
-        const T squared = 1.0 + d * value;
-        const bool lost = squared < T(leastCoupling * leastCoupling);
-        const T k = lost ? T(leastCoupling) : sqrt(squared);
-        const T kSlope = lost ? T(0.0) : 0.5 * d * slope / k;
-        const T in = 1.0 + (1.0 + way) * (k - 1.0), out = 1.0 + (1.0 - way) * (k - 1.0);
+        const auto [in, out, outSlope, kSlope] = couplingAt(loop, value, slope);
         T held = T(0.0), delayed = T(0.0);
         for (int n = 0; n < loops; ++n, loop += 2) {
             const T &h = memory[2 * n], &j = memory[2 * n + 1];
@@ -108,12 +116,32 @@ public:
             held += loop[1] * h;
             delayed += loop[1] * (out * rate[2 * n] - rate[2 * n + 1]);
         }
-        sum.fluxSlope += slope * at.i + (1.0 - way) * kSlope * held;
+        sum.fluxSlope += slope * at.i + outSlope * held;
         sum.drop += delayed;
         sum.force += (0.5 * slope * at.i + kSlope * held) * at.i;
     }
 
 private:
+    /// Of coil and loops, with the coil at one place.
+    template <class T>
+    struct Coupling {
+        T in, out, outSlope, slope;
+    };
+
+    /// @param loop  the coefficients behind the curve's
+    template <class T>
+    static Coupling<T> couplingAt(const T* loop, const T& value, const T& slope)
+    {
+        using std::sqrt;
+        const T &d = loop[2 * loops], &way = loop[2 * loops + 1];
+        // A trial of a search may go where the coil would have no inductance left.
+        const T squared = 1.0 + d * value;
+        const bool lost = squared < T(leastCoupling * leastCoupling);
+        const T k = lost ? T(leastCoupling) : sqrt(squared);
+        const T kSlope = lost ? T(0.0) : 0.5 * d * slope / k;
+        return {1.0 + (1.0 + way) * (k - 1.0), 1.0 + (1.0 - way) * (k - 1.0), (1.0 - way) * kSlope, kSlope};
+    }
+
     static constexpr int loops = 4;
     static constexpr double fastest = 1.2, spacing = 5.0;  // rates: over the band's upper end; from one to the next
     // of the slowest loop beside a coil that is nothing but a semi-inductance
