@@ -80,7 +80,8 @@ void printLaws(const std::vector<LawTable>& laws, Terminal& terminal)
             return significant(law.value[k] * unit.factor)
                    + (std::isfinite(half) ? " \u00b1 " + significant(half, 2) : std::string());
         };
-        rows.push_back({titleOfLaw(law.name, law.frequency), at(0), at(law.at.size() / 2), at(law.at.size() - 1), unit.unit,
+        rows.push_back({titleOfLaw(law.name, law.frequency), at(0), at(law.at.size() / 2), at(law.at.size() - 1),
+                        unit.unit,
                         law.argument + " = " + significant(law.at.back() * argument.factor, 3) + " " + argument.unit});
     }
     if (rows.empty())

@@ -73,7 +73,7 @@ Plot lawsPlot(const Collection& all, const LawsOfUnits& laws)
     }
     const auto argument = displayUnit(across, laws.argumentUnit), value = displayUnit(up, laws.unit);
     Plot plot;
-    plot.title = laws.name + " of " + std::to_string(laws.ofUnit.size())
+    plot.title = laws.name + laws.told + " of " + std::to_string(laws.ofUnit.size())
                  + (laws.ofUnit.size() == 1 ? " unit" : " units");
     plot.x = {laws.argument, argument.unit, false, 0.0, 0.0, {}};
     plot.y = {laws.name, value.unit, false, 0.0, 0.0, {}};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/Model.h"
+#include "Engine/Numerics/LuFactors.h"
 #include "Loudspeaker/EffectBench.h"
 
-#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ double blockedInductance(const Component& component, double x, double omega)
     }
     const std::complex<double> s {0.0, omega};
     const Eigen::MatrixXcd pencil = s * Eigen::MatrixXcd::Identity(n, n) - A.cast<std::complex<double>>();
-    const Eigen::VectorXcd memory = pencil.partialPivLu().solve(byCurrent.head(n).cast<std::complex<double>>());
+    const Eigen::VectorXcd memory = ComplexLu(pencil).solve(byCurrent.head(n).cast<std::complex<double>>().eval());
     const std::complex<double> drop = byCurrent[n] + (c.cast<std::complex<double>>().transpose() * memory).value();
     return inductance + drop.imag() / omega;
 }
@@ -100,8 +100,7 @@ TEST_CASE("Beside a suspension that creeps Rms(v) is what the cone loses at reso
     parameterOf(model, 2, "centre").value = std::log10(fast);
     parameterOf(model, 2, "width").value = parameterOf(model, 2, "tilt").value = 0.0;  // a single relaxation
     const auto [value, frequency] = atRest();
-    const auto lowest = model.components[2].operatingRange.lowFrequency;
-    const double stiffness = K + strength * lowest * lowest / (lowest * lowest + fast * fast);
+    const double stiffness = K + strength * frequency * frequency / (frequency * frequency + fast * fast);
     CHECK(frequency == Approx(std::sqrt(stiffness / model.baseParameter("m").value) / (2.0 * std::numbers::pi)));
     const double w = 2.0 * std::numbers::pi * frequency, p = 2.0 * std::numbers::pi * fast;
     CHECK(value == Approx(Rms + strength * p / (w * w + p * p)));
@@ -141,7 +140,23 @@ TEST_CASE("Beside eddy currents Le(x) is the inductance of the blocked coil an o
     }
 }
 
-TEST_CASE("A parameter that a search has left at a rounding of zero does not widen a band", "[laws]")
+TEST_CASE("Beside eddy currents Le(i) has them added, and Bl(x) holds at any frequency", "[laws]")
+{
+    auto model = driverWith({"eddy-currents", "inductance-current", "force-factor"});
+    parameterOf(model, 1, "Ks").value = 0.05;
+    const auto found = laws(model);
+    REQUIRE(found.size() == 2);
+    const auto& [position, current] = std::pair(found[1], found[0]);
+    CHECK(position.frequency == 0.0);
+    CHECK(position.value.front() == model.baseParameter("Bl").value);
+    CHECK(current.value.front()
+          == Approx(model.baseParameter("Le").value
+                    + blockedInductance(model.components[1], 0.0, 2.0 * std::numbers::pi * current.frequency)));
+    CHECK(titleOfLaw(current.info.name, current.frequency) == "Le(i) at 4 kHz");
+    CHECK(titleOfLaw(position.info.name, position.frequency) == "Bl(x)");
+}
+
+TEST_CASE("A parameter that a search has left at a rounding of zero does not change a band", "[laws]")
 {
     auto model = driverWith({"stiffness", "creep"});
     parameterOf(model, 2, "S").value = 0.2 * model.baseParameter("K").value;

@@ -28,6 +28,8 @@ class Law:
         self.argument_unit: str = found["argumentUnit"]  #: of ``at``
         self.at: Samples = numbers(found["at"])
         self.value: Samples = numbers(found["value"])
+        #: Hz at which the law is told, beside what relaxes; 0 where it holds at any
+        self.frequency: float = found.get("frequency", 0.0)
         self.half_width: Samples = numbers(found.get("halfWidth95"))  #: of the 95 % band; NaN where it is not known
 
     def __repr__(self) -> str:

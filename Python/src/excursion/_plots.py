@@ -123,7 +123,8 @@ def draw_laws(model: Model, figure: Any = None) -> Any:
         axis.fill_between(law.at * across, low, high, color=_MODEL, alpha=0.25, linewidth=0, label="95 %")
         axis.plot(law.at * across, law.value * factor, color=_MODEL)
         axis.set_xlabel(f"{law.argument}, {argument}")
-        axis.set_title(f"{law.name}, {unit}", fontsize="medium")
+        told = f" at {law.frequency:.3g} Hz" if law.frequency else ""
+        axis.set_title(f"{law.name}{told}, {unit}", fontsize="medium")
         least, most = np.min(law.value) * factor, np.max(law.value) * factor
         if np.all(np.isfinite(low)):
             reach = 0.5 * (most - least) + 0.02 * abs(most)  # a wide band must not flatten the law

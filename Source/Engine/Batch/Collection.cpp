@@ -6,6 +6,7 @@
 #include "Engine/Design/StrokeLimits.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/Remainder.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
@@ -94,6 +95,14 @@ Figured lawAt(const LawTable& law, double at)
     return {between(law.value), 0.5 * (between(law.high95) - between(law.low95)) / normalOf95};
 }
 
+/// Where a law is told; laws of two units are only compared where that is the same.
+std::string toldAt(const LawTable& law)
+{
+    if (law.frequency == 0.0)
+        return "";
+    return law.argument == "v" ? " at resonance" : " at " + nominal(law.frequency, "Hz");
+}
+
 void putLaws(Table& table, const LawsOfUnits& laws, const std::vector<double>& given)
 {
     auto places = given;
@@ -113,7 +122,7 @@ void putLaws(Table& table, const LawsOfUnits& laws, const std::vector<double>& g
     for (const double at : all)
         for (const auto& [unit, law] : laws.ofUnit) {
             auto value = lawAt(law, at);
-            table.put(unit, base + "(" + placeIn(at, laws.argumentUnit) + ")", sheetUnit,
+            table.put(unit, base + "(" + placeIn(at, laws.argumentUnit) + ")" + laws.told, sheetUnit,
                       {factor * value.value, factor * value.error});
         }
 }
@@ -362,10 +371,12 @@ Collection collect(const Units& units, const CollectOptions& options)
         for (auto& law : lawTables(*models[k], 201)) {
             if (law.name.starts_with("Cms"))
                 continue;  // the reciprocal of K(x)
-            auto found = std::find_if(all.laws.begin(), all.laws.end(),
-                                      [&](const LawsOfUnits& l) { return l.name == law.name; });
+            auto found = std::find_if(all.laws.begin(), all.laws.end(), [&](const LawsOfUnits& l) {
+                return l.name == law.name && l.told == toldAt(law);
+            });
             if (found == all.laws.end())
-                found = all.laws.insert(all.laws.end(), {law.name, law.unit, law.argument, law.argumentUnit, {}});
+                found = all.laws.insert(all.laws.end(),
+                                        {law.name, law.unit, law.argument, law.argumentUnit, toldAt(law), {}});
             found->ofUnit.emplace_back(k, std::move(law));
         }
     }

@@ -131,12 +131,12 @@ std::string parametersCsv(const Datasheet& sheet)
 
 std::string lawsCsv(const Datasheet& sheet)
 {
-    std::string text = "law,argument,argument_unit,at,value,low_95,high_95,unit\n";
+    std::string text = "law,argument,argument_unit,at,value,low_95,high_95,unit,frequency\n";
     for (const auto& law : sheet.laws)
         for (std::size_t k = 0; k < law.at.size(); ++k)
             text += law.name + "," + law.argument + "," + law.argumentUnit + "," + csvNumber(law.at[k]) + ","
                     + csvNumber(law.value[k]) + "," + csvNumber(law.low95[k]) + "," + csvNumber(law.high95[k]) + ","
-                    + law.unit + "\n";
+                    + law.unit + "," + (law.frequency > 0.0 ? csvNumber(law.frequency) : std::string()) + "\n";
     if (!sheet.stroke)
         return text;
     for (const auto& limit : sheet.stroke->limits)
@@ -144,7 +144,7 @@ std::string lawsCsv(const Datasheet& sheet)
             const auto place = side < 0 ? limit.inward : limit.outward;
             text += "limit," + csvText(limit.name + " " + limit.criterion) + ",m,"
                     + (place ? csvNumber(side * *place) : std::string()) + ","
-                    + csvNumber(side < 0 ? limit.inwardEnd : limit.outwardEnd) + ",,,% at the end of the range\n";
+                    + csvNumber(side < 0 ? limit.inwardEnd : limit.outwardEnd) + ",,,% at the end of the range,\n";
         }
     return text;
 }

@@ -103,9 +103,9 @@ std::string law(const Model& model, const Effect& effect, bool analogue)
         if (analogue && unit.front() == 'm')
             unit.front() = 'V';
         const double end = curve.argument.back() * (metres ? 1e3 : 1.0);
-        return curve.info.name + shapeOf(low, high) + ": " + figure(std::round(low) + 0.0, "%+.0f") + " % at "
-               + figure(-end, "%.3g") + " and " + figure(std::round(high) + 0.0, "%+.0f") + " % at "
-               + figure(end, "%+.3g") + " " + unit;
+        return titleOfLaw(curve.info.name, curve.frequency) + shapeOf(low, high) + ": "
+               + figure(std::round(low) + 0.0, "%+.0f") + " % at " + figure(-end, "%.3g") + " and "
+               + figure(std::round(high) + 0.0, "%+.0f") + " % at " + figure(end, "%+.3g") + " " + unit;
     }
     const auto* component = model.find(effect.id());
     if (!component)

@@ -40,7 +40,7 @@ constexpr Index localOrder = 2, localUnknowns = 3 * localOrder + 2;
 
 LocalValue localValue(const WholeSpectrum& U, const WholeSpectrum& Y, Index line, Index reach)
 {
-    // Real and imaginary parts apart, as [Re -Im; Im Re], for the decompositions that are compiled anyhow.
+    // [Re -Im; Im Re]: the real decompositions are compiled already.
     const Index rows = 2 * reach + 1;
     Eigen::MatrixXd M(2 * rows, 2 * localUnknowns);
     Eigen::VectorXd right(2 * rows);

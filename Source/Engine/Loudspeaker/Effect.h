@@ -202,8 +202,8 @@ public:
     virtual bool relaxes() const { return false; }
     bool creeps() const { return relaxes() && !electrical(); }
     /// What a linear effect that relaxes adds to a base parameter at a frequency in Hz: to K as Re F/x, to Rms as
-    /// Im F/(w x), to Le as Im u/(w i); else 0. The data tells the sum, and how that divides into the two only as far as
-    /// the relaxations lie within the band.
+    /// Im F/(w x), to Le as Im u/(w i); else 0. The data tells the sum, and how that divides into the two only as far
+    /// as the relaxations lie within the band.
     virtual double addsTo(std::string_view base, const OperatingRange&, const double* parameters,
                           double frequency) const;
     virtual int coefficientCount(const OperatingRange&) const = 0;

@@ -30,8 +30,8 @@ double addedBeside(const Model& model, const Component& law, const std::string& 
 }
 
 /// Hz at which the take tells a law best of what relaxes beside it: a stiffness at the lowest frequency, losses at
-/// resonance, an inductance an octave below the highest frequency, as at that one half of what could tell is missing. 0
-/// where nothing relaxes.
+/// resonance, an inductance an octave below the highest frequency, where there is data on one side only. 0 where
+/// nothing relaxes.
 double frequencyOf(const Model& model, const Component& law, const std::string& base)
 {
     const auto found = std::find_if(model.components.begin() + 1, model.components.end(),
@@ -46,10 +46,14 @@ double frequencyOf(const Model& model, const Component& law, const std::string& 
     if (base != "Rms")
         return 0.0;
     auto parameters = model.base().parameters;
-    for (auto& p : parameters)
-        if (p.name == "K")
-            p.value += addedBeside(model, law, p.name, low);
-    return std::clamp(resonanceOf(parameters), low, high);
+    const auto K = std::find_if(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.name == "K"; });
+    const double spring = K->value;
+    double resonance = low;
+    for (int n = 0; n < 20; ++n) {  // what creeps is stiffer there than below
+        K->value = spring + addedBeside(model, law, "K", resonance);
+        resonance = std::clamp(resonanceOf(parameters), low, high);
+    }
+    return resonance;
 }
 
 /// A curve that has no values yet, and the component whose law it is.

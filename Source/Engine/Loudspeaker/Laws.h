@@ -12,6 +12,7 @@ namespace excursion {
 /// relaxes beside it, a law is what the take shows at one frequency, as what it comes to far beyond the band is an
 /// extrapolation: beside creep K(x) is Re F/x at the lowest measured frequency and Rms(v) is Im F/(w x) at resonance,
 /// beside eddy currents Le is Im u/(w i) of the blocked coil an octave below the highest.
+/// What a bent spring yields beside creep is left out.
 struct LawCurve {
     LawInfo info;
     std::string effectId;                            ///< id of the effect with this law

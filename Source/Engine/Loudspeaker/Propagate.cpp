@@ -8,15 +8,15 @@
 namespace excursion {
 namespace {
 
-/// A small fraction of a parameter's deviation, its prior or its value, whichever is the least; but no smaller one of
-/// the others where a search has ended at a value that is a rounding of zero.
+/// A thousandth of the least of deviation, prior and value. A value that is a rounding of zero does not count: the step
+/// is at least a tenth of what the other two make it.
 double stepOf(const Parameter& p, double deviation)
 {
-    constexpr double small = 1e-3;
+    constexpr double small = 1e-3, least = 0.1;
     const double spread = std::min(deviation, p.prior);
     if (!std::isfinite(spread))
         return small * (p.value != 0.0 ? std::abs(p.value) : 1.0);
-    return small * std::clamp(std::abs(p.value), small * spread, spread);
+    return small * std::clamp(std::abs(p.value), least * spread, spread);
 }
 
 }  // namespace

@@ -49,8 +49,6 @@ public:
     /// Im u/(w i) of the loops with the coil held at x: g_0 sum_n g_n (in out - 1) p_n^2/(p_n^2 + w^2).
     double delayedLawAt(const OperatingRange& e, const double* p, double x, double frequency) const override
     {
-        if (!e.relaxed)
-            return 0.0;
         std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
         prepareFor(e, p, c.data());
         const double* loop = c.data() + e.degree + 1;
