@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Document/Engineering.h"
 #include "Engine/Loudspeaker/Laws.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Numerics/LuFactors.h"
@@ -152,7 +153,7 @@ TEST_CASE("Beside eddy currents Le(i) has them added, and Bl(x) holds at any fre
     CHECK(current.value.front()
           == Approx(model.baseParameter("Le").value
                     + blockedInductance(model.components[1], 0.0, 2.0 * std::numbers::pi * current.frequency)));
-    CHECK(titleOfLaw(current.info.name, current.frequency) == "Le(i) at 4 kHz");
+    CHECK(titleOfLaw(current.info.name, current.frequency) == "Le(i) at " + nominal(4000.0, "Hz"));
     CHECK(titleOfLaw(position.info.name, position.frequency) == "Bl(x)");
 }
 

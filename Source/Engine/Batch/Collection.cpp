@@ -6,7 +6,6 @@
 #include "Engine/Design/StrokeLimits.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/Remainder.h"
-#include "Engine/Document/Engineering.h"
 #include "Engine/Document/Figures.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
@@ -100,7 +99,7 @@ std::string toldAt(const LawTable& law)
 {
     if (law.frequency == 0.0)
         return "";
-    return law.argument == "v" ? " at resonance" : " at " + nominal(law.frequency, "Hz");
+    return law.argument == "v" ? " at resonance" : " at " + figure(law.frequency, "%.4g") + " Hz";
 }
 
 void putLaws(Table& table, const LawsOfUnits& laws, const std::vector<double>& given)

@@ -69,7 +69,7 @@ struct UnitResult {
 /// A law of every unit that has it, as it is drawn.
 struct LawsOfUnits {
     std::string name, unit, argument, argumentUnit;  ///< SI
-    std::string told;  ///< " at 4 kHz", " at resonance" of the losses; empty for laws that hold at any frequency
+    std::string told;  ///< " at 750 Hz", " at resonance" of the losses; empty for laws that hold at any frequency
     std::vector<std::pair<std::size_t, LawTable>> ofUnit;
 };
 
