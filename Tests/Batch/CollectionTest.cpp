@@ -86,6 +86,26 @@ TEST_CASE("A table of a batch tells quantities, the one that is off, and the gol
     CHECK(all.units[6].distance > 3.0 * all.units[*all.golden].distance);
 }
 
+TEST_CASE("A stiffness at rest is not compared with one at a frequency", "[batch]")
+{
+    auto units = tenUnits();
+    for (const std::size_t k : {2U, 5U}) {
+        auto creeping = midbassOf(1.0, 1.0, 1.0, {"stiffness", "creep"});
+        creeping.components.back().parameters[0].value = 100.0;  // N/m
+        units.units[k] = unitOf(units.units[k].name, std::move(creeping));
+    }
+    const auto all = collect(units, {});
+    const auto *still = all.find("K(+3 mm)"), *creeping = all.find("K(+3 mm) at 20 Hz");
+    REQUIRE(still);
+    REQUIRE(creeping);
+    CHECK(still->known == 8);
+    CHECK(creeping->known == 2);
+    for (std::size_t k = 0; k < 10; ++k)
+        CHECK(std::isnan(creeping->value[k]) == (k != 2 && k != 5));
+    CHECK(creeping->unit == "N/mm");
+    CHECK(creeping->value[2] > still->value[0]);  // what creeps bears a part at any frequency
+}
+
 TEST_CASE("A batch that scatters evenly has no outlier, whatever its size", "[batch]")
 {
     for (const std::size_t count : {3U, 5U, 6U, 9U, 15U}) {
