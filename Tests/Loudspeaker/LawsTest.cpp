@@ -31,6 +31,13 @@ Parameter& parameterOf(Model& model, std::size_t component, std::string_view nam
     return *std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return p.name == name; });
 }
 
+/// Of the first law: its value at rest, and the frequency at which it is told.
+std::pair<double, double> atRest(const Model& model)
+{
+    const auto law = laws(model).front();
+    return {law.value[law.value.size() / 2], law.frequency};
+}
+
 /// Im u/(w i) of an effect with the coil held at x, as its contributions to the balance say: these are affine in the
 /// current and in a memory whose rate is affine in both.
 double blockedInductance(const Component& component, double x, double omega)
@@ -70,19 +77,14 @@ double blockedInductance(const Component& component, double x, double omega)
 
 TEST_CASE("Beside a suspension that creeps K(x) is the stiffness at the lowest frequency", "[laws]")
 {
-    auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someOperatingRange(1.0));
-    model = withEffect(std::move(model), effectNamed("creep"), someOperatingRange(1.0));
+    auto model = driverWith({"stiffness", "creep"});
     const double K = model.baseParameter("K").value, lowest = model.components[2].operatingRange.lowFrequency;
-    const auto atRest = [&] {
-        const auto law = laws(model).front();
-        return std::pair {law.value[law.value.size() / 2], law.frequency};
-    };
-    CHECK(atRest() == std::pair {K, 0.0});  // creep that is not at work
+    CHECK(atRest(model) == std::pair {K, 0.0});  // creep that is not at work
     auto& creep = model.components[2].parameters;
     creep[0].value = 0.5 * K;                   // S
     creep[1].value = std::log10(2.0 * lowest);  // centre
     creep[2].value = creep[3].value = 0.0;      // width, tilt: a single relaxation at twice that frequency
-    const auto [value, frequency] = atRest();
+    const auto [value, frequency] = atRest(model);
     CHECK(frequency == lowest);
     CHECK(value == Approx(K + 0.5 * K / 5.0));  // S w^2 / (w^2 + p^2) with p = 2 w
 }
@@ -91,16 +93,12 @@ TEST_CASE("Beside a suspension that creeps Rms(v) is what the cone loses at reso
 {
     auto model = driverWith({"damping-velocity", "creep"});
     const double K = model.baseParameter("K").value, Rms = model.baseParameter("Rms").value;
-    const auto atRest = [&] {
-        const auto law = laws(model).front();
-        return std::pair {law.value[law.value.size() / 2], law.frequency};
-    };
-    CHECK(atRest() == std::pair {Rms, 0.0});  // creep that is not at work
+    CHECK(atRest(model) == std::pair {Rms, 0.0});  // creep that is not at work
     const double fast = 100.0, strength = 0.2 * K;
     parameterOf(model, 2, "S").value = strength;
     parameterOf(model, 2, "centre").value = std::log10(fast);
     parameterOf(model, 2, "width").value = parameterOf(model, 2, "tilt").value = 0.0;  // a single relaxation
-    const auto [value, frequency] = atRest();
+    const auto [value, frequency] = atRest(model);
     const double stiffness = K + strength * frequency * frequency / (frequency * frequency + fast * fast);
     CHECK(frequency == Approx(std::sqrt(stiffness / model.baseParameter("m").value) / (2.0 * std::numbers::pi)));
     const double w = 2.0 * std::numbers::pi * frequency, p = 2.0 * std::numbers::pi * fast;

@@ -2,6 +2,7 @@
 #include "Engine/Batch/Collection.h"
 
 #include "Engine/Batch/Statistics.h"
+#include "Engine/Datasheet/LawTable.h"
 #include "Engine/Datasheet/ThieleSmall.h"
 #include "Engine/Design/StrokeLimits.h"
 #include "Engine/Diagnosis/ComparisonFile.h"
@@ -19,7 +20,6 @@ namespace excursion {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double normalOf95 = 1.96;  // standard deviations of half a 95 % band
 constexpr std::size_t fewestForOutliers = 5, fewestForGolden = 3;
 
 struct Figured {
@@ -53,78 +53,6 @@ public:
 private:
     std::size_t units_;
 };
-
-/// A law as it is told: the unit of a datasheet and the factor from SI.
-struct SheetUnit {
-    const char* unit;
-    double factor;
-};
-
-SheetUnit sheetUnitOf(const std::string& law)
-{
-    return law.starts_with("K(")     ? SheetUnit {"N/mm", 1e-3}
-           : law.starts_with("Le(")  ? SheetUnit {"mH", 1e3}
-           : law.starts_with("Rms(") ? SheetUnit {"kg/s", 1.0}
-                                     : SheetUnit {"T m", 1.0};
-}
-
-/// "+2 mm", "-0.5 m/s"
-std::string placeIn(double at, const std::string& unit)
-{
-    const bool metres = unit == "m";
-    return figure(metres ? 1e3 * at : at, "%+.4g") + (metres ? " mm" : " " + unit);
-}
-
-/// Two significant digits, downwards: a place that every unit was at.
-double roundedDown(double value)
-{
-    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-    return std::floor(value / digit * (1.0 + 1e-9)) * digit;
-}
-
-Figured lawAt(const LawTable& law, double at)
-{
-    if (at < law.at.front() * (1.0 + 1e-9) || at > law.at.back() * (1.0 + 1e-9))
-        return {};
-    const double step = law.at[1] - law.at[0],
-                 position = std::clamp((at - law.at.front()) / step, 0.0, static_cast<double>(law.at.size() - 1));
-    const auto k = std::min(static_cast<std::size_t>(position), law.at.size() - 2);
-    const double share = position - static_cast<double>(k);
-    const auto between = [&](const std::vector<double>& y) { return (1.0 - share) * y[k] + share * y[k + 1]; };
-    return {between(law.value), 0.5 * (between(law.high95) - between(law.low95)) / normalOf95};
-}
-
-/// Where a law is told; laws of two units are only compared where that is the same.
-std::string toldAt(const LawTable& law)
-{
-    if (law.frequency == 0.0)
-        return "";
-    return law.argument == "v" ? " at resonance" : " at " + figure(law.frequency, "%.4g") + " Hz";
-}
-
-void putLaws(Table& table, const LawsOfUnits& laws, const std::vector<double>& given)
-{
-    auto places = given;
-    if (places.empty() || laws.argument != "x") {
-        double range = std::numeric_limits<double>::infinity();
-        for (const auto& [unit, law] : laws.ofUnit)
-            range = std::min(range, law.at.back());
-        const double end = roundedDown(range);
-        places = {0.5 * end, end};
-    }
-    const auto [sheetUnit, factor] = sheetUnitOf(laws.name);
-    const auto base = laws.name.substr(0, laws.name.find('('));
-    std::vector<double> all;
-    for (auto it = places.rbegin(); it != places.rend(); ++it)
-        all.push_back(-*it);
-    all.insert(all.end(), places.begin(), places.end());
-    for (const double at : all)
-        for (const auto& [unit, law] : laws.ofUnit) {
-            auto value = lawAt(law, at);
-            table.put(unit, base + "(" + placeIn(at, laws.argumentUnit) + ")" + laws.told, sheetUnit,
-                      {factor * value.value, factor * value.error});
-        }
-}
 
 void putStroke(Table& table, std::size_t unit, const StrokeLimits& stroke)
 {
@@ -367,22 +295,13 @@ Collection collect(const Units& units, const CollectOptions& options)
         for (const auto& figure : thieleSmall(*models[k]))
             table.put(k, figure.symbol, figure.sheetUnit,
                       {figure.value * figure.perUnit, figure.standardError * figure.perUnit});
-        for (auto& law : lawTables(*models[k], 201)) {
-            if (law.name.starts_with("Cms"))
-                continue;  // the reciprocal of K(x)
-            auto found = std::find_if(all.laws.begin(), all.laws.end(), [&](const LawsOfUnits& l) {
-                return l.name == law.name && l.told == toldAt(law);
-            });
-            if (found == all.laws.end())
-                found = all.laws.insert(all.laws.end(),
-                                        {law.name, law.unit, law.argument, law.argumentUnit, toldAt(law), {}});
-            found->ofUnit.emplace_back(k, std::move(law));
-        }
+        gather(all.laws, k, lawTables(*models[k], 201));
     }
     auto places = options.places;
     std::sort(places.begin(), places.end());
     for (const auto& laws : all.laws)
-        putLaws(table, laws, places);
+        for (const auto& figure : figuresOf(laws, places))
+            table.put(figure.ofUnit, figure.name, figure.unit, {figure.value, figure.standardError});
     for (std::size_t k = 0; k < models.size(); ++k)
         if (models[k] && !models[k]->motionIsGuessed)
             putStroke(table, k, strokeLimits(models[k]->model));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Batch/LawsOfUnits.h"
 #include "Engine/Batch/Units.h"
-#include "Engine/Datasheet/LawTable.h"
 
 #include <filesystem>
 #include <limits>
@@ -64,13 +64,6 @@ struct UnitResult {
     /// Quantities, "has creep", "lacks creep", "its verdict".
     std::vector<std::string> standsOutBy() const;
     bool outlier() const { return !outlying.empty() || !additional.empty() || !absent.empty() || otherVerdict; }
-};
-
-/// A law of every unit that has it, as it is drawn.
-struct LawsOfUnits {
-    std::string name, unit, argument, argumentUnit;  ///< SI
-    std::string told;  ///< " at 750 Hz", " at resonance" of the losses; empty for laws that hold at any frequency
-    std::vector<std::pair<std::size_t, LawTable>> ofUnit;
 };
 
 struct Collection {

@@ -29,9 +29,23 @@ double addedBeside(const Model& model, const Component& law, const std::string& 
     return sum;
 }
 
+/// Hz, of the cone on what the suspension is there: what creeps is stiffer than at a lower frequency.
+double resonanceBeside(const Model& model, const Component& law, double lowest)
+{
+    auto resting = model;
+    auto& K = resting.baseParameter("K").value;
+    const double spring = K;
+    double resonance = lowest;
+    for (int n = 0; n < 20; ++n) {
+        K = spring + addedBeside(model, law, "K", resonance);
+        resonance = resonanceOf(resting.base().parameters);
+    }
+    return resonance;
+}
+
 /// Hz at which the take tells a law best of what relaxes beside it: a stiffness at the lowest frequency, losses at
-/// resonance, an inductance an octave below the highest frequency, where there is data on one side only. 0 where
-/// nothing relaxes.
+/// resonance, an inductance an octave below the highest frequency, as at that one there is data on one side only. 0
+/// where nothing relaxes.
 double frequencyOf(const Model& model, const Component& law, const std::string& base)
 {
     const auto found = std::find_if(model.components.begin() + 1, model.components.end(),
@@ -45,15 +59,7 @@ double frequencyOf(const Model& model, const Component& law, const std::string& 
         return 0.5 * high;
     if (base != "Rms")
         return 0.0;
-    auto parameters = model.base().parameters;
-    const auto K = std::find_if(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.name == "K"; });
-    const double spring = K->value;
-    double resonance = low;
-    for (int n = 0; n < 20; ++n) {  // what creeps is stiffer there than below
-        K->value = spring + addedBeside(model, law, "K", resonance);
-        resonance = std::clamp(resonanceOf(parameters), low, high);
-    }
-    return resonance;
+    return std::clamp(resonanceBeside(model, law, low), low, high);
 }
 
 /// A curve that has no values yet, and the component whose law it is.
