@@ -296,6 +296,25 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
            || woken;
 }
 
+std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                        const FitOptions& options, const ScoreOptions& score, const Progress& progress)
+{
+    std::optional<FitSummary> last;
+    constexpr int mostRaises = 3;
+    for (int n = 0; n < mostRaises; ++n) {
+        auto higher = model;
+        if (raiseDegrees(higher, record, score).empty())
+            break;
+        const auto part = progress.part(static_cast<double>(n) / mostRaises, (n + 1.0) / mostRaises);
+        const auto next = fitFed(higher, record, sections, options, part);
+        if (!next.usable() || !paysForItself(higher, model, record, sections, options))
+            break;
+        model = std::move(higher);
+        last = next;
+    }
+    return last;
+}
+
 void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options,
                const Progress& progress)
 {
@@ -327,17 +346,8 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     auto summary = fitFed(model, record, sections, quick, progress.part(0.0, 0.3));
     if (!quick.fedGradient)
         chooseResiduals(quick, score, model, record, sections);
-    constexpr int mostRaises = 3;
-    for (int n = 0; n < mostRaises; ++n) {
-        auto higher = model;
-        if (raiseDegrees(higher, record, score).empty())
-            break;
-        const auto next = fitFed(higher, record, sections, quick, progress.part(0.3 + 0.15 * n, 0.45 + 0.15 * n));
-        if (!next.usable() || !paysForItself(higher, model, record, sections, quick))
-            break;
-        model = std::move(higher);
-        summary = next;
-    }
+    if (const auto raised = raiseAsItPays(model, record, sections, quick, score, progress.part(0.3, 0.75)))
+        summary = *raised;
     if (hasPeriods(record)) {
         if (record.noiseKnown && (summary.chiSquaredPerValue > atNoise || !summary.onlyNoise))
             findPartsAnew(model, record, sections, quick);

@@ -6,6 +6,7 @@
 #include "Engine/Loudspeaker/LinearResponses.h"
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace excursion {
@@ -56,6 +57,11 @@ bool wakeShapes(Model&, const Record&, const std::vector<std::size_t>& sections,
 /// uncovered more parts. True if something leaves 5 % less; the model then had a quick fit. Does nothing for a record
 /// without periods.
 bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions&);
+
+/// Expands laws as far as their coefficients pay, with a fit after each step. The last fit, if there was one.
+/// @param score  with the residuals that the fits minimize
+std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector<std::size_t>& sections,
+                                        const FitOptions&, const ScoreOptions& score, const Progress& = {});
 
 /// Adds an effect to the model with the start values of the score test, and makes a quick fit. Throws Error (data) if
 /// the model already has the effect or cannot have it.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -51,6 +52,10 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
     std::set<std::string> strange;  // stood for something else in the last round: others come first in this one
     for (int n = 0; n < rounds && !now.isNoise(); ++n) {
         const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
+        if (n > 0) {  // laws of too low a degree hide what is small, and make others seem needed
+            search.raiseDegrees(whole.model);
+            now = search.left(whole.model);
+        }
         auto fuller = withBacked(whole.model, record,
                                  score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, strange,
                                  search);
@@ -107,18 +112,21 @@ struct Candidate {
     WholeSearch::Removals tried;
 };
 
-Candidate grownAndRefined(const Model& base, const Record& record, WholeSearch& search, const FitOptions& options,
-                          const Progress& progress)
+Candidate refined(Whole whole, const Record& record, WholeSearch& search, const FitOptions& options,
+                  const Progress& progress)
 {
-    Candidate found {grown(base, record, search, progress.part(0.0, 0.7)), {}};
-    auto& [whole, tried] = found;
-    if (!whole.fit.usable())
+    Candidate found {std::move(whole), {}};
+    if (!found.whole.fit.usable())
         return found;
-    if (search.left(whole.model).isNoise())  // what is not needed would only hold up the refinement
-        search.takeOut(whole.model, false, isNeeded, tried);
-    whole.fit = refine(whole.model, record, options, progress.part(0.7, 1.0));
+    search.chooseResiduals(found.whole.model);
+    if (search.left(found.whole.model).isNoise())  // what is not needed would only hold up the refinement
+        search.takeOut(found.whole.model, false, isNeeded, found.tried);
+    found.whole.fit = refine(found.whole.model, record, options, progress);
     return found;
 }
+
+/// Where growth ends that far from the noise, another start may lead further than any refinement of this one.
+constexpr double worthRefining = 100.0;
 
 /// Whether another start could not lead much further.
 bool isNear(const Whole& whole, const Record& record)
@@ -131,15 +139,33 @@ bool isNear(const Whole& whole, const Record& record)
 Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
 {
     WholeSearch search(base, record, options);
-    auto found = grownAndRefined(base, record, search, options, progress.part(0.0, 0.4));
-    auto& [whole, tried] = found;
-    if (const auto loud = isNear(whole, record) ? std::nullopt : fittedToLoudest(base, record, options)) {
-        auto other = grownAndRefined(*loud, record, search, options, progress.part(0.4, 0.8));
-        search.chooseResiduals(whole.model);
-        if (other.whole.fit.usable()
-            && search.left(other.whole.model).chiSquaredPerValue < search.left(whole.model).chiSquaredPerValue)
-            found = std::move(other);
+    auto first = grown(base, record, search, progress.part(0.0, 0.3));
+    std::optional<Whole> second;
+    const auto growSecond = [&] {
+        if (const auto loud = fittedToLoudest(base, record, options))
+            second = grown(*loud, record, search, progress.part(0.3, 0.5));
+    };
+    const auto leaves = [&](const Whole& one) {
+        return one.fit.usable() ? search.left(one.model).chiSquaredPerValue : std::numeric_limits<double>::infinity();
+    };
+    if (!(leaves(first) < worthRefining)) {
+        growSecond();
+        search.chooseResiduals(first.model);
+        if (second && leaves(*second) < leaves(first))
+            std::swap(first, *second);
     }
+    auto found = refined(std::move(first), record, search, options, progress.part(0.5, 0.65));
+    if (!isNear(found.whole, record)) {
+        if (!second)
+            growSecond();
+        if (second) {
+            auto other = refined(std::move(*second), record, search, options, progress.part(0.65, 0.8));
+            search.chooseResiduals(found.whole.model);
+            if (leaves(other.whole) < leaves(found.whole))
+                found = std::move(other);
+        }
+    }
+    auto& [whole, tried] = found;
     if (!whole.fit.usable())
         return whole;
     search.chooseResiduals(whole.model);

@@ -69,6 +69,8 @@ void WholeSearch::findPartsAnew(Model& model) const
     excursion::findPartsAnew(model, record_, sections_, within(brief));
 }
 
+void WholeSearch::raiseDegrees(Model& model) const { raiseAsItPays(model, record_, sections_, within(brief), test_); }
+
 Left WholeSearch::left(const Model& model) const
 {
     OutputErrorOptions plain;
@@ -138,7 +140,7 @@ Removal WholeSearch::without(const Model& model, const Left& now, const std::str
     if (!fit(leaner, glance).usable())
         return removal;
     auto then = left(leaner);
-    if (lost(then, now) < sorelyMissed) {
+    if (lost(then, now) < (thorough ? sorelyMissed : barelyMissed)) {
         if (!fit(leaner, brief).usable())
             return removal;
         then = left(leaner);

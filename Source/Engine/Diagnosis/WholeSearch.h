@@ -70,6 +70,7 @@ public:
 
     FitSummary fit(Model&, const Progress& = {}) const;
     void findPartsAnew(Model&) const;  ///< see Trial.h
+    void raiseDegrees(Model&) const;   ///< of laws, as far as it pays
 
     using Removals = std::map<std::string, Removal>;
     /// Every effect of a model but those of the base. By derivatives it says little of an effect that has become a
