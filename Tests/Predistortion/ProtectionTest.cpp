@@ -98,29 +98,30 @@ struct Reached {
     double displacement = 0.0, voltage = 0.0, power = 0.0;
 };
 
+/// @param take   the driver's answer to the voltage
 /// @param from   sample at which these limits came; asked for from a fifth of a second later on, as the cone has to
 /// come back by itself. A mean
 ///               of the heat that is above its limit has to fall, from half a second later on, nearly as fast as
 ///                   silence would let it
-Reached reachedBy(const Model& driver, const std::vector<double>& voltage, const PredistortionControls& limits,
-                  std::size_t from)
+/// @param to     the first sample that is no longer asked for
+Reached reachedBy(const Measurement& take, double ohms, const PredistortionControls& limits, std::size_t from,
+                  std::size_t to)
 {
-    const auto take = simulate(driver, voltage, rate, {});
+    const auto& u = take.find(Quantity::voltage)->samples;
     const auto& x = take.find(Quantity::displacement)->samples;
     const auto& i = take.find(Quantity::current)->samples;
-    const double ohms = driver.baseParameter("Re").value;
     Reached reached;
     const std::size_t asked = from + static_cast<std::size_t>(from > 0 ? 0.2 * rate : 0.0),
                       warm = from + static_cast<std::size_t>(from > 0 ? 0.5 * rate : 0.0);
     double heat = 0.0, before = 0.0;
-    for (std::size_t n = 0; n < voltage.size(); ++n) {
+    for (std::size_t n = 0; n < to; ++n) {
         heat += (1.0 - std::exp(-1.0 / (rate * PredistortionControls::averagingTime))) * (ohms * i[n] * i[n] - heat);
         if (n < warm)
             before = heat;
         if (n < asked)
             continue;
         reached.displacement = std::max(reached.displacement, std::abs(x[n]) / limits.displacementLimit);
-        reached.voltage = std::max(reached.voltage, std::abs(voltage[n]) / limits.voltageLimit);
+        reached.voltage = std::max(reached.voltage, std::abs(u[n]) / limits.voltageLimit);
         reached.power = std::max(
             reached.power,
             heat
@@ -168,9 +169,10 @@ Tally study(int drivers, double seconds, double error, unsigned seed)
             engine.process(voltage.data() + n, voltage.data() + n, std::min<std::size_t>(64, voltage.size() - n));
         }
         const auto driver = error > 0.0 ? wrong(*model, error, draw) : *model;
-        const auto before = reachedBy(driver, {voltage.begin(), voltage.begin() + static_cast<std::ptrdiff_t>(change)},
-                                      first, 0);
-        const auto after = reachedBy(driver, voltage, second, change);
+        const auto take = simulate(driver, voltage, rate, {});
+        const double ohms = driver.baseParameter("Re").value;
+        const auto before = reachedBy(take, ohms, first, 0, change);
+        const auto after = reachedBy(take, ohms, second, change, voltage.size());
         const double most = error > 0.0 ? 1.05 : 1.01;
         for (const auto& reached : {before, after}) {
             CHECK(reached.displacement < most);
