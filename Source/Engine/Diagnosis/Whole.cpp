@@ -16,25 +16,40 @@
 namespace excursion {
 namespace {
 
-/// The model with every effect that the vote backs. Laws are at no strength; linear effects, the best first, are found
-/// one after the other on the responses, and stay at rest where that leaves more.
-Model withBacked(const Model& model, const Record& record, const std::vector<Score>& scores,
-                 const std::set<std::string>& without, const WholeSearch& search)
+/// The effects that stand alone in the vote, as beside what they leave it tells more of the others; where there are
+/// none, all that it backs.
+std::vector<const Score*> backed(const std::vector<Score>& scores, const std::set<std::string>& without)
+{
+    std::vector<const Score*> alone, all;
+    for (const auto& s : scores) {
+        if (without.contains(s.effect->id()))
+            continue;
+        if (s.vote.standsAlone())
+            alone.push_back(&s);
+        if (s.vote.backs())
+            all.push_back(&s);
+    }
+    return alone.empty() ? all : alone;
+}
+
+/// The model with these effects. Laws are at no strength; linear effects, the best first, are found one after the other
+/// on the responses, and stay at rest where that leaves more.
+Model withAll(const std::vector<const Score*>& scores, const Model& model, const Record& record,
+              const WholeSearch& search)
 {
     Model fuller = model;
     const LinearResponses still(withoutLaws(model, record, search.test().threads));
     double now = search.left(model).chiSquaredPerValue;
-    for (const auto& s : scores) {  // lowest first
-        if (!s.vote.backs() || without.contains(s.effect->id()))
-            continue;
-        auto next = withComponent(fuller, s.model.components.back());
-        if (s.effect->linear() && fitNewestByResponse(next, still.gridFor(next.components.back())).usable())
+    for (const auto* s : scores) {  // lowest first
+        const auto& newest = s->model.components.back();
+        auto next = withComponent(fuller, newest);
+        if (s->effect->linear() && fitNewestByResponse(next, still.gridFor(newest)).usable())
             if (const double then = search.left(next).chiSquaredPerValue; then < now) {
                 fuller = std::move(next);
                 now = then;
                 continue;
             }
-        fuller = withComponent(std::move(fuller), scaled(s.model.components.back(), 0.0));
+        fuller = withComponent(std::move(fuller), scaled(newest, 0.0));
     }
     return fuller;
 }
@@ -45,22 +60,26 @@ bool isNeeded(const Removal& removal) { return removal.vote.uniqueDb > hardlyNee
 Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
 {
     Whole whole {base, {}, {}};
-    constexpr int rounds = 8;
+    constexpr int rounds = 12;
     constexpr double worthARound = 1.0;  // dB
     search.chooseResiduals(base);
     auto now = search.left(whole.model);
-    std::set<std::string> strange;  // stood for something else in the last round: others come first in this one
+    std::vector<Score> scores;  // of the whole, once it was asked
+    std::set<std::string>
+        strange;  // sit out this round: they stood for something else in the last one, or brought nothing
     for (int n = 0; n < rounds && !now.isNoise(); ++n) {
         const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
-        if (n > 0) {  // laws of too low a degree hide what is small, and make others seem needed
-            search.raiseDegrees(whole.model);
-            now = search.left(whole.model);
+        if (scores.empty()) {
+            if (n > 0) {  // laws of too low a degree hide what is small, and make others seem needed
+                search.raiseDegrees(whole.model);
+                now = search.left(whole.model);
+            }
+            scores = score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores;
         }
-        auto fuller = withBacked(whole.model, record,
-                                 score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores, strange,
-                                 search);
-        if (fuller.components.size() == whole.model.components.size())
+        const auto trial = backed(scores, strange);
+        if (trial.empty())
             break;
+        auto fuller = withAll(trial, whole.model, record, search);
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable())
             break;
@@ -75,6 +94,9 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
             then = search.left(fuller);
         }
         if (!(search.lost(now, then) > worthARound)) {
+            if (strange.empty() && before.empty() && trial.front()->vote.standsAlone())
+                for (const auto* s : trial)
+                    strange.insert(s->effect->id());
             if (strange.empty() || strange == before)  // the next round would be this one again
                 break;
             continue;
@@ -82,6 +104,7 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
         now = then;
         whole.model = std::move(fuller);
         whole.fit = summary;
+        scores.clear();
     }
     return whole;
 }
@@ -125,13 +148,44 @@ Candidate refined(Whole whole, const Record& record, WholeSearch& search, const 
     return found;
 }
 
-/// Where growth ends that far from the noise, another start may lead further than any refinement of this one.
-constexpr double worthRefining = 100.0;
-
 /// Whether another start could not lead much further.
 bool isNear(const Whole& whole, const Record& record)
 {
     return whole.fit.usable() && record.noiseKnown && whole.fit.chiSquaredPerValue < nearNoise;
+}
+
+/// What the base leads to, or its loudest level, whichever leaves less. A start is refined as soon as it has grown,
+/// and the other one only tried where that does not come near the noise; but where growth ends far from the noise,
+/// another start may lead further than any refinement.
+Candidate best(const Model& base, const Record& record, WholeSearch& search, const FitOptions& options,
+               const Progress& progress)
+{
+    constexpr double far = 100.0;
+    auto first = grown(base, record, search, progress.part(0.0, 0.4));
+    std::optional<Whole> second;
+    const auto growSecond = [&] {
+        if (const auto loud = fittedToLoudest(base, record, options))
+            second = grown(*loud, record, search, progress.part(0.4, 0.6));
+    };
+    const auto leaves = [&](const Whole& one) {
+        return one.fit.usable() ? search.left(one.model).chiSquaredPerValue : std::numeric_limits<double>::infinity();
+    };
+    if (!(leaves(first) < far)) {
+        growSecond();
+        search.chooseResiduals(first.model);
+        if (second && leaves(*second) < leaves(first))
+            std::swap(first, *second);
+    }
+    auto found = refined(std::move(first), record, search, options, progress.part(0.6, 0.8));
+    if (isNear(found.whole, record))
+        return found;
+    if (!second)
+        growSecond();
+    if (!second)
+        return found;
+    auto other = refined(std::move(*second), record, search, options, progress.part(0.8, 1.0));
+    search.chooseResiduals(found.whole.model);
+    return leaves(other.whole) < leaves(found.whole) ? other : found;
 }
 
 }  // namespace
@@ -139,32 +193,7 @@ bool isNear(const Whole& whole, const Record& record)
 Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
 {
     WholeSearch search(base, record, options);
-    auto first = grown(base, record, search, progress.part(0.0, 0.3));
-    std::optional<Whole> second;
-    const auto growSecond = [&] {
-        if (const auto loud = fittedToLoudest(base, record, options))
-            second = grown(*loud, record, search, progress.part(0.3, 0.5));
-    };
-    const auto leaves = [&](const Whole& one) {
-        return one.fit.usable() ? search.left(one.model).chiSquaredPerValue : std::numeric_limits<double>::infinity();
-    };
-    if (!(leaves(first) < worthRefining)) {
-        growSecond();
-        search.chooseResiduals(first.model);
-        if (second && leaves(*second) < leaves(first))
-            std::swap(first, *second);
-    }
-    auto found = refined(std::move(first), record, search, options, progress.part(0.5, 0.65));
-    if (!isNear(found.whole, record)) {
-        if (!second)
-            growSecond();
-        if (second) {
-            auto other = refined(std::move(*second), record, search, options, progress.part(0.65, 0.8));
-            search.chooseResiduals(found.whole.model);
-            if (leaves(other.whole) < leaves(found.whole))
-                found = std::move(other);
-        }
-    }
+    auto found = best(base, record, search, options, progress.part(0.0, 0.8));
     auto& [whole, tried] = found;
     if (!whole.fit.usable())
         return whole;
