@@ -65,8 +65,8 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
     search.chooseResiduals(base);
     auto now = search.left(whole.model);
     std::vector<Score> scores;  // of the whole, once it was asked
-    std::set<std::string>
-        strange;  // sit out this round: they stood for something else in the last one, or brought nothing
+    // What stood for something else in the last round, or brought nothing: others come first in this one.
+    std::set<std::string> strange;
     for (int n = 0; n < rounds && !now.isNoise(); ++n) {
         const auto part = progress.part(static_cast<double>(n) / rounds, (n + 1.0) / rounds);
         if (scores.empty()) {
@@ -185,7 +185,9 @@ Candidate best(const Model& base, const Record& record, WholeSearch& search, con
         return found;
     auto other = refined(std::move(*second), record, search, options, progress.part(0.8, 1.0));
     search.chooseResiduals(found.whole.model);
-    return leaves(other.whole) < leaves(found.whole) ? other : found;
+    if (leaves(other.whole) < leaves(found.whole))
+        return other;
+    return found;
 }
 
 }  // namespace

@@ -140,7 +140,8 @@ Removal WholeSearch::without(const Model& model, const Left& now, const std::str
     if (!fit(leaner, glance).usable())
         return removal;
     auto then = left(leaner);
-    if (lost(then, now) < (thorough ? sorelyMissed : barelyMissed)) {
+    // What is found at the noise is believed later on, so there a glance is not enough.
+    if (lost(then, now) < (thorough || now.isNoise() ? sorelyMissed : barelyMissed)) {
         if (!fit(leaner, brief).usable())
             return removal;
         then = left(leaner);
