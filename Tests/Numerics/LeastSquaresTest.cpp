@@ -195,9 +195,9 @@ TEST_CASE("Search options that make no sense carry a reason", "[least-squares]")
 
 TEST_CASE("What is noise for sure neither stops a search early nor changes what it finds", "[least-squares]")
 {
-    // Beside a million residuals that are nothing but noise the misfit of fourteen is too little for a tolerance of the
-    // whole.
-    constexpr double noise = 1e6;
+    // Beside so many residuals that are nothing but noise the misfit of fourteen is too little for a tolerance of the
+    // whole: the first step is the last.
+    constexpr double noise = 1e9;
     const auto beside = [](double sure) {
         return [sure](const Eigen::VectorXd& b, bool gradient, NormalEquations& sum) {
             misra::evaluate(b, gradient, sum);
@@ -210,11 +210,70 @@ TEST_CASE("What is noise for sure neither stops a search early nor changes what 
     LeastSquaresOptions options;
     options.costTolerance = 1e-4;
     const auto lower = two(-infinite, -infinite), upper = two(infinite, infinite);
-    auto lost = two(250.0, 5.0e-4), found = lost;
+    auto lost = two(500.0, 1e-4), found = lost;
     const auto early = minimize(beside(0.0), lost, lower, upper, options);
     const auto late = minimize(beside(noise), found, lower, upper, options);
     CHECK(early.finalCost - noise > 10.0 * misra::sumOfSquares);
     CHECK(late.finalCost - noise == Approx(misra::sumOfSquares).epsilon(1e-3));
     CHECK(found[0] == Approx(misra::b1).epsilon(1e-3));
     CHECK(late.converged());
+}
+
+TEST_CASE("Steps that follow the bend of a curved valley arrive in fewer of them", "[least-squares]")
+{
+    // Rosenbrock's valley, a hundred times as narrow: r = (1000 (y - x^2), 1 - x), whose r'' along (dx, dy) is
+    // (-2000 dx^2, 0).
+    int slopes = 0;
+    const auto jacobian = [](const Eigen::VectorXd& at) {
+        Eigen::Matrix2d J;
+        J << -2000.0 * at[0], 1000.0, -1.0, 0.0;
+        return J;
+    };
+    const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        const Eigen::Vector2d r(1000.0 * (at[1] - at[0] * at[0]), 1.0 - at[0]);
+        sum = NormalEquations(r);
+        if (gradient) {
+            ++slopes;
+            sum.differentiateBy(jacobian(at), r);
+        }
+        return true;
+    };
+    const auto curvature = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& step) -> Eigen::VectorXd {
+        return jacobian(at).transpose() * Eigen::Vector2d(-2000.0 * step[0] * step[0], 0.0);
+    };
+    const auto lower = two(-infinite, -infinite), upper = two(infinite, infinite);
+    const auto stepsFor = [&](const Curvature& bend) {
+        auto at = two(-1.2, 1.0);
+        slopes = 0;
+        const auto summary = minimize(evaluate, at, lower, upper, exact(), {}, bend);
+        INFO(summary.message);
+        CHECK(summary.usable());
+        CHECK(at[0] == Approx(1.0).epsilon(1e-6));
+        CHECK(at[1] == Approx(1.0).epsilon(1e-6));
+        return slopes;
+    };
+    const int straight = stepsFor({}), bent = stepsFor(curvature);
+    INFO(straight << " steps, " << bent << " that are bent");
+    CHECK(2 * bent < straight);
+    CHECK(stepsFor([](const Eigen::VectorXd&, const Eigen::VectorXd&) { return Eigen::VectorXd(); }) > bent);
+}
+
+TEST_CASE("Slopes that are half wrong lead to the least error all the same", "[least-squares]")
+{
+    // What a step promises then never comes; the search goes on as long as steps go down.
+    const auto evaluate = [](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
+        const Eigen::Vector2d r(at[0] + 3.0 * at[1] - 5.0, 0.01 * (at[0] - at[1] - 1.0));
+        sum = NormalEquations(r);
+        if (gradient)
+            sum.differentiateBy(Eigen::Matrix2d {{1.5, 4.0}, {0.006, -0.014}}, r);
+        return true;
+    };
+    for (const double bound : {infinite, 2.5}) {
+        auto at = two(0.0, 0.0);
+        const auto summary = minimize(evaluate, at, two(-bound, -bound), two(bound, bound), exact());
+        INFO(summary.message);
+        CHECK(summary.usable());
+        CHECK(at[0] == Approx(2.0).epsilon(1e-4));
+        CHECK(at[1] == Approx(1.0).epsilon(1e-4));
+    }
 }

@@ -222,6 +222,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
         auto chosen = options;
         chosen.search = {iterations, tolerance};
+        chosen.bent = tolerance < 1e-4;  // along valleys
         chosen.fedGradient = fedGradient && hasPeriods(record);
         chosen.exactGradient = !fedGradient;
         return fit(model, record, sections, chosen, progress.part(from, to));
@@ -231,7 +232,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
-    summary = stage(30, 5e-7, true, 0.3, 0.5);
+    summary = stage(20, 5e-7, true, 0.3, 0.5);
     // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
     // noise the cost falls by next to nothing for long.
     if (near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean)

@@ -5,6 +5,7 @@
 #include "Engine/Diagnosis/WholeSearch.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/LinearResponses.h"
+#include "Engine/Numerics/Parallel.h"
 
 #include <algorithm>
 #include <iterator>
@@ -32,37 +33,102 @@ std::vector<const Score*> backed(const std::vector<Score>& scores, const std::se
     return alone.empty() ? all : alone;
 }
 
-/// The model with these effects. Laws are at no strength; linear effects, the best first, are found one after the other
-/// on the responses, and stay at rest where that leaves more.
-Model withAll(const std::vector<const Score*>& scores, const Model& model, const Record& record,
-              const WholeSearch& search)
+/// All others, but for those that are made of resonances: these show in lines where nothing else does.
+std::vector<const Score*> every(const std::vector<Score>& scores, const std::set<std::string>& without)
+{
+    std::vector<const Score*> all;
+    for (const auto& s : scores) {
+        const auto& component = s.model.components.back();
+        if (!without.contains(s.effect->id()) && s.effect->parts(component.operatingRange).empty())
+            all.push_back(&s);
+    }
+    return all;
+}
+
+bool isItself(const Component& component, const Model& model)
+{
+    return component.effect->plausible(component.operatingRange, component.parameters, model.base().parameters);
+}
+
+/// The linear effects among these that a model needs, found on the responses, whichever leaves least first: many of
+/// them can stand in for another, so that a vote on all together backs none of them, or a wrong one.
+Model withLinear(const std::vector<Score>& scores, const std::set<std::string>& without, Model model,
+                 const Record& record, const WholeSearch& search)
+{
+    constexpr double worthIt = 0.98;
+    std::vector<Model> candidates;
+    for (const auto& s : scores)
+        if (s.effect->linear() && !without.contains(s.effect->id()))
+            candidates.push_back(s.model);
+    const unsigned threads = search.test().threads;
+    const LinearResponses still(withoutLaws(model, record, threads));
+    double now = search.left(model).chiSquaredPerValue;
+    while (!candidates.empty()) {
+        for (auto& candidate : candidates)
+            candidate = withComponent(model, candidate.components.back());
+        std::vector<double> leaves(candidates.size(), std::numeric_limits<double>::infinity());
+        inParallel(candidates.size(), threads, {}, [&](std::size_t n) {
+            auto& candidate = candidates[n];
+            if (fitNewestByResponse(candidate, still.gridFor(candidate.components.back())).usable()
+                && isItself(candidate.components.back(), candidate))
+                leaves[n] = 0.0;
+            return true;
+        });
+        std::size_t best = 0;
+        for (std::size_t n = 0; n < candidates.size(); ++n) {
+            if (leaves[n] == 0.0)
+                leaves[n] = search.left(candidates[n]).chiSquaredPerValue;
+            if (leaves[n] < leaves[best])
+                best = n;
+        }
+        if (!(leaves[best] < worthIt * now))
+            break;
+        model = std::move(candidates[best]);
+        std::vector<Model> others;  // that may still bring something
+        for (std::size_t n = 0; n < candidates.size(); ++n)
+            if (n != best && leaves[n] < now)
+                others.push_back(std::move(candidates[n]));
+        candidates = std::move(others);
+        now = leaves[best];
+    }
+    return model;
+}
+
+/// The model with these effects, all that are linear if one of them is. Laws are at no strength, and so are linear
+/// effects where the responses show none.
+Model withAll(const std::vector<const Score*>& trial, const std::vector<Score>& scores,
+              const std::set<std::string>& without, const Model& model, const Record& record, const WholeSearch& search)
 {
     Model fuller = model;
-    const LinearResponses still(withoutLaws(model, record, search.test().threads));
-    double now = search.left(model).chiSquaredPerValue;
-    for (const auto* s : scores) {  // lowest first
-        const auto& newest = s->model.components.back();
-        auto next = withComponent(fuller, newest);
-        if (s->effect->linear() && fitNewestByResponse(next, still.gridFor(newest)).usable())
-            if (const double then = search.left(next).chiSquaredPerValue; then < now) {
-                fuller = std::move(next);
-                now = then;
-                continue;
-            }
-        fuller = withComponent(std::move(fuller), scaled(newest, 0.0));
-    }
+    const bool anyLinear = std::any_of(trial.begin(), trial.end(), [](const Score* s) { return s->effect->linear(); });
+    if (anyLinear)
+        fuller = withLinear(scores, without, model, record, search);
+    const bool found = fuller.components.size() > model.components.size();
+    for (const auto* s : trial)
+        if (!fuller.has(s->effect->id()) && !(found && s->effect->linear()))
+            fuller = withComponent(std::move(fuller), scaled(s->model.components.back(), 0.0));
     return fuller;
+}
+
+/// Without what a fit has put at rest.
+Model atWork(Model model, const Model& base)
+{
+    for (const auto& effect : model.effectIds())
+        if (const auto component = std::find_if(model.components.begin(), model.components.end(),
+                                                [&](const Component& c) { return c.effect->id() == effect; });
+            !base.has(effect) && !isAtWork(*component))
+            model = withoutEffect(model, effect);
+    return model;
 }
 
 bool isNeeded(const Removal& removal) { return removal.vote.uniqueDb > hardlyNeeded; }
 
-/// The effects that rounds of voting put into a base, and what the last of them was fitted to.
-Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
+/// Puts effects into a whole by rounds of voting.
+void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
 {
-    Whole whole {base, {}, {}};
     constexpr int rounds = 12;
     constexpr double worthARound = 1.0;  // dB
-    search.chooseResiduals(base);
+    search.chooseResiduals(whole.model);
     auto now = search.left(whole.model);
     std::vector<Score> scores;  // of the whole, once it was asked
     // What stood for something else in the last round, or brought nothing: others come first in this one.
@@ -76,13 +142,16 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
             }
             scores = score(whole.model, record, search.test(), part.part(0.0, 0.4)).scores;
         }
-        const auto trial = backed(scores, strange);
+        auto trial = backed(scores, strange);
+        if (trial.empty() && record.noiseKnown && now.chiSquaredPerValue < nearNoise)
+            trial = every(scores, strange);  // so little is left that each may be voted down beside the others
         if (trial.empty())
             break;
-        auto fuller = withAll(trial, whole.model, record, search);
+        auto fuller = withAll(trial, scores, strange, whole.model, record, search);
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable())
             break;
+        fuller = atWork(std::move(fuller), base);
         const auto before = std::exchange(strange, search.takeOutImplausible(fuller));
         search.chooseResiduals(fuller);
         now = search.left(whole.model);
@@ -106,6 +175,15 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
         whole.fit = summary;
         scores.clear();
     }
+}
+
+/// The effects that the record shows beside those of a base, and what the last of them was fitted to.
+Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
+{
+    Whole whole {base, {}, {}};
+    grow(whole, base, record, search, progress.part(0.0, 0.7));
+    if (search.exchangeStandIns(whole.model))  // beside the right ones others may show
+        grow(whole, base, record, search, progress.part(0.8, 1.0));
     return whole;
 }
 

@@ -96,6 +96,10 @@ public:
     /// missed is found anew there before it would go.
     std::set<std::string> takeOutImplausible(Model&) const;
 
+    /// Exchanges linear effects, on trial, for those that the model does not have: one may have come in for another,
+    /// of which nothing is left to be seen then. Whether one of those stayed.
+    bool exchangeStandIns(Model&) const;
+
 private:
     struct Leaner {
         std::string effect;  ///< that went

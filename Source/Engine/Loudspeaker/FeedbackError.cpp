@@ -38,8 +38,12 @@ public:
             const auto r = residual_.of(c, played ? played->predicted[c] : predicted);
             NormalEquations normal(r);
             fit.finite = fit.finite && std::isfinite(normal.cost);
-            if (options.gradient && !active.empty())
-                normal.differentiateBy(columns(c, active, heard), r);
+            if (options.gradient && !active.empty()) {
+                const auto J = columns(c, active, heard);
+                normal.differentiateBy(J, r);
+                if (options.slopes)
+                    fit.slopes.push_back(J.cast<float>());
+            }
             fit.channels.push_back(std::move(normal));
             fit.power.push_back(played ? played->power[c] : residual_.power(c, predicted));
             if (options.spectra)
@@ -179,6 +183,8 @@ std::vector<SectionFit> feedbackError(const Model& model, const Record& record,
                                       const Progress& progress, const std::vector<SectionFit>* played,
                                       std::vector<KnownSlopes>* known)
 {
+    if (played && std::any_of(played->begin(), played->end(), [](const SectionFit& fit) { return !fit.finite; }))
+        return *played;
     const bool gradient = options.gradient && !active.empty();
     std::vector<std::vector<bool>> wanted;
     Eigen::Index index = 0;
@@ -233,17 +239,14 @@ Record withoutLaws(const Model& model, const Record& record, unsigned threads)
 
 std::vector<SectionFit> playedError(const Model& model, const Record& record, const std::vector<std::size_t>& sections,
                                     const ShownMotions& motions, const std::vector<Eigen::Index>& active,
-                                    const OutputErrorOptions& options, const Progress& progress,
-                                    std::vector<KnownSlopes>* known)
+                                    const OutputErrorOptions& options, const Progress& progress)
 {
     auto simulated = options;
     simulated.gradient = false;
     simulated.spectra = simulated.spectra || options.gradient;
-    auto played = outputError(model, record, sections, active, simulated, progress);
-    const bool finite = std::all_of(played.begin(), played.end(), [](const SectionFit& fit) { return fit.finite; });
-    return options.gradient && finite
-               ? feedbackError(model, record, sections, motions, active, options, progress, &played, known)
-               : played;
+    const auto played = outputError(model, record, sections, active, simulated, progress);
+    return options.gradient ? feedbackError(model, record, sections, motions, active, options, progress, &played)
+                            : played;
 }
 
 bool isBetterPlayed(const Model& model, const Record& record, const std::vector<std::size_t>& sections,

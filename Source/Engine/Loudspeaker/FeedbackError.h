@@ -20,9 +20,9 @@ namespace excursion {
 /// apply as far as they do not concern steps.
 /// @param motions  one per section of `sections`
 /// @param played   if given, the result of a simulation of these sections, with spectra: the residuals are its own, and
-///                 only the slopes are those of fed laws. These differ from a simulation's by the effect of a law's
-///                 change on the motion that it is fed. As the residuals are exact, the search still arrives where they
-///                 are noise.
+///                 only the slopes are those of fed laws (it is the result where it is not finite). These differ from a
+///                 simulation's by the effect of a law's change on the motion that it is fed. As the residuals are
+///                 exact, the search still arrives where they are noise.
 /// @param known  if given, one per section: slopes that depend on the motion alone, kept from one call to the next as
 ///               long as motions and `active` stay the same
 std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::vector<std::size_t>& sections,
@@ -34,8 +34,7 @@ std::vector<SectionFit> feedbackError(const Model&, const Record&, const std::ve
 /// outputError() of a record with periods, with the slopes of fed laws if slopes are asked for: in a tenth of the time.
 std::vector<SectionFit> playedError(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                     const ShownMotions& motions, const std::vector<Eigen::Index>& active,
-                                    const OutputErrorOptions&, const Progress& = {},
-                                    std::vector<KnownSlopes>* known = nullptr);
+                                    const OutputErrorOptions&, const Progress& = {});
 
 /// Whether a simulation leaves less than fed laws: then the noise of the fed motion exceeds the model's error. Always
 /// false for a record without periods and for a model without laws.

@@ -6,6 +6,7 @@
 #include "Engine/Loudspeaker/OutputError.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
+#include "Engine/Loudspeaker/StepCurvature.h"
 #include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
@@ -17,6 +18,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace excursion {
@@ -82,9 +84,26 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
     return kept;
 }
 
+/// Laws that are fed with what a take shows.
+struct FedSections {
+    const Record& record;
+    const std::vector<std::size_t>& sections;
+    const ShownMotions& motions;
+    OutputErrorOptions run;
+
+    std::vector<SectionFit> predict(const Model& model) const
+    {
+        auto options = run;
+        options.gradient = false;
+        options.spectra = true;
+        return feedbackError(model, record, sections, motions, {}, options);
+    }
+};
+
 /// The search of the model's parameters for the least error.
+/// @param fed  null, or fed laws, by which steps follow the bend of the error's valley; errorOf tells slopes then
 FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const FitOptions& options,
-                  const Progress& progress)
+                  const Progress& progress, const FedSections* fed = nullptr)
 {
     FitSummary summary;
     std::vector<SectionFit> atStart;
@@ -103,12 +122,22 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         for (Eigen::Index k = 0; k < P; ++k)
             all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
     };
-    NormalEquations last;   // at the last accepted gradient
-    double variance = 0.0;  // of the residuals at the start
+    std::optional<StepCurvature> bend;
+    if (fed)
+        bend.emplace(fed->record, fed->sections, [&](const Eigen::VectorXd& at) {
+            place(at);
+            return fed->predict(model);
+        });
+    const auto along = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& step) {
+        return bend->along(at, step, lower, upper);
+    };
+    NormalEquations last;                                     // at the last place with slopes
+    double variance = 0.0;                                    // of the residuals at the start
+    double lowest = std::numeric_limits<double>::infinity();  // cost
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
         place(at);
         // asked for there first
-        const auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});
+        auto fits = atStart.empty() ? errorOf(active, gradient) : std::exchange(atStart, {});
         auto total = sumOf(fits);
         if (!total)
             return false;
@@ -118,15 +147,18 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
-        if (gradient && sum.N.allFinite()) {  // else the search ends before this place
+        if (gradient && sum.N.allFinite())
             last = sum;
+        if (gradient && bend)
+            bend->beginAt(std::move(fits));
+        if (sum.cost < lowest) {  // the search takes every such step
+            lowest = sum.cost;
             summary.onlyNoise = onlyNoise;
         }
         return true;
     };
-    auto frugal = options.search;
-    frugal.slopesAlongSteps = false;
-    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, frugal, progress);
+    static_cast<SearchSummary&>(summary) = minimize(evaluate, theta, lower, upper, options.search, progress,
+                                                    bend ? Curvature(along) : Curvature());
     place(theta);
     if (!summary.usable())
         return summary;
@@ -142,6 +174,41 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
     }
     return summary;
 }
+
+constexpr std::size_t roomForSlopes = 1 << 28;  // numbers of 4 bytes
+
+std::size_t residualsOf(const Record& record, const std::vector<std::size_t>& sections)
+{
+    std::size_t count = 0;
+    for (const auto s : sections) {
+        const auto [first, last] = record.lineRange(record.sections[s]);
+        count += 2 * (last - first + 1) * record.channels.size();
+    }
+    return count;
+}
+
+/// Sections as a model plays them, kept while it stays as it is: a search asks for the slopes of a step that it has
+/// just tried.
+class PlayedSections {
+public:
+    const std::vector<SectionFit>& of(const Model& model, const Record& record,
+                                      const std::vector<std::size_t>& sections, OutputErrorOptions options,
+                                      const Progress& progress)
+    {
+        const auto now = parameterVector(model);
+        if (fits_.empty() || now != at_) {
+            options.gradient = false;
+            options.spectra = true;
+            fits_ = outputError(model, record, sections, {}, options, progress);
+            at_ = now;
+        }
+        return fits_;
+    }
+
+private:
+    Eigen::VectorXd at_;
+    std::vector<SectionFit> fits_;
+};
 
 }  // namespace
 
@@ -301,14 +368,21 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     const bool slopesFed = options.fedGradient && hasPeriods(record);
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
     std::vector<KnownSlopes> known(sections.size());
+    PlayedSections played;
+    const FedSections fed {record, sections, motions, run};
+    run.slopes = slopesFed && options.bent
+                 && residualsOf(record, sections) * parametersOf(model).size() < roomForSlopes;
     auto summary = search(
         model,
         [&](const std::vector<Eigen::Index>& active, bool gradient) {
             run.gradient = gradient;
-            return slopesFed ? playedError(model, record, sections, motions, active, run, progress, &known)
-                             : outputError(model, record, sections, active, run, progress);
+            if (!slopesFed)
+                return outputError(model, record, sections, active, run, progress);
+            const auto& simulated = played.of(model, record, sections, run, progress);
+            return gradient ? feedbackError(model, record, sections, motions, active, run, progress, &simulated, &known)
+                            : simulated;
         },
-        record.noiseKnown, options, progress);
+        record.noiseKnown, options, progress, run.slopes ? &fed : nullptr);
     summary.substeps = run.substeps;
     return summary;
 }

@@ -20,11 +20,13 @@ struct SectionFit {
     std::vector<NormalEquations> channels;                     ///< [channel]
     std::vector<ErrorPower> power;                             ///< [channel]
     std::vector<std::vector<std::complex<double>>> predicted;  ///< [channel][line], if asked for
+    std::vector<Eigen::MatrixXf> slopes;                       ///< [channel], J of N and g, of fed laws if asked for
 };
 
 struct OutputErrorOptions {
     bool gradient = true;  ///< fill N and g
     bool spectra = false;  ///< fill predicted
+    bool slopes = false;   ///< fill slopes
     int substeps = 1;      ///< of the simulation, at least; raised to the smallest stable number
     /// of the sensitivities: they may be coarser, as they only steer the search; 0: the smallest number
     int gradientSubsteps = 0;

@@ -4,132 +4,113 @@
 #include "Engine/Error.h"
 #include "Engine/Validity.h"
 
-#include <ceres/ceres.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <limits>
 #include <utility>
+#include <vector>
 
 namespace excursion {
 namespace {
 
-// relative eigenvalue of the scaled normal matrix below which a direction is void
-constexpr double voidDirection = 1e-13;
+using Eigen::Index;
+using Eigen::VectorXd;
 
-class CompressedResidual final : public ceres::CostFunction {
-public:
-    /// @param atStart  the normal equations at theta = scale .* start, which need not be computed again
-    CompressedResidual(const NormalEvaluation& evaluate, const Eigen::VectorXd& scale, const Eigen::VectorXd& start,
-                       const NormalEquations& atStart)
-        : evaluate_(evaluate), scale_(scale), sure_(atStart.sure), known_ {{start, true, atStart}}
-    {
-        const auto P = static_cast<int>(scale.size());
-        set_num_residuals(P + 1);
-        mutable_parameter_block_sizes()->push_back(P);
-    }
+/// The box that a search stays in.
+struct Box {
+    const VectorXd &lower, &upper;
 
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
-    {
-        const auto P = scale_.size();
-        const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], P);
-        const bool gradient = jacobians && jacobians[0];
-        const auto* known = recall(scaled, gradient);
-        if (!known) {
-            Known fresh {scaled, gradient, {}};
-            if (!evaluate_(scaled.cwiseProduct(scale_), gradient, fresh.normal))
-                return false;
-            known = &keep(std::move(fresh));
-        }
-        const auto& normal = known->normal;
-        if (!std::isfinite(normal.cost))
-            return false;
-        Eigen::Map<Eigen::VectorXd> r(residuals, P + 1);
-        r.setZero();
-        if (!gradient) {
-            r[P] = std::sqrt(std::max(0.0, normal.cost - sure_));
-            return true;
-        }
-        if (!normal.N.allFinite() || !normal.g.allFinite())
-            return false;
-        const Eigen::MatrixXd N = scale_.asDiagonal() * normal.N * scale_.asDiagonal();
-        const Eigen::VectorXd g = scale_.cwiseProduct(normal.g);
-        const ScaledSpectrum spectrum(N);
-        Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobians[0], P + 1, P);
-        J.setZero();
-        const double largest = spectrum.largest();
-        for (Eigen::Index k = 0; k < P; ++k) {
-            if (spectrum.values[k] <= voidDirection * largest)
-                continue;
-            const double root = std::sqrt(spectrum.values[k]);
-            const Eigen::VectorXd v = spectrum.vectors.col(k);
-            r[k] = v.dot(spectrum.scale.cwiseProduct(g)) / root;
-            for (Eigen::Index j = 0; j < P; ++j)
-                J(k, j) = spectrum.scale[j] > 0.0 ? root * v[j] / spectrum.scale[j] : 0.0;
-        }
-        r[P] = std::sqrt(std::max(0.0, normal.cost - sure_ - r.squaredNorm()));
-        return true;
-    }
-
-private:
-    struct Known {
-        Eigen::VectorXd scaled;
-        bool gradient = false;
-        NormalEquations normal;
-    };
-
-    const Known* recall(const Eigen::VectorXd& scaled, bool gradient) const
-    {
-        for (const auto& known : known_)
-            if ((known.gradient || !gradient) && known.scaled == scaled)
-                return &known;
-        return nullptr;
-    }
-
-    const Known& keep(Known fresh) const
-    {
-        constexpr std::size_t most = 4;
-        if (known_.size() == most)
-            known_.pop_front();
-        known_.push_back(std::move(fresh));
-        return known_.back();
-    }
-
-    const NormalEvaluation& evaluate_;
-    const Eigen::VectorXd& scale_;
-    double sure_;
-    // beside bounds the solver asks again for where it is and where it has just been
-    mutable std::deque<Known> known_;
+    VectorXd nearest(const VectorXd& theta) const { return theta.cwiseMax(lower).cwiseMin(upper); }
 };
 
-/// Reports, stops when asked to, and remembers the last place that was accepted and has slopes.
-class Watch final : public ceres::IterationCallback {
-public:
-    Watch(const Progress& progress, int maximum, const Eigen::VectorXd& x)
-        : progress_(progress), maximum_(maximum), x_(x)
-    {
-    }
-    ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override
-    {
-        if (summary.step_is_successful && summary.iteration > 0) {
-            place_ = x_;
-            cost_ = summary.cost;
-        }
-        if (progress_.stop.stop_requested())
-            return ceres::SOLVER_ABORT;
-        progress_.at(std::min(1.0, static_cast<double>(summary.iteration) / maximum_), "refining the parameters");
-        return ceres::SOLVER_CONTINUE;
-    }
+bool isFinite(const NormalEquations& normal)
+{
+    return std::isfinite(normal.cost) && normal.N.allFinite() && normal.g.allFinite();
+}
 
-    const Eigen::VectorXd& place() const { return place_; }  ///< empty where no step was taken
-    double cost() const { return cost_; }
+/// Where a pull J^T r takes these parameters alone.
+VectorXd yielding(const std::vector<Index>& free, const Eigen::MatrixXd& N, const VectorXd& pull, double lambda)
+{
+    const VectorXd scale = VectorXd(N.diagonal())(free).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd scaled = scale.asDiagonal() * N(free, free) * scale.asDiagonal();
+    scaled.diagonal().array() += lambda;
+    const VectorXd right = scale.cwiseProduct(VectorXd(pull(free)));
+    return -scale.cwiseProduct(Eigen::LDLT<Eigen::MatrixXd>(scaled).solve(right));
+}
+
+/// min |r + J d|^2 + lambda |d/scale|^2 with theta + d in the box: what would leave it stops at its side, and the
+/// others make good for that.
+VectorXd dampedStep(const NormalEquations& at, const VectorXd& theta, const Box& box, double lambda)
+{
+    const VectorXd least = box.lower - theta, most = box.upper - theta;
+    VectorXd d = VectorXd::Zero(theta.size());
+    std::vector<Index> free;
+    for (Index k = 0; k < theta.size(); ++k)
+        if (at.N(k, k) > 0.0 && !(at.g[k] > 0.0 && least[k] >= 0.0) && !(at.g[k] < 0.0 && most[k] <= 0.0))
+            free.push_back(k);
+    while (!free.empty()) {
+        const VectorXd step = yielding(free, at.N, at.g + at.N * d, lambda);  // with what the others have moved by
+        std::vector<Index> inside;
+        for (std::size_t j = 0; j < free.size(); ++j) {
+            const auto k = free[j];
+            const double own = step[static_cast<Index>(j)];
+            if (own >= least[k] && own <= most[k])
+                inside.push_back(k);
+            else
+                d[k] = own < least[k] ? least[k] : most[k];
+        }
+        if (inside.size() == free.size()) {
+            d(free) = step;
+            break;
+        }
+        free = std::move(inside);
+    }
+    return d;
+}
+
+/// What a step is made longer by to follow the bend of its valley, of the parameters that it moves freely.
+VectorXd bendOf(const NormalEquations& at, const VectorXd& theta, const VectorXd& d, const VectorXd& curvature,
+                const Box& box, double lambda)
+{
+    std::vector<Index> free;
+    for (Index k = 0; k < theta.size(); ++k)
+        if (const double there = theta[k] + d[k]; d[k] != 0.0 && there > box.lower[k] && there < box.upper[k])
+            free.push_back(k);
+    VectorXd a = VectorXd::Zero(theta.size());
+    if (!free.empty())
+        a(free) = yielding(free, at.N, curvature, lambda);
+    return a;
+}
+
+/// The damping lambda between one step and the next: a step that is taken lets the next one be bolder, one that is
+/// refused halves the next and quarters the one after.
+class Damping {
+public:
+    explicit Damping(double fall) : fall_(fall), lambda_(first * fall) {}
+
+    void begin()
+    {
+        lambda_ = std::max(lambda_ / fall_, least);
+        rise_ = 2.0;
+    }
+    void refuse()
+    {
+        lambda_ *= rise_;
+        rise_ *= 2.0;
+    }
+    bool isInReach() const { return lambda_ < most; }
+    double lambda() const { return lambda_; }
 
 private:
-    const Progress& progress_;
-    int maximum_;
-    const Eigen::VectorXd& x_;
-    Eigen::VectorXd place_;
-    double cost_ = 0.0;
+    static constexpr double first = 1e-3, least = 1e-9, most = 1e9;
+    double fall_, lambda_, rise_ = 2.0;
+};
+
+struct Trial {
+    VectorXd theta;
+    double cost = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
@@ -143,8 +124,8 @@ bool LeastSquaresOptions::isValid(std::string* reason) const
     return true;
 }
 
-SearchSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
-                       const Eigen::VectorXd& upper, const LeastSquaresOptions& options, const Progress& progress)
+SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const VectorXd& lower, const VectorXd& upper,
+                       const LeastSquaresOptions& options, const Progress& progress, const Curvature& curvature)
 {
     std::string invalid;
     if (!options.isValid(&invalid))
@@ -154,67 +135,63 @@ SearchSummary minimize(const NormalEvaluation& evaluate, Eigen::VectorXd& theta,
         result.end(Termination::nothingFree);
         return result;
     }
-    // The solver's own tests compare with 1; strengths start at zero and take their size from the sensitivity.
-    NormalEquations atStart;
-    if (!evaluate(theta, true, atStart)) {
+    const Box box {lower, upper};
+    NormalEquations at;
+    if (const VectorXd start = box.nearest(theta); evaluate(start, true, at) && isFinite(at))
+        theta = start;
+    else {
         result.end(Termination::startUndefined);
         return result;
     }
-    result.initialCost = result.finalCost = atStart.cost;
-    Eigen::VectorXd scale(theta.size());
-    for (Eigen::Index k = 0; k < theta.size(); ++k) {
-        const double sensitivity = atStart.N(k, k);
-        scale[k] = theta[k] != 0.0     ? std::abs(theta[k])
-                   : sensitivity > 0.0 ? std::sqrt(atStart.cost / sensitivity)
-                                       : 1.0;
+    result.initialCost = result.finalCost = at.cost;
+    const auto tried = [&](const VectorXd& where) {
+        Trial trial {box.nearest(where)};
+        NormalEquations there;
+        if (trial.theta.allFinite() && evaluate(trial.theta, false, there) && std::isfinite(there.cost))
+            trial.cost = there.cost;
+        return trial;
+    };
+    const auto straightOrBent = [&](double lambda) {
+        constexpr double hopeless = 30.0;  // times what it promised to gain: no bend makes up for such a loss
+        const VectorXd d = dampedStep(at, theta, box, lambda);
+        auto straight = tried(theta + d);
+        if (!curvature || straight.cost - at.cost > -hopeless * d.dot(2.0 * at.g + at.N * d))
+            return straight;
+        const VectorXd pull = curvature(theta, d);
+        if (pull.size() == 0)
+            return straight;
+        auto bent = tried(theta + d + 0.5 * bendOf(at, theta, d, pull, box, lambda));
+        return bent.cost < straight.cost ? bent : straight;
+    };
+    Damping damping(curvature ? 2.0 : 3.0);  // a step that follows the bend costs more
+    for (;;) {
+        progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "refining the parameters");
+        ++result.iterations;
+        Trial next;
+        for (damping.begin(); damping.isInReach(); damping.refuse())
+            if (next = straightOrBent(damping.lambda()); next.cost < at.cost)
+                break;
+        if (!(next.cost < at.cost)) {
+            result.end(Termination::noBetterStep);
+            return result;
+        }
+        const bool settled = at.cost - next.cost < options.costTolerance * (at.cost - at.sure);
+        if (settled || result.iterations == options.maximumIterations) {
+            theta = next.theta;
+            result.finalCost = next.cost;
+            result.end(settled ? Termination::costSettled : Termination::maximumIterations);
+            return result;
+        }
+        NormalEquations there;
+        if (!(evaluate(next.theta, true, there)
+              && isFinite(there))) {  // a model can run where its derivatives run away
+            result.end(Termination::noSlopes);
+            return result;
+        }
+        theta = next.theta;
+        at = std::move(there);
+        result.finalCost = at.cost;
     }
-    Eigen::VectorXd x = theta.cwiseQuotient(scale);
-
-    ceres::Problem::Options ownership;
-    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(ownership);
-    CompressedResidual cost(evaluate, scale, x, atStart);
-    problem.AddResidualBlock(&cost, nullptr, x.data());
-    for (Eigen::Index k = 0; k < x.size(); ++k) {
-        if (std::isfinite(lower[k]))
-            problem.SetParameterLowerBound(x.data(), static_cast<int>(k), lower[k] / scale[k]);
-        if (std::isfinite(upper[k]))
-            problem.SetParameterUpperBound(x.data(), static_cast<int>(k), upper[k] / scale[k]);
-        x[k] = std::clamp(x[k], lower[k] / scale[k], upper[k] / scale[k]);
-    }
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
-    solver.max_num_iterations = options.maximumIterations;
-    solver.function_tolerance = options.costTolerance;
-    solver.parameter_tolerance = 1e-10;
-    solver.gradient_tolerance = 1e-30;
-    solver.initial_trust_region_radius = 1e3;
-    solver.line_search_interpolation_type = options.slopesAlongSteps ? ceres::CUBIC : ceres::QUADRATIC;
-    solver.num_threads = 1;
-    solver.logging_type = ceres::SILENT;
-    solver.update_state_every_iteration = true;
-    Watch watch(progress, options.maximumIterations, x);
-    solver.callbacks.push_back(&watch);
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
-    if (progress.stop.stop_requested())
-        progress.at(0.0, "");
-
-    result.iterations = static_cast<int>(summary.iterations.size());
-    if (summary.termination_type == ceres::CONVERGENCE)
-        result.end(Termination::costSettled);
-    else if (summary.IsSolutionUsable())
-        result.end(Termination::maximumIterations);
-    else if (watch.place().size() == 0)
-        result.end(Termination::brokeDown, summary.message);
-    else  // a simulation can be possible where its derivatives run away
-        result.end(Termination::noSlopes);
-    if (result.usable()) {
-        const bool onWay = result.termination == Termination::noSlopes;
-        result.finalCost = 2.0 * (onWay ? watch.cost() : summary.final_cost) + atStart.sure;
-        theta = (onWay ? watch.place() : x).cwiseProduct(scale);
-    }
-    return result;
 }
 
 }  // namespace excursion

@@ -13,12 +13,9 @@
 namespace excursion {
 
 struct LeastSquaresOptions {
-    int maximumIterations = 30;
-    /// stop when an accepted step lowers the cost, without NormalEquations::sure, by less than this fraction
+    int maximumIterations = 30;  ///< steps that are taken
+    /// stop when a step that is taken lowers the cost, without NormalEquations::sure, by less than this fraction
     double costTolerance = 1e-6;
-    /// Beside bounds each step is followed by a search along it: with slopes at every place that it tries, which finds
-    /// better ways, or without, where slopes cost more than the steps themselves.
-    bool slopesAlongSteps = true;
 
     bool isValid(std::string* reason = nullptr) const;
 };
@@ -27,13 +24,23 @@ struct LeastSquaresOptions {
 /// (a simulation that runs away); the search then shortens its step.
 using NormalEvaluation = std::function<bool(const Eigen::VectorXd& theta, bool gradient, NormalEquations&)>;
 
-/// Bounded Levenberg-Marquardt ([B 4.3.1], by Ceres) on a problem that is only known through its normal equations, so
-/// that long records never stand in memory as one Jacobian. With N = V L V^T the residuals handed to the solver are
-/// L^-1/2 V^T g, and the remaining cost as one more; their Gauss-Newton step and cost are those of the long problem.
+/// J^T r'' at a place whose slopes were asked for last, r'' = d^2 r(theta + h step)/dh^2 at h = 0: how the residuals
+/// bend along a step, as the parameters see it. Empty where it is not known.
+using Curvature = std::function<Eigen::VectorXd(const Eigen::VectorXd& theta, const Eigen::VectorXd& step)>;
+
+/// Levenberg and Marquardt's search within bounds ([B 4.3.1]) on a problem that is only known through its normal
+/// equations, so that long records never stand in memory as one Jacobian:
+///     (N + lambda diag N) d = -g,   theta + d within the bounds;
+/// a parameter that a step would take out stops at its bound, and the step of the others is solved for again. The
+/// damping lambda falls threefold before each step and rises until one lowers the cost at all: slopes cost more than
+/// steps, and in a curved valley the boldest step that goes down leads further than the one that goes down most. Where
+/// the curvature is known a step follows the valley's bend if that leads lower (geodesic acceleration, see Search.h):
+///     (N + lambda diag N) a = -J^T r'',   theta + d + a/2.
 /// Where there are no bounds and a triangular factor can be had, search() squares no condition number.
-/// @param theta  start, then result
+/// @param theta  start, then result; a start out of bounds is moved to them
 /// @returns costs r^T r. Throws Error (usage) for options that make no sense, (cancelled) when progress says so.
 SearchSummary minimize(const NormalEvaluation&, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
-                       const Eigen::VectorXd& upper, const LeastSquaresOptions&, const Progress& = {});
+                       const Eigen::VectorXd& upper, const LeastSquaresOptions&, const Progress& = {},
+                       const Curvature& = {});
 
 }  // namespace excursion
