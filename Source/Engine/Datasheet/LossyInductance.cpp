@@ -137,8 +137,7 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
     const auto at = [&](const Eigen::VectorXd& y) {
         auto values = start;
         for (Eigen::Index k = 0; k < count; ++k)
-            // the search divides by |y|: its start is 1
-            values[static_cast<std::size_t>(k)] *= std::exp(y[k] - 1.0);
+            values[static_cast<std::size_t>(k)] *= std::exp(y[k]);
         return values;
     };
     const auto residual = [&](const Eigen::VectorXd& y) {
@@ -170,8 +169,8 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
         return std::isfinite(sum.cost);
     };
     constexpr double reach = 16.0;  // no parameter goes farther than exp(reach)
-    Eigen::VectorXd y = Eigen::VectorXd::Ones(count);
-    minimize(evaluate, y, Eigen::VectorXd::Constant(count, 1.0 - reach), Eigen::VectorXd::Constant(count, 1.0 + reach),
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(count);
+    minimize(evaluate, y, Eigen::VectorXd::Constant(count, -reach), Eigen::VectorXd::Constant(count, reach),
              {200, 1e-12});
     p = at(y);
     return costOf(kind, p, target);

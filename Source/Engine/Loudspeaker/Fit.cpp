@@ -106,6 +106,9 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
                   const Progress& progress, const FedSections* fed = nullptr)
 {
     FitSummary summary;
+    for (auto* parameter : parametersOf(model))
+        if (parameter->free)
+            parameter->value = std::clamp(parameter->value, parameter->lower, parameter->upper);
     std::vector<SectionFit> atStart;
     const auto active = telling(model, errorOf, atStart);
     const auto all = parametersOf(model);
@@ -132,6 +135,7 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         return bend->along(at, step, lower, upper);
     };
     NormalEquations last;                                     // at the last place with slopes
+    bool noiseAtLast = false;                                 // there
     double variance = 0.0;                                    // of the residuals at the start
     double lowest = std::numeric_limits<double>::infinity();  // cost
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
@@ -147,8 +151,10 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
-        if (gradient && sum.N.allFinite())
+        if (gradient && sum.N.allFinite() && sum.g.allFinite()) {
             last = sum;
+            noiseAtLast = onlyNoise;
+        }
         if (gradient && bend)
             bend->beginAt(std::move(fits));
         if (sum.cost < lowest) {  // the search takes every such step
@@ -162,6 +168,11 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
     place(theta);
     if (!summary.usable())
         return summary;
+    if (summary.termination == Termination::noSlopes)
+        summary.onlyNoise = noiseAtLast;
+    constexpr double much = 0.01;  // of the cost: slopes before such a step are not those of the result
+    if (NormalEquations sum; last.cost - summary.finalCost > much * summary.finalCost)
+        evaluate(theta, true, sum);
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
     const auto covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
@@ -175,7 +186,7 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
     return summary;
 }
 
-constexpr std::size_t roomForSlopes = 1 << 28;  // numbers of 4 bytes
+constexpr std::size_t roomForSlopes = 1 << 26;  // numbers, of 4 bytes
 
 std::size_t residualsOf(const Record& record, const std::vector<std::size_t>& sections)
 {

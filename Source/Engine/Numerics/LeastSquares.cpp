@@ -30,8 +30,8 @@ bool isFinite(const NormalEquations& normal)
     return std::isfinite(normal.cost) && normal.N.allFinite() && normal.g.allFinite();
 }
 
-/// Where a pull J^T r takes these parameters alone.
-VectorXd yielding(const std::vector<Index>& free, const Eigen::MatrixXd& N, const VectorXd& pull, double lambda)
+/// -(N + lambda diag N)^-1 pull, of these parameters alone.
+VectorXd dampedSolve(const std::vector<Index>& free, const Eigen::MatrixXd& N, const VectorXd& pull, double lambda)
 {
     const VectorXd scale = VectorXd(N.diagonal())(free).cwiseSqrt().cwiseInverse();
     Eigen::MatrixXd scaled = scale.asDiagonal() * N(free, free) * scale.asDiagonal();
@@ -51,7 +51,7 @@ VectorXd dampedStep(const NormalEquations& at, const VectorXd& theta, const Box&
         if (at.N(k, k) > 0.0 && !(at.g[k] > 0.0 && least[k] >= 0.0) && !(at.g[k] < 0.0 && most[k] <= 0.0))
             free.push_back(k);
     while (!free.empty()) {
-        const VectorXd step = yielding(free, at.N, at.g + at.N * d, lambda);  // with what the others have moved by
+        const VectorXd step = dampedSolve(free, at.N, at.g + at.N * d, lambda);  // with what the others have moved by
         std::vector<Index> inside;
         for (std::size_t j = 0; j < free.size(); ++j) {
             const auto k = free[j];
@@ -80,12 +80,12 @@ VectorXd bendOf(const NormalEquations& at, const VectorXd& theta, const VectorXd
             free.push_back(k);
     VectorXd a = VectorXd::Zero(theta.size());
     if (!free.empty())
-        a(free) = yielding(free, at.N, curvature, lambda);
+        a(free) = dampedSolve(free, at.N, curvature, lambda);
     return a;
 }
 
-/// The damping lambda between one step and the next: a step that is taken lets the next one be bolder, one that is
-/// refused halves the next and quarters the one after.
+/// The damping lambda, from one step to the next: a step that is taken lets the next one be bolder, and each that is
+/// refused lets it rise, by 2, 4, 8 and so on.
 class Damping {
 public:
     explicit Damping(double fall) : fall_(fall), lambda_(first * fall) {}
@@ -152,10 +152,13 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
         return trial;
     };
     const auto straightOrBent = [&](double lambda) {
-        constexpr double hopeless = 30.0;  // times what it promised to gain: no bend makes up for such a loss
+        constexpr double hopeless = 30.0;  // times the promise: no bend makes up for such a loss
         const VectorXd d = dampedStep(at, theta, box, lambda);
+        if (d.isZero(0.0))
+            return Trial {theta, at.cost};
         auto straight = tried(theta + d);
-        if (!curvature || straight.cost - at.cost > -hopeless * d.dot(2.0 * at.g + at.N * d))
+        const double promise = -d.dot(2.0 * at.g + at.N * d);
+        if (!curvature || straight.cost - at.cost > hopeless * promise)
             return straight;
         const VectorXd pull = curvature(theta, d);
         if (pull.size() == 0)
@@ -168,14 +171,18 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
         progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "refining the parameters");
         ++result.iterations;
         Trial next;
-        for (damping.begin(); damping.isInReach(); damping.refuse())
-            if (next = straightOrBent(damping.lambda()); next.cost < at.cost)
+        for (damping.begin(); damping.isInReach(); damping.refuse()) {
+            next = straightOrBent(damping.lambda());
+            if (next.cost < at.cost || next.theta == theta)
                 break;
+        }
         if (!(next.cost < at.cost)) {
             result.end(Termination::noBetterStep);
             return result;
         }
-        const bool settled = at.cost - next.cost < options.costTolerance * (at.cost - at.sure);
+        // Noise that was taken for too large may be more than the cost.
+        const double unsure = at.cost > at.sure ? at.cost - at.sure : at.cost;
+        const bool settled = at.cost - next.cost < options.costTolerance * unsure;
         if (settled || result.iterations == options.maximumIterations) {
             theta = next.theta;
             result.finalCost = next.cost;
