@@ -137,7 +137,8 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
     const auto at = [&](const Eigen::VectorXd& y) {
         auto values = start;
         for (Eigen::Index k = 0; k < count; ++k)
-            values[static_cast<std::size_t>(k)] *= std::exp(y[k]);
+            // the search divides by |y|: its start is 1
+            values[static_cast<std::size_t>(k)] *= std::exp(y[k] - 1.0);
         return values;
     };
     const auto residual = [&](const Eigen::VectorXd& y) {
@@ -169,8 +170,8 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
         return std::isfinite(sum.cost);
     };
     constexpr double reach = 16.0;  // no parameter goes farther than exp(reach)
-    Eigen::VectorXd y = Eigen::VectorXd::Zero(count);
-    minimize(evaluate, y, Eigen::VectorXd::Constant(count, -reach), Eigen::VectorXd::Constant(count, reach),
+    Eigen::VectorXd y = Eigen::VectorXd::Ones(count);
+    minimize(evaluate, y, Eigen::VectorXd::Constant(count, 1.0 - reach), Eigen::VectorXd::Constant(count, 1.0 + reach),
              {200, 1e-12});
     p = at(y);
     return costOf(kind, p, target);

@@ -5,7 +5,6 @@
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/Seen.h"
 
-#include <optional>
 #include <utility>
 
 namespace excursion {
@@ -13,30 +12,25 @@ namespace {
 
 constexpr LeastSquaresOptions onTrial {5, 1e-2};
 constexpr double clean = 1.05;    // mean squared residual that leaves another effect nothing to explain
-constexpr double dearer = 1.0;    // dB that more parameters must bring
 constexpr double hopeless = 4.0;  // times what is left with the effect that may stand in: no fit would make that good
 
 }  // namespace
 
-bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
+bool WholeSearch::exchangeStandIns(Model& model) const
 {
-    chooseResiduals(model);
     auto now = left(model);
     if (now.chiSquaredPerValue < clean)
         return false;
-    if (auto settled = model; fit(settled, onTrial).usable())  // as what it is compared with
-        now = left(settled);
     const auto seen = seenIn(record_);
     const auto range = visitedRange(model, record_, test_.degree);
     const LinearResponses still(withoutLaws(model, record_, options_.threads));
-    const auto isBetter = [&](Model& other, std::size_t parameters) {
+    const auto isBetter = [&](Model& other) {
         if (!fitNewestByResponse(other, still.gridFor(other.components.back())).usable()
             || left(other).chiSquaredPerValue > hopeless * now.chiSquaredPerValue || !fit(other, onTrial).usable()
             || !strangeIn(other).empty())
             return false;
-        const double price = freeParameters(other).size() > parameters ? dearer : hardlyNeeded;
         auto then = left(other);
-        const bool better = then.chiSquaredPerValue < now.chiSquaredPerValue && lost(now, then) > price;
+        const bool better = then.chiSquaredPerValue < now.chiSquaredPerValue && lost(now, then) > hardlyNeeded;
         if (better)
             now = std::move(then);
         return better;
@@ -45,18 +39,15 @@ bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
     for (const auto& id : model.effectIds()) {
         if (base_.has(id) || !effectNamed(id).linear())
             continue;
-        std::optional<Model> best;
         for (const auto* effect : catalogue()) {
             if (!effect->linear() || model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
                 continue;
-            progress.at(0.0, "exchanging linear effects");
             auto other = withEffect(withoutEffect(model, id), *effect, range);
-            if (isBetter(other, freeParameters(model).size()))
-                best = std::move(other);
-        }
-        if (best) {
-            model = std::move(*best);
+            if (!isBetter(other))
+                continue;
+            model = std::move(other);
             any = true;
+            break;
         }
     }
     return any;

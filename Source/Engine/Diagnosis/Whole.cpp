@@ -33,9 +33,8 @@ std::vector<const Score*> backed(const std::vector<Score>& scores, const std::se
     return alone.empty() ? all : alone;
 }
 
-/// All effects that a vote may have spoken against in error. Those that are made of resonances show in lines where
-/// nothing else does.
-std::vector<const Score*> possible(const std::vector<Score>& scores, const std::set<std::string>& without)
+/// All others, but for those that are made of resonances: these show in lines where nothing else does.
+std::vector<const Score*> every(const std::vector<Score>& scores, const std::set<std::string>& without)
 {
     std::vector<const Score*> all;
     for (const auto& s : scores) {
@@ -46,70 +45,64 @@ std::vector<const Score*> possible(const std::vector<Score>& scores, const std::
     return all;
 }
 
-/// The linear effects that are tried with these: all, if the vote backs one of them, or one that stood for something
-/// else. Many of them can stand in for another, so that a vote on all together backs none, or a wrong one.
-std::vector<const Score*> linearBeside(const std::vector<const Score*>& trial, const std::vector<Score>& scores,
-                                       const std::set<std::string>& without)
+bool isItself(const Component& component, const Model& model)
 {
-    const bool any = std::any_of(scores.begin(), scores.end(),
-                                 [](const Score& s) { return s.effect->linear() && s.vote.backs(); });
-    std::vector<const Score*> linear;
-    for (const auto& s : scores)
-        if (s.effect->linear() && !without.contains(s.effect->id())
-            && (any || std::find(trial.begin(), trial.end(), &s) != trial.end()))
-            linear.push_back(&s);
-    return linear;
+    return component.effect->plausible(component.operatingRange, component.parameters, model.base().parameters);
 }
 
-bool newestIsPlausible(const Model& model)
-{
-    const auto& newest = model.components.back();
-    return newest.effect->plausible(newest.operatingRange, newest.parameters, model.base().parameters);
-}
-
-/// The model with the linear effects among these that it needs, found on the responses: the one that leaves least comes
-/// first, the others are tried beside it.
-Model withLinear(const std::vector<const Score*>& linear, Model model, const Record& record, const WholeSearch& search,
-                 const Progress& progress)
+/// The linear effects among these that a model needs, found on the responses, whichever leaves least first: many of
+/// them can stand in for another, so that a vote on all together backs none of them, or a wrong one.
+Model withLinear(const std::vector<Score>& scores, const std::set<std::string>& without, Model model,
+                 const Record& record, const WholeSearch& search)
 {
     constexpr double worthIt = 0.98;
     std::vector<Model> candidates;
-    for (const auto* s : linear)
-        candidates.push_back(withComponent(model, s->model.components.back()));
+    for (const auto& s : scores)
+        if (s.effect->linear() && !without.contains(s.effect->id()))
+            candidates.push_back(s.model);
     const unsigned threads = search.test().threads;
     const LinearResponses still(withoutLaws(model, record, threads));
     double now = search.left(model).chiSquaredPerValue;
     while (!candidates.empty()) {
-        std::vector<char> usable(candidates.size());
-        inParallel(candidates.size(), threads, progress.part(0.0, 0.0), [&](std::size_t n) {
+        for (auto& candidate : candidates)
+            candidate = withComponent(model, candidate.components.back());
+        std::vector<double> leaves(candidates.size(), std::numeric_limits<double>::infinity());
+        inParallel(candidates.size(), threads, {}, [&](std::size_t n) {
             auto& candidate = candidates[n];
-            usable[n] = fitNewestByResponse(candidate, still.gridFor(candidate.components.back())).usable()
-                        && newestIsPlausible(candidate);
+            if (fitNewestByResponse(candidate, still.gridFor(candidate.components.back())).usable()
+                && isItself(candidate.components.back(), candidate))
+                leaves[n] = 0.0;
             return true;
         });
-        std::vector<double> leaves;
-        for (std::size_t n = 0; n < candidates.size(); ++n)
-            leaves.push_back(usable[n] ? search.left(candidates[n]).chiSquaredPerValue
-                                       : std::numeric_limits<double>::infinity());
-        const auto best = static_cast<std::size_t>(std::min_element(leaves.begin(), leaves.end()) - leaves.begin());
+        std::size_t best = 0;
+        for (std::size_t n = 0; n < candidates.size(); ++n) {
+            if (leaves[n] == 0.0)
+                leaves[n] = search.left(candidates[n]).chiSquaredPerValue;
+            if (leaves[n] < leaves[best])
+                best = n;
+        }
         if (!(leaves[best] < worthIt * now))
             break;
         model = std::move(candidates[best]);
         std::vector<Model> others;  // that may still bring something
         for (std::size_t n = 0; n < candidates.size(); ++n)
             if (n != best && leaves[n] < now)
-                others.push_back(withComponent(model, candidates[n].components.back()));
+                others.push_back(std::move(candidates[n]));
         candidates = std::move(others);
         now = leaves[best];
     }
     return model;
 }
 
-/// The model with these effects. Laws are at no strength, and so are linear effects where the responses show none.
-Model withAll(const std::vector<const Score*>& trial, const std::vector<const Score*>& linear, const Model& model,
-              const Record& record, const WholeSearch& search, const Progress& progress)
+/// The model with these effects, all that are linear if one of them is. Laws are at no strength, and so are linear
+/// effects where the responses show none.
+Model withAll(const std::vector<const Score*>& trial, const std::vector<Score>& scores,
+              const std::set<std::string>& without, const Model& model, const Record& record, const WholeSearch& search)
 {
-    Model fuller = linear.empty() ? model : withLinear(linear, model, record, search, progress);
+    Model fuller = model;
+    const bool anyLinear = std::any_of(trial.begin(), trial.end(), [](const Score* s) { return s->effect->linear(); });
+    if (anyLinear)
+        fuller = withLinear(scores, without, model, record, search);
     const bool found = fuller.components.size() > model.components.size();
     for (const auto* s : trial)
         if (!fuller.has(s->effect->id()) && !(found && s->effect->linear()))
@@ -117,23 +110,14 @@ Model withAll(const std::vector<const Score*>& trial, const std::vector<const Sc
     return fuller;
 }
 
-/// The effects that one model has and another has not.
-std::set<std::string> added(const Model& model, const Model& before)
+/// Without what a fit has put at rest.
+Model atWork(Model model, const Model& base)
 {
-    std::set<std::string> ids;
-    for (const auto& id : model.effectIds())
-        if (!before.has(id))
-            ids.insert(id);
-    return ids;
-}
-
-Model withoutThoseAtRest(Model model, const Model& base)
-{
-    for (const auto& id : added(model, base))
+    for (const auto& effect : model.effectIds())
         if (const auto component = std::find_if(model.components.begin(), model.components.end(),
-                                                [&](const Component& c) { return c.effect->id() == id; });
-            !isAtWork(*component))
-            model = withoutEffect(model, id);
+                                                [&](const Component& c) { return c.effect->id() == effect; });
+            !base.has(effect) && !isAtWork(*component))
+            model = withoutEffect(model, effect);
     return model;
 }
 
@@ -160,16 +144,14 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
         }
         auto trial = backed(scores, strange);
         if (trial.empty() && record.noiseKnown && now.chiSquaredPerValue < nearNoise)
-            trial = possible(scores, strange);
-        const auto linear = linearBeside(trial, scores, strange);
-        if (trial.empty() && linear.empty())
+            trial = every(scores, strange);  // so little is left that each may be voted down beside the others
+        if (trial.empty())
             break;
-        auto fuller = withAll(trial, linear, whole.model, record, search, part);
-        const auto tries = added(fuller, whole.model);
+        auto fuller = withAll(trial, scores, strange, whole.model, record, search);
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable())
             break;
-        fuller = withoutThoseAtRest(std::move(fuller), base);
+        fuller = atWork(std::move(fuller), base);
         const auto before = std::exchange(strange, search.takeOutImplausible(fuller));
         search.chooseResiduals(fuller);
         now = search.left(whole.model);
@@ -181,8 +163,9 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
             then = search.left(fuller);
         }
         if (!(search.lost(now, then) > worthARound)) {
-            if (strange.empty() && before.empty() && !trial.empty() && trial.front()->vote.standsAlone())
-                strange = tries;
+            if (strange.empty() && before.empty() && trial.front()->vote.standsAlone())
+                for (const auto* s : trial)
+                    strange.insert(s->effect->id());
             if (strange.empty() || strange == before)  // the next round would be this one again
                 break;
             continue;
@@ -199,10 +182,8 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
 {
     Whole whole {base, {}, {}};
     grow(whole, base, record, search, progress.part(0.0, 0.7));
-    if (search.exchangeStandIns(whole.model, progress.part(0.7, 0.8))) {  // beside the right ones others may show
-        whole.fit = search.fit(whole.model);
+    if (search.exchangeStandIns(whole.model))  // beside the right ones others may show
         grow(whole, base, record, search, progress.part(0.8, 1.0));
-    }
     return whole;
 }
 

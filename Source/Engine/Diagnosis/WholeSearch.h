@@ -97,8 +97,8 @@ public:
     std::set<std::string> takeOutImplausible(Model&) const;
 
     /// Exchanges linear effects, on trial, for those that the model does not have: one may have come in for another,
-    /// of which nothing is left to be seen then. Whether one of those stayed. Chooses residuals.
-    bool exchangeStandIns(Model&, const Progress& = {});
+    /// of which nothing is left to be seen then. Whether one of those stayed.
+    bool exchangeStandIns(Model&) const;
 
 private:
     struct Leaner {

@@ -169,9 +169,25 @@ SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targe
             all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value =
                 logarithmic[static_cast<std::size_t>(k)] ? std::exp(at[k]) : at[k];
     };
+    // The search divides by |x| where it is not zero; offset logarithms so that their scale is one.
+    const Eigen::VectorXd origin = x.array() - 1.0;
+    const auto shifted = [&](const Eigen::VectorXd& y) {
+        Eigen::VectorXd at = y;
+        for (Eigen::Index k = 0; k < P; ++k)
+            if (logarithmic[static_cast<std::size_t>(k)])
+                at[k] += origin[k];
+        return at;
+    };
+    Eigen::VectorXd y = x;
+    for (Eigen::Index k = 0; k < P; ++k)
+        if (logarithmic[static_cast<std::size_t>(k)]) {
+            y[k] = 1.0;
+            lower[k] -= origin[k];
+            upper[k] -= origin[k];
+        }
     double variance = 0.0;  // of the residuals at the start
     const auto evaluate = [&](const Eigen::VectorXd& at, bool gradient, NormalEquations& sum) {
-        place(at);
+        place(shifted(at));
         Eigen::VectorXd chain = Eigen::VectorXd::Ones(P);
         for (Eigen::Index k = 0; k < P; ++k)
             if (logarithmic[static_cast<std::size_t>(k)])
@@ -184,9 +200,9 @@ SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targe
         addPriors(model, active, chain, variance, gradient, sum);
         return std::isfinite(sum.cost);
     };
-    const Eigen::VectorXd start = x;
-    auto summary = minimize(evaluate, x, lower, upper, options);
-    place(summary.usable() ? x : start);
+    const Eigen::VectorXd start = y;
+    auto summary = minimize(evaluate, y, lower, upper, options);
+    place(shifted(summary.usable() ? y : start));
     if (summary.usable())
         keepErrors(model, targets, active, values);
     return summary;

@@ -32,17 +32,15 @@ using Curvature = std::function<Eigen::VectorXd(const Eigen::VectorXd& theta, co
 /// equations, so that long records never stand in memory as one Jacobian:
 ///     (N + lambda diag N) d = -g,   theta + d within the bounds;
 /// a parameter that a step would take out stops at its bound, and the step of the others is solved for again. The
-/// damping lambda falls before each step and rises until one lowers the cost at all: slopes cost more than
+/// damping lambda falls threefold before each step and rises until one lowers the cost at all: slopes cost more than
 /// steps, and in a curved valley the boldest step that goes down leads further than the one that goes down most. Where
 /// the curvature is known a step follows the valley's bend if that leads lower (geodesic acceleration, see Search.h):
 ///     (N + lambda diag N) a = -J^T r'',   theta + d + a/2.
 /// Where there are no bounds and a triangular factor can be had, search() squares no condition number.
 /// @param theta  start, then result; a start out of bounds is moved to them
-/// @param lower  as long as theta, -infinity for none; `upper` likewise
-/// @param curvature  may be empty
 /// @returns costs r^T r. Throws Error (usage) for options that make no sense, (cancelled) when progress says so.
 SearchSummary minimize(const NormalEvaluation&, Eigen::VectorXd& theta, const Eigen::VectorXd& lower,
                        const Eigen::VectorXd& upper, const LeastSquaresOptions&, const Progress& = {},
-                       const Curvature& curvature = {});
+                       const Curvature& = {});
 
 }  // namespace excursion
