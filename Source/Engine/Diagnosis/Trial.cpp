@@ -222,7 +222,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
         auto chosen = options;
         chosen.search = {iterations, tolerance};
-        chosen.bent = tolerance < 1e-4;  // along valleys
+        chosen.bent = tolerance < 1e-4;  // the last digits lie along valleys
         chosen.fedGradient = fedGradient && hasPeriods(record);
         chosen.exactGradient = !fedGradient;
         return fit(model, record, sections, chosen, progress.part(from, to));

@@ -45,7 +45,7 @@ std::vector<const Score*> every(const std::vector<Score>& scores, const std::set
     return all;
 }
 
-bool isItself(const Component& component, const Model& model)
+bool isPlausible(const Component& component, const Model& model)
 {
     return component.effect->plausible(component.operatingRange, component.parameters, model.base().parameters);
 }
@@ -70,7 +70,7 @@ Model withLinear(const std::vector<Score>& scores, const std::set<std::string>& 
         inParallel(candidates.size(), threads, {}, [&](std::size_t n) {
             auto& candidate = candidates[n];
             if (fitNewestByResponse(candidate, still.gridFor(candidate.components.back())).usable()
-                && isItself(candidate.components.back(), candidate))
+                && isPlausible(candidate.components.back(), candidate))
                 leaves[n] = 0.0;
             return true;
         });

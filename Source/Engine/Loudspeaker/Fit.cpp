@@ -170,9 +170,6 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         return summary;
     if (summary.termination == Termination::noSlopes)
         summary.onlyNoise = noiseAtLast;
-    constexpr double much = 0.01;  // of the cost: slopes before such a step are not those of the result
-    if (NormalEquations sum; last.cost - summary.finalCost > much * summary.finalCost)
-        evaluate(theta, true, sum);
     summary.chiSquaredPerValue = summary.finalCost / std::max(1.0, last.rows - static_cast<double>(P));
     const auto covariance = covarianceOf(last.N, std::max(1.0, summary.chiSquaredPerValue));
     model.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()),
