@@ -7,6 +7,7 @@
 
 #include "Engine/Error.h"
 
+#include <glog/logging.h>
 
 #include <exception>
 #include <filesystem>
@@ -106,6 +107,7 @@ int run(CLI::App& app, cli::Terminal& terminal, std::vector<std::string> argumen
 
 int main(int argc, char** argv)
 {
+    FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports trial steps that fail as errors: they are no news
     cli::Terminal terminal;
     CLI::App app(tour, "excursion");
     app.formatter(std::make_shared<cli::Help>());  // the verbs inherit it

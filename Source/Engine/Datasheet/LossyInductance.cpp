@@ -4,7 +4,7 @@
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Datasheet/ResponseCurves.h"
 #include "Engine/Error.h"
-#include "Engine/Numerics/LeastSquares.h"
+#include "Engine/Numerics/TrustRegion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -171,8 +171,8 @@ double search(const FormKind& kind, std::vector<double>& p, const Target& target
     };
     constexpr double reach = 16.0;  // no parameter goes farther than exp(reach)
     Eigen::VectorXd y = Eigen::VectorXd::Ones(count);
-    minimize(evaluate, y, Eigen::VectorXd::Constant(count, 1.0 - reach), Eigen::VectorXd::Constant(count, 1.0 + reach),
-             {200, 1e-12});
+    minimizeInTrustRegion(evaluate, y, Eigen::VectorXd::Constant(count, 1.0 - reach),
+                          Eigen::VectorXd::Constant(count, 1.0 + reach), {200, 1e-12});
     p = at(y);
     return costOf(kind, p, target);
 }
