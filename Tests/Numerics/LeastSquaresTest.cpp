@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/LeastSquares.h"
+#include "Engine/Numerics/TrustRegion.h"
 
 #include <catch2/catch.hpp>
 
@@ -275,4 +276,28 @@ TEST_CASE("Slopes that are half wrong lead to the least error all the same", "[l
         CHECK(at[0] == Approx(2.0).epsilon(1e-4));
         CHECK(at[1] == Approx(1.0).epsilon(1e-4));
     }
+}
+
+TEST_CASE("The trust region finds NIST's certified values, and stays within bounds", "[least-squares]")
+{
+    for (const auto& start : {two(500.0, 1e-4), two(250.0, 5e-4)}) {
+        auto b = start;
+        const auto summary = minimizeInTrustRegion(misra::evaluate, b, two(-infinite, -infinite),
+                                                   two(infinite, infinite), exact());
+        INFO(summary.message);
+        CHECK(summary.usable());
+        CHECK(b[0] == Approx(misra::b1).epsilon(1e-7));
+        CHECK(b[1] == Approx(misra::b2).epsilon(1e-7));
+        CHECK(summary.finalCost == Approx(misra::sumOfSquares).epsilon(1e-8));
+    }
+    auto free = two(250.0, 5e-4), held = free;
+    const auto best = minimizeInTrustRegion(misra::evaluate, free, two(0.0, 0.0), two(infinite, infinite), exact());
+    const auto bounded = minimizeInTrustRegion(misra::evaluate, held, two(0.0, 0.0), two(230.0, 1.0), exact());
+    CHECK(bounded.usable());
+    CHECK(held[0] == Approx(230.0).epsilon(1e-9));
+    CHECK(bounded.finalCost > best.finalCost);
+    auto ours = two(250.0, 5e-4);
+    const auto other = minimize(misra::evaluate, ours, two(0.0, 0.0), two(230.0, 1.0), exact());
+    CHECK(bounded.finalCost == Approx(other.finalCost).epsilon(1e-3));  // it ends a little early there
+    CHECK(held[1] == Approx(ours[1]).epsilon(1e-2));
 }
