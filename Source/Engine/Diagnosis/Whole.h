@@ -19,11 +19,12 @@ struct Whole {
 };
 
 /// Fits all effects of the catalogue together to a record with periods. In each round, the effects that stand alone in
-/// a vote of the whole catalogue are added at once, or all that it backs where none does; everything is fitted quickly,
-/// and effects that the others can replace are removed. A later round may add them again, after laws were raised as far
-/// as that pays. If this, refined, does not come near the noise, another search begins from the linear model of the
-/// loudest level; before the refinement if the rounds end far from the noise. If something is left that no effect
-/// explains, only effects that stand alone stay.
+/// a vote of the whole catalogue are added at once, or all that it backs where none does; linear ones are chosen by
+/// what each leaves on the responses, and at the end exchanged, on trial, for those that are missing. Everything is
+/// fitted quickly, and effects that the others can replace are removed. A later round may add them again, after laws
+/// were raised as far as that pays. If this, refined, does not come near the noise, another search begins from the
+/// linear model of the loudest level; before the refinement if the rounds end far from the noise. If something is left
+/// that no effect explains, only effects that stand alone stay.
 /// @param base  fitted; its effects stay
 Whole fitWhole(const Model& base, const Record&, const FitOptions&, const Progress& = {});
 

@@ -189,9 +189,8 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
             result.end(settled ? Termination::costSettled : Termination::maximumIterations);
             return result;
         }
-        NormalEquations there;
-        if (!(evaluate(next.theta, true, there)
-              && isFinite(there))) {  // a model can run where its derivatives run away
+        NormalEquations there;  // a model can run where its derivatives run away
+        if (!(evaluate(next.theta, true, there) && isFinite(there))) {
             result.end(Termination::noSlopes);
             return result;
         }

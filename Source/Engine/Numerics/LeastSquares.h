@@ -32,7 +32,7 @@ using Curvature = std::function<Eigen::VectorXd(const Eigen::VectorXd& theta, co
 /// equations, so that long records never stand in memory as one Jacobian:
 ///     (N + lambda diag N) d = -g,   theta + d within the bounds;
 /// a parameter that a step would take out stops at its bound, and the step of the others is solved for again. The
-/// damping lambda falls threefold before each step and rises until one lowers the cost at all: slopes cost more than
+/// damping lambda falls before each step and rises until one lowers the cost at all: slopes cost more than
 /// steps, and in a curved valley the boldest step that goes down leads further than the one that goes down most. Where
 /// the curvature is known a step follows the valley's bend if that leads lower (geodesic acceleration, see Search.h):
 ///     (N + lambda diag N) a = -J^T r'',   theta + d + a/2.
