@@ -4,6 +4,7 @@
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"
+#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 
@@ -135,6 +136,17 @@ TEST_CASE("A suspension that creeps has its compliance at the resonance", "[data
     CHECK(valueOf(figures, "Rms") == Approx(7.1 * 7.1 / (impedance(model, fs).real() - 5.6)).epsilon(1e-8));
     CHECK(valueOf(figures, "Mms") == Approx(0.0142).epsilon(1e-8));
     CHECK(valueOf(figures, "Cms") < 1.0 / 1310.0);
+}
+
+TEST_CASE("The resonance is found where creep has all of the stiffness at rest", "[datasheet]")
+{
+    auto model = withNumbers(midbass(1e-12), "creep", {1310.0, 0.9, 2.0, -0.25});
+    model.baseParameter("K").value = 0.2;
+    const double fs = bisect(20.0, 60.0, [&](double f) { return -impedance(model, f).imag(); });
+    CHECK(resonanceOf(model) == Approx(fs).epsilon(0.05));
+    const auto figures = thieleSmall({model, false, false});
+    CHECK(valueOf(figures, "fs") == Approx(fs).epsilon(1e-8));
+    CHECK(valueOf(figures, "Mms") == Approx(0.0142).epsilon(1e-8));
 }
 
 TEST_CASE("What swings far above the resonance is moving mass, and a box is left out", "[datasheet]")

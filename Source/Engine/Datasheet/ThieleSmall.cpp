@@ -4,6 +4,7 @@
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Propagate.h"
+#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Take/Air.h"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ Eigen::VectorXd numbersOf(const Model& whole, double resistanceAt)
 {
     const auto model = withoutEnclosure(linearPart(whole));
     const OpenCoilMechanics mechanics(model);
-    const double omega = resonanceIn(mechanics, 2.0 * pi * resonanceOf(model.base().parameters));
+    const double omega = resonanceIn(mechanics, 2.0 * pi * resonanceOf(model));
     const auto inertia = OpenCoilMechanics(withoutCreep(model)).at(omega);
     // d Im Z/dw = Re dZ/ds on the imaginary axis.
     const double mass = 0.5 * (inertia.slope.real() + inertia.impedance.imag() / omega);

@@ -3,6 +3,7 @@
 
 #include "Engine/Loudspeaker/Dynamics.h"
 #include "Engine/Loudspeaker/Laws.h"
+#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Numerics/LuFactors.h"
 #include "Engine/Take/Air.h"
 
@@ -188,7 +189,7 @@ StrokeLimits strokeLimits(const Model& model)
         for (const auto& component : model.components)
             result.range = std::max(result.range, component.operatingRange.displacement);
     constexpr double toneOverResonance = 8.5;
-    result.resonance = resonanceOf(model.base().parameters);
+    result.resonance = resonanceOf(model);
     result.tone = toneOverResonance * result.resonance;
 
     if (const auto Bl = lawAlongX(model, "Bl")) {

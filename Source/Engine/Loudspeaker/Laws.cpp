@@ -3,6 +3,7 @@
 
 #include "Engine/Document/Engineering.h"
 #include "Engine/Loudspeaker/Propagate.h"
+#include "Engine/Loudspeaker/Resonance.h"
 
 #include <algorithm>
 
@@ -29,20 +30,6 @@ double addedBeside(const Model& model, const Component& law, const std::string& 
     return sum;
 }
 
-/// Hz, of the cone on what the suspension is there: what creeps is stiffer than at a lower frequency.
-double resonanceBeside(const Model& model, const Component& law, double lowest)
-{
-    auto resting = model;
-    auto& K = resting.baseParameter("K").value;
-    const double spring = K;
-    double resonance = lowest;
-    for (int n = 0; n < 20; ++n) {
-        K = spring + addedBeside(model, law, "K", resonance);
-        resonance = resonanceOf(resting.base().parameters);
-    }
-    return resonance;
-}
-
 /// Hz at which the take tells a law best of what relaxes beside it: a stiffness at the lowest frequency, losses at
 /// resonance, an inductance an octave below the highest frequency, as at that one there is data on one side only. 0
 /// where nothing relaxes.
@@ -59,7 +46,7 @@ double frequencyOf(const Model& model, const Component& law, const std::string& 
         return 0.5 * high;
     if (base != "Rms")
         return 0.0;
-    return std::clamp(resonanceBeside(model, law, low), low, high);
+    return std::clamp(resonanceOf(model), low, high);
 }
 
 /// A curve that has no values yet, and the component whose law it is.

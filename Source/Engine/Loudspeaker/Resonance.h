@@ -18,4 +18,8 @@ struct Resonance {
 /// at 62 Hz.
 Resonance coneResonance(const Model&);
 
+/// Hz, at which the cone resonates on what the suspension is there, 2 pi f = sqrt(K(f)/m): what creeps may have taken
+/// over any share of the stiffness at rest. That of the base where nothing creeps.
+double resonanceOf(const Model&);
+
 }  // namespace excursion

@@ -76,7 +76,7 @@ LinearMotion linearMotion(const Model& model, double sampleRate)
     motion.B = linear.B;
     motion.displacement = Eigen::RowVectorXd::Unit(n, 1);
     motion.current = Eigen::RowVectorXd::Unit(n, 0);
-    motion.resonance = resonanceOf(model.base().parameters);
+    motion.resonance = resonanceOf(model);
     motion.uncertainty = worstSensitivity(model, motion.resonance);
     motion.ohms = model.electrical() ? model.baseParameter("Re").value : 0.0;
     motion.holdingStep = stepOf(model);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/PredictedDistortion.h"
 
+#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Error.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/Speaker.h"
@@ -37,7 +38,7 @@ PredictedDistortion predictDistortion(const Model& model, const PredistortionCon
     if (!(volts > 0.0))
         throw Error(Error::Kind::usage, "A prediction of distortion needs a voltage above zero.");
     requireRunnable(model, options);
-    const double resonance = resonanceOf(model.base().parameters);
+    const double resonance = resonanceOf(model);
     MultisineOptions tones;
     tones.sampleRate = options.sampleRate;
     tones.period = 16384;

@@ -2,6 +2,7 @@
 #include "Engine/Predistortion/TargetForecast.h"
 
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 #include "Engine/Predistortion/Linearizer.h"
 #include "Engine/Predistortion/Predistorter.h"
@@ -221,7 +222,7 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
     requireRunnable(model, {rate, 1});
     ForecastSubject subject;
     subject.own = OwnLinearPart(model);
-    subject.resonance = resonanceOf(model.base().parameters);
+    subject.resonance = resonanceOf(model);
     subject.sampleRate = rate;
     const auto straight = linearPart(model);
     subject.motion = [straight](double f) {
