@@ -35,7 +35,7 @@ Model bent()
             if (p.strength)
                 p.value = effect->law() ? 0.07 * (sign *= -1.0) * component.operatingRange.scale
                           : std::isfinite(p.prior) || std::isfinite(p.upper)
-                              ? strengthOf(*effect, p, component.operatingRange, 0.05)
+                              ? strengthOf(*effect, p, component.operatingRange, effect->creeps() ? 0.4 : 0.05)
                               : someScale(*effect) / 5.0;
     }
     for (auto* p : parametersOf(model))

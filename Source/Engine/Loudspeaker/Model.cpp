@@ -119,13 +119,27 @@ Model withComponent(Model model, Component component)
     return model;
 }
 
+void resize(Model& model, std::size_t k)
+{
+    auto& component = model.components[k];
+    const auto base = component.effect->sizedBy();
+    if (base.empty())
+        return;
+    auto& range = component.operatingRange;
+    range.scale = model.baseParameter(base).value
+                  + component.effect->addsTo(base, range, valuesOf(component).data(), range.lowFrequency);
+    const auto sized = component.effect->parameters(range);
+    for (std::size_t n = 0; n < sized.size(); ++n)
+        component.parameters[n].prior = sized[n].prior;
+}
+
 void followOthers(Model& model)
 {
     const bool coil = relaxes(model, true), suspension = relaxes(model, false);
-    for (auto& component : model.components) {
+    for (std::size_t k = 0; k < model.components.size(); ++k) {
+        auto& component = model.components[k];
         const bool yields = component.effect->electrical() ? coil : suspension;
-        if (const auto base = component.effect->sizedBy(); !base.empty())
-            component.operatingRange.scale = model.baseParameter(base).value;
+        resize(model, k);
         if (component.operatingRange.relaxed == yields)
             continue;
         component.operatingRange.relaxed = yields;

@@ -77,8 +77,11 @@ bool movable(const Model&, const Effect&, const Parameter&);
 Model withEffect(Model, const Effect&, const OperatingRange&, std::size_t start = 0);
 /// The model with one more component as it is. The covariance goes: it tells nothing of the new parameters.
 Model withComponent(Model, Component);
-/// Adjusts every component to the others: OperatingRange::scale of an effect follows its base parameter. Parameters
-/// that have a meaning only with other effects are free if these are present, or else zero.
+/// Makes OperatingRange::scale of component k follow its base parameter, and its priors that scale. What the effect
+/// itself adds to that parameter at the lowest frequency counts: creep may take over any share of the stiffness.
+void resize(Model&, std::size_t k);
+/// Adjusts every component to the others: resizes it, and parameters that have a meaning only with other effects are
+/// free if these are present, or else zero.
 void followOthers(Model&);
 Model withoutEffect(Model, std::string_view effectId);
 /// The base and those effects that are linear.

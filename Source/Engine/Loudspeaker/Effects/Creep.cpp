@@ -35,6 +35,7 @@ public:
     {
     }
     bool relaxes() const override { return true; }
+    std::string sizedBy() const override { return "K"; }
 
     std::vector<Parameter> parameters(const OperatingRange& e) const override
     {
@@ -43,6 +44,8 @@ public:
         strength.unit = "N/m";
         strength.lower = 0.0;
         strength.strength = true;
+        // Relaxations far above resonance, where the mass rules, would else take any strength.
+        strength.prior = 0.3 * e.scale;
         centre.name = "centre";
         centre.unit = "log10 Hz";
         centre.value = std::log10(e.lowFrequency);
@@ -71,12 +74,18 @@ public:
         return result;
     }
 
-    /// No suspension relaxes to a third of its stiffness: air that leaks out of a closed box does.
-    bool plausible(const OperatingRange&, const std::vector<Parameter>& own,
+    /// No suspension stiffens threefold, nor by a half within a decade: the air of a closed box that leaks does. What
+    /// lies far below the band is not asked for, as it does not show.
+    bool plausible(const OperatingRange& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
-        constexpr double most = 2.0;
-        return own[0].value < most * parameterNamed(base, "K").value;
+        constexpr double most = 3.0, mostWithinDecade = 1.5, below = 1.0 / 3.0;  // the last of the lowest frequency
+        std::vector<double> values;
+        for (const auto& p : own)
+            values.push_back(p.value);
+        const double atRest = parameterNamed(base, "K").value, low = below * e.lowFrequency;
+        const auto stiffness = [&](double f) { return atRest + stiffnessAt(e, values.data(), f).real(); };
+        return atRest + values[0] < most * stiffness(low) && stiffness(10.0 * low) < mostWithinDecade * stiffness(low);
     }
 
     /// By how much the stiffness rises over the lowest decade of the band: the rate of creep.
