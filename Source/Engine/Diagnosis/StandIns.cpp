@@ -4,33 +4,81 @@
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/Seen.h"
+#include "Engine/Numerics/Parallel.h"
 
+#include <limits>
+#include <optional>
 #include <utility>
 
 namespace excursion {
 namespace {
 
 constexpr LeastSquaresOptions onTrial {5, 1e-2};
+constexpr double worthIt = 0.98;  // of the mean squared residual
 constexpr double clean = 1.05;    // mean squared residual that leaves another effect nothing to explain
+constexpr double dearer = 1.0;    // dB that more parameters must bring
 constexpr double hopeless = 4.0;  // times what is left with the effect that may stand in: no fit would make that good
+
+/// Whether a search for the newest effect on responses comes to what can be this effect.
+bool findNewest(Model& model, const LinearResponses& still)
+{
+    if (!fitNewestByResponse(model, still.gridFor(model.components.back())).usable())
+        return false;
+    const auto& newest = model.components.back();
+    return newest.effect->plausible(newest.operatingRange, newest.parameters, model.base().parameters);
+}
 
 }  // namespace
 
-bool WholeSearch::exchangeStandIns(Model& model) const
+Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model model, const Progress& progress) const
 {
-    auto now = left(model);
-    if (now.chiSquaredPerValue < clean)
+    const auto range = visitedRange(model, record_, test_.degree);
+    const LinearResponses still(withoutLaws(model, record_, options_.threads));
+    double now = left(model).chiSquaredPerValue;
+    auto missing = effects;
+    while (!missing.empty()) {
+        std::vector<Model> with;
+        for (const auto* effect : missing)
+            with.push_back(withEffect(model, *effect, range));
+        std::vector<char> found(with.size());
+        inParallel(with.size(), options_.threads, progress, [&](std::size_t n) {
+            found[n] = findNewest(with[n], still);
+            return true;
+        });
+        std::vector<double> leaves;
+        for (std::size_t n = 0; n < with.size(); ++n)
+            leaves.push_back(found[n] ? left(with[n]).chiSquaredPerValue : std::numeric_limits<double>::infinity());
+        const auto best = static_cast<std::size_t>(std::min_element(leaves.begin(), leaves.end()) - leaves.begin());
+        if (!(leaves[best] < worthIt * now))
+            break;
+        std::vector<const Effect*> others;  // that may still bring something
+        for (std::size_t n = 0; n < with.size(); ++n)
+            if (n != best && leaves[n] < now)
+                others.push_back(missing[n]);
+        model = std::move(with[best]);
+        now = leaves[best];
+        missing = std::move(others);
+    }
+    return model;
+}
+
+bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
+{
+    chooseResiduals(model);
+    if (left(model).chiSquaredPerValue < clean)
         return false;
+    auto settled = model;  // fitted as what it is compared with
+    auto now = left(fit(settled, onTrial, progress).usable() ? settled : model);
     const auto seen = seenIn(record_);
     const auto range = visitedRange(model, record_, test_.degree);
     const LinearResponses still(withoutLaws(model, record_, options_.threads));
-    const auto isBetter = [&](Model& other) {
-        if (!fitNewestByResponse(other, still.gridFor(other.components.back())).usable()
-            || left(other).chiSquaredPerValue > hopeless * now.chiSquaredPerValue || !fit(other, onTrial).usable()
-            || !strangeIn(other).empty())
+    const auto isBetter = [&](Model& other, std::size_t parameters) {
+        if (!findNewest(other, still) || left(other).chiSquaredPerValue > hopeless * now.chiSquaredPerValue
+            || !fit(other, onTrial, progress).usable() || !strangeIn(other).empty())
             return false;
+        const double price = freeParameters(other).size() > parameters ? dearer : hardlyNeeded;
         auto then = left(other);
-        const bool better = then.chiSquaredPerValue < now.chiSquaredPerValue && lost(now, then) > hardlyNeeded;
+        const bool better = then.chiSquaredPerValue < now.chiSquaredPerValue && lost(now, then) > price;
         if (better)
             now = std::move(then);
         return better;
@@ -39,15 +87,17 @@ bool WholeSearch::exchangeStandIns(Model& model) const
     for (const auto& id : model.effectIds()) {
         if (base_.has(id) || !effectNamed(id).linear())
             continue;
+        std::optional<Model> best;
         for (const auto* effect : catalogue()) {
             if (!effect->linear() || model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
                 continue;
             auto other = withEffect(withoutEffect(model, id), *effect, range);
-            if (!isBetter(other))
-                continue;
-            model = std::move(other);
+            if (isBetter(other, freeParameters(model).size()))
+                best = std::move(other);
+        }
+        if (best) {
+            model = std::move(*best);
             any = true;
-            break;
         }
     }
     return any;

@@ -4,8 +4,6 @@
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/WholeSearch.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
-#include "Engine/Loudspeaker/LinearResponses.h"
-#include "Engine/Numerics/Parallel.h"
 
 #include <algorithm>
 #include <iterator>
@@ -33,8 +31,9 @@ std::vector<const Score*> backed(const std::vector<Score>& scores, const std::se
     return alone.empty() ? all : alone;
 }
 
-/// All others, but for those that are made of resonances: these show in lines where nothing else does.
-std::vector<const Score*> every(const std::vector<Score>& scores, const std::set<std::string>& without)
+/// All effects that a vote may have spoken against in error. Those that are made of resonances show in lines where
+/// nothing else does.
+std::vector<const Score*> possible(const std::vector<Score>& scores, const std::set<std::string>& without)
 {
     std::vector<const Score*> all;
     for (const auto& s : scores) {
@@ -45,64 +44,26 @@ std::vector<const Score*> every(const std::vector<Score>& scores, const std::set
     return all;
 }
 
-bool isPlausible(const Component& component, const Model& model)
+/// The linear effects that are tried with these: all, if the vote backs one of them, or one that stood for something
+/// else. Many of them can stand in for another, so that a vote on all together backs none, or a wrong one.
+std::vector<const Effect*> linearBeside(const std::vector<const Score*>& trial, const std::vector<Score>& scores,
+                                        const std::set<std::string>& without)
 {
-    return component.effect->plausible(component.operatingRange, component.parameters, model.base().parameters);
-}
-
-/// The linear effects among these that a model needs, found on the responses, whichever leaves least first: many of
-/// them can stand in for another, so that a vote on all together backs none of them, or a wrong one.
-Model withLinear(const std::vector<Score>& scores, const std::set<std::string>& without, Model model,
-                 const Record& record, const WholeSearch& search)
-{
-    constexpr double worthIt = 0.98;
-    std::vector<Model> candidates;
+    const bool any = std::any_of(scores.begin(), scores.end(),
+                                 [](const Score& s) { return s.effect->linear() && s.vote.backs(); });
+    std::vector<const Effect*> linear;
     for (const auto& s : scores)
-        if (s.effect->linear() && !without.contains(s.effect->id()))
-            candidates.push_back(s.model);
-    const unsigned threads = search.test().threads;
-    const LinearResponses still(withoutLaws(model, record, threads));
-    double now = search.left(model).chiSquaredPerValue;
-    while (!candidates.empty()) {
-        for (auto& candidate : candidates)
-            candidate = withComponent(model, candidate.components.back());
-        std::vector<double> leaves(candidates.size(), std::numeric_limits<double>::infinity());
-        inParallel(candidates.size(), threads, {}, [&](std::size_t n) {
-            auto& candidate = candidates[n];
-            if (fitNewestByResponse(candidate, still.gridFor(candidate.components.back())).usable()
-                && isPlausible(candidate.components.back(), candidate))
-                leaves[n] = 0.0;
-            return true;
-        });
-        std::size_t best = 0;
-        for (std::size_t n = 0; n < candidates.size(); ++n) {
-            if (leaves[n] == 0.0)
-                leaves[n] = search.left(candidates[n]).chiSquaredPerValue;
-            if (leaves[n] < leaves[best])
-                best = n;
-        }
-        if (!(leaves[best] < worthIt * now))
-            break;
-        model = std::move(candidates[best]);
-        std::vector<Model> others;  // that may still bring something
-        for (std::size_t n = 0; n < candidates.size(); ++n)
-            if (n != best && leaves[n] < now)
-                others.push_back(std::move(candidates[n]));
-        candidates = std::move(others);
-        now = leaves[best];
-    }
-    return model;
+        if (s.effect->linear() && !without.contains(s.effect->id())
+            && (any || std::find(trial.begin(), trial.end(), &s) != trial.end()))
+            linear.push_back(s.effect);
+    return linear;
 }
 
-/// The model with these effects, all that are linear if one of them is. Laws are at no strength, and so are linear
-/// effects where the responses show none.
-Model withAll(const std::vector<const Score*>& trial, const std::vector<Score>& scores,
-              const std::set<std::string>& without, const Model& model, const Record& record, const WholeSearch& search)
+/// The model with these effects. Laws are at no strength, and so are linear effects where the responses show none.
+Model withAll(const std::vector<const Score*>& trial, const std::vector<const Effect*>& linear, const Model& model,
+              const WholeSearch& search, const Progress& progress)
 {
-    Model fuller = model;
-    const bool anyLinear = std::any_of(trial.begin(), trial.end(), [](const Score* s) { return s->effect->linear(); });
-    if (anyLinear)
-        fuller = withLinear(scores, without, model, record, search);
+    Model fuller = linear.empty() ? model : search.withLinear(linear, model, progress);
     const bool found = fuller.components.size() > model.components.size();
     for (const auto* s : trial)
         if (!fuller.has(s->effect->id()) && !(found && s->effect->linear()))
@@ -110,14 +71,21 @@ Model withAll(const std::vector<const Score*>& trial, const std::vector<Score>& 
     return fuller;
 }
 
-/// Without what a fit has put at rest.
-Model atWork(Model model, const Model& base)
+/// The effects that one model has and another has not.
+std::set<std::string> added(const Model& model, const Model& before)
 {
-    for (const auto& effect : model.effectIds())
-        if (const auto component = std::find_if(model.components.begin(), model.components.end(),
-                                                [&](const Component& c) { return c.effect->id() == effect; });
-            !base.has(effect) && !isAtWork(*component))
-            model = withoutEffect(model, effect);
+    std::set<std::string> ids;
+    for (const auto& id : model.effectIds())
+        if (!before.has(id))
+            ids.insert(id);
+    return ids;
+}
+
+Model withoutThoseAtRest(Model model, const Model& base)
+{
+    for (const auto& id : added(model, base))
+        if (!isAtWork(*model.find(id)))
+            model = withoutEffect(model, id);
     return model;
 }
 
@@ -144,14 +112,18 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
         }
         auto trial = backed(scores, strange);
         if (trial.empty() && record.noiseKnown && now.chiSquaredPerValue < nearNoise)
-            trial = every(scores, strange);  // so little is left that each may be voted down beside the others
-        if (trial.empty())
+            trial = possible(scores, strange);
+        const auto linear = linearBeside(trial, scores, strange);
+        if (trial.empty() && linear.empty())
             break;
-        auto fuller = withAll(trial, scores, strange, whole.model, record, search);
+        auto fuller = withAll(trial, linear, whole.model, search, part);
+        const auto tries = added(fuller, whole.model);
+        if (tries.empty())
+            break;
         const auto summary = search.fit(fuller, part.part(0.4, 0.8));
         if (!summary.usable())
             break;
-        fuller = atWork(std::move(fuller), base);
+        fuller = withoutThoseAtRest(std::move(fuller), base);
         const auto before = std::exchange(strange, search.takeOutImplausible(fuller));
         search.chooseResiduals(fuller);
         now = search.left(whole.model);
@@ -163,9 +135,8 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
             then = search.left(fuller);
         }
         if (!(search.lost(now, then) > worthARound)) {
-            if (strange.empty() && before.empty() && trial.front()->vote.standsAlone())
-                for (const auto* s : trial)
-                    strange.insert(s->effect->id());
+            if (strange.empty() && before.empty() && !trial.empty() && trial.front()->vote.standsAlone())
+                strange = tries;
             if (strange.empty() || strange == before)  // the next round would be this one again
                 break;
             continue;
@@ -182,8 +153,10 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
 {
     Whole whole {base, {}, {}};
     grow(whole, base, record, search, progress.part(0.0, 0.7));
-    if (search.exchangeStandIns(whole.model))  // beside the right ones others may show
+    if (search.exchangeStandIns(whole.model, progress.part(0.7, 0.8))) {  // beside the right ones others may show
+        whole.fit = search.fit(whole.model);
         grow(whole, base, record, search, progress.part(0.8, 1.0));
+    }
     return whole;
 }
 

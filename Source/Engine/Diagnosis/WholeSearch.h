@@ -96,9 +96,13 @@ public:
     /// missed is found anew there before it would go.
     std::set<std::string> takeOutImplausible(Model&) const;
 
+    /// The model with the linear effects among these that it needs, found on the responses: the one that leaves least
+    /// comes first, the others are tried beside it.
+    Model withLinear(const std::vector<const Effect*>&, Model, const Progress& = {}) const;
+
     /// Exchanges linear effects, on trial, for those that the model does not have: one may have come in for another,
-    /// of which nothing is left to be seen then. Whether one of those stayed.
-    bool exchangeStandIns(Model&) const;
+    /// of which nothing is left to be seen then. Whether one of those stayed. Chooses residuals.
+    bool exchangeStandIns(Model&, const Progress& = {});
 
 private:
     struct Leaner {
