@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/LeastSquares.h"
 
-#include "Engine/Error.h"
+#include "Engine/Numerics/BeginSearch.h"
 #include "Engine/Validity.h"
 
 #include <Eigen/Cholesky>
@@ -127,23 +127,12 @@ bool LeastSquaresOptions::isValid(std::string* reason) const
 SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const VectorXd& lower, const VectorXd& upper,
                        const LeastSquaresOptions& options, const Progress& progress, const Curvature& curvature)
 {
-    std::string invalid;
-    if (!options.isValid(&invalid))
-        throw Error(Error::Kind::usage, "The fit cannot run: " + invalid + ".");
-    SearchSummary result;
-    if (theta.size() == 0) {
-        result.end(Termination::nothingFree);
-        return result;
-    }
     const Box box {lower, upper};
+    theta = box.nearest(theta);
     NormalEquations at;
-    if (const VectorXd start = box.nearest(theta); evaluate(start, true, at) && isFinite(at))
-        theta = start;
-    else {
-        result.end(Termination::startUndefined);
+    SearchSummary result;
+    if (!beginSearch(evaluate, theta, options, at, result))
         return result;
-    }
-    result.initialCost = result.finalCost = at.cost;
     const auto tried = [&](const VectorXd& where) {
         Trial trial {box.nearest(where)};
         NormalEquations there;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/TrustRegion.h"
 
-#include "Engine/Error.h"
+#include "Engine/Numerics/BeginSearch.h"
 
 #include <ceres/ceres.h>
 
@@ -137,21 +137,11 @@ SearchSummary minimizeInTrustRegion(const NormalEvaluation& evaluate, Eigen::Vec
                                     const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                                     const LeastSquaresOptions& options, const Progress& progress)
 {
-    std::string invalid;
-    if (!options.isValid(&invalid))
-        throw Error(Error::Kind::usage, "The fit cannot run: " + invalid + ".");
-    SearchSummary result;
-    if (theta.size() == 0) {
-        result.end(Termination::nothingFree);
-        return result;
-    }
-    // The solver's own tests compare with 1; strengths start at zero and take their size from the sensitivity.
     NormalEquations atStart;
-    if (!evaluate(theta, true, atStart)) {
-        result.end(Termination::startUndefined);
+    SearchSummary result;
+    if (!beginSearch(evaluate, theta, options, atStart, result))
         return result;
-    }
-    result.initialCost = result.finalCost = atStart.cost;
+    // The solver's own tests compare with 1; strengths start at zero and take their size from the sensitivity.
     Eigen::VectorXd scale(theta.size());
     for (Eigen::Index k = 0; k < theta.size(); ++k) {
         const double sensitivity = atStart.N(k, k);
