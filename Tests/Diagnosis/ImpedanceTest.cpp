@@ -68,7 +68,7 @@ double errorDb(const Rung& rung) { return rung.comparison.channels.front().total
 
 }  // namespace
 
-TEST_CASE("A port and a part that swings are found together, and neither where it is not", "[improve][responses]")
+TEST_CASE("A port and a part that swings are found together, and neither where it is not", "[.thorough][improve][responses]")
 {
     for (const auto& woofer : {Woofer {true, true}, Woofer {true, false}, Woofer {false, true}}) {
         CAPTURE(woofer.port, woofer.part);
@@ -92,7 +92,7 @@ TEST_CASE("A port and a part that swings are found together, and neither where i
     }
 }
 
-TEST_CASE("Air that leaks out of a closed box is told from a suspension that creeps", "[improve][responses]")
+TEST_CASE("Air that leaks out of a closed box is told from a suspension that creeps", "[.thorough][improve][responses]")
 {
     const auto ladder = improve(Woofer {.leak = true}.measured(1.5));
     CAPTURE(ladder.model().effectIds());

@@ -208,7 +208,7 @@ Measurement withBentLaser(Measurement take, int power)
     return take;
 }
 
-TEST_CASE("What the catalogue does not hold is not given another name", "[improve][slow]")
+TEST_CASE("What the catalogue does not hold is not given another name", "[.thorough][improve][slow]")
 {
     const int power = GENERATE(2, 3);
     INFO(power);
@@ -218,7 +218,7 @@ TEST_CASE("What the catalogue does not hold is not given another name", "[improv
     CHECK_THAT(ladder.sentence, Catch::Contains("no effect of the catalogue explains"));
 }
 
-TEST_CASE("A suspension that is bent and creeps is both, in series", "[improve][slow]")
+TEST_CASE("A suspension that is bent and creeps is both, in series", "[.thorough][improve][slow]")
 {
     // Laws that only add up leave 15 dB more of it.
     const auto ladder = improve(seedTake({{"stiffness", 0.3}, {"creep", 0.2}}));
@@ -226,7 +226,7 @@ TEST_CASE("A suspension that is bent and creeps is both, in series", "[improve][
     CHECK(ladder.rungs.back().comparison.chiSquaredPerValue < 6.0);
 }
 
-TEST_CASE("What is known is named beside what is not", "[improve][slow]")
+TEST_CASE("What is known is named beside what is not", "[.thorough][improve][slow]")
 {
     const auto ladder = improve(
         withBentLaser(seedTake({{"force-factor", 0.4}}, {Quantity::current, Quantity::displacement}), 2));

@@ -146,7 +146,7 @@ TEST_CASE("A loudspeaker climbs the same ladder in any unit", "[units]")
     requireSameLadder(take, plain, {{voltage, 3e5}, {current, 2e-6}, {displacement, 1e3}, {pressure, 7e-6}});
 }
 
-TEST_CASE("A frequency response climbs the same ladder in any unit", "[units]")
+TEST_CASE("A frequency response climbs the same ladder in any unit", "[.thorough][units]")
 {
     using enum Quantity;
     auto truth = makeModel("electrodynamic");

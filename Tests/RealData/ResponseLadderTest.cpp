@@ -102,7 +102,7 @@ TEST_CASE("Novak's loudspeaker lacks eddy currents before anything else", "[slow
     checkParameters(ladder.model());
 }
 
-TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its motor", "[slow]")
+TEST_CASE("A woofer of SEAS with added masses lacks eddy currents and keeps its motor", "[.thorough][slow]")
 {
     const auto folder = dataFolder("seas-l16rnx");
     if (folder.empty())
@@ -167,7 +167,7 @@ TEST_CASE("A designer's impedance files end in a sane verdict", "[slow]")
     }
 }
 
-TEST_CASE("Woofers in vented boxes are told from tweeters, mids and closed boxes", "[slow]")
+TEST_CASE("Woofers in vented boxes are told from tweeters, mids and closed boxes", "[.thorough][slow]")
 {
     const auto folder = dataFolder("impedance-boxes");
     if (folder.empty())
