@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <numbers>
 
 namespace excursion {
@@ -55,23 +54,34 @@ struct Place {
     std::vector<std::pair<Eigen::Index, double>> slopes;  ///< parameter, derivative
 };
 
-std::vector<Place> placesOf(const std::vector<Eigen::MatrixXd>& dM, const std::vector<Eigen::VectorXd>& dv)
-{
-    std::map<std::pair<Eigen::Index, Eigen::Index>, Place> places;
-    for (std::size_t k = 0; k < dM.size(); ++k)
-        for (Eigen::Index row = 0; row < dM[k].rows(); ++row)
-            for (Eigen::Index column = 0; column <= dM[k].cols(); ++column)
-                if (const double value = column < dM[k].cols() ? dM[k](row, column) : dv[k][row]; value != 0.0) {
-                    auto& place = places[{row, column}];
-                    place.row = row;
-                    place.column = column;
-                    place.slopes.emplace_back(static_cast<Eigen::Index>(k), value);
-                }
-    std::vector<Place> result;
-    for (auto& [where, place] : places)
-        result.push_back(std::move(place));
-    return result;
-}
+/// Slopes as they are found, each at its place.
+class Places {
+public:
+    Places(Eigen::Index rows, Eigen::Index columns)
+        : columns_(columns), slopes_(static_cast<std::size_t>(rows * columns))
+    {
+    }
+    void add(Eigen::Index row, Eigen::Index column, Eigen::Index parameter, double slope)
+    {
+        if (slope != 0.0)
+            slopes_[static_cast<std::size_t>(row * columns_ + column)].emplace_back(parameter, slope);
+    }
+    /// Those in which something acts, row by row.
+    std::vector<Place> taken() &&
+    {
+        std::vector<Place> places;
+        for (std::size_t n = 0; n < slopes_.size(); ++n)
+            if (!slopes_[n].empty()) {
+                const auto at = static_cast<Eigen::Index>(n);
+                places.push_back({at / columns_, at % columns_, std::move(slopes_[n])});
+            }
+        return places;
+    }
+
+private:
+    Eigen::Index columns_;
+    std::vector<std::vector<std::pair<Eigen::Index, double>>> slopes_;
+};
 
 /// A quantity as output of the linear part: s^order (row z + direct u), that of the pressure times a gain and delayed.
 struct Observed {
@@ -133,31 +143,35 @@ LinearAmongAll linearAmongAll(const Model& model)
     return places;
 }
 
+/// A linear part, and where its parameters act.
+struct LinearForm {
+    SmallSignal part;
+    std::vector<Place> inside, outside;  ///< [A B], [C D]
+    std::vector<double> dLateness;       ///< by parameter
+};
+
 /// Of a model that is linear.
-SmallSignal linearForm(const Model& model, bool withGradient, Drives drives)
+LinearForm linearForm(const Model& model, bool withGradient, Drives drives)
 {
     const auto theta = parameterVector(model);
     const auto plain = columns(model, std::vector<double>(theta.begin(), theta.end()), drives);
     const auto n = static_cast<Eigen::Index>(plain.rates.size()) - 1;
-    SmallSignal result;
-    result.A.resize(n, n);
-    result.C.resize(2, n);
+    LinearForm form;
+    auto& part = form.part;
+    part.A.resize(n, n);
+    part.C.resize(2, n);
     for (Eigen::Index j = 0; j < n; ++j) {
-        result.A.col(j) = Eigen::Map<const Eigen::VectorXd>(plain.rates[static_cast<std::size_t>(j)].data(), n);
-        result.C.col(j) = Eigen::Map<const Eigen::Vector2d>(plain.outputs[static_cast<std::size_t>(j)].data());
+        part.A.col(j) = Eigen::Map<const Eigen::VectorXd>(plain.rates[static_cast<std::size_t>(j)].data(), n);
+        part.C.col(j) = Eigen::Map<const Eigen::Vector2d>(plain.outputs[static_cast<std::size_t>(j)].data());
     }
-    result.B = Eigen::Map<const Eigen::VectorXd>(plain.rates.back().data(), n);
-    result.D = Eigen::Map<const Eigen::Vector2d>(plain.outputs.back().data());
-    result.lateness = plain.lateness;
+    part.B = Eigen::Map<const Eigen::VectorXd>(plain.rates.back().data(), n);
+    part.D = Eigen::Map<const Eigen::Vector2d>(plain.outputs.back().data());
+    part.lateness = plain.lateness;
     if (!withGradient)
-        return result;
+        return form;
 
     const auto count = theta.size();
-    result.dA.assign(static_cast<std::size_t>(count), Eigen::MatrixXd(n, n));
-    result.dB.assign(static_cast<std::size_t>(count), Eigen::VectorXd(n));
-    result.dC.assign(static_cast<std::size_t>(count), Eigen::MatrixXd(2, n));
-    result.dD.assign(static_cast<std::size_t>(count), Eigen::VectorXd(2));
-    result.dLateness.assign(static_cast<std::size_t>(count), 0.0);
+    Places inside(n, n + 1), outside(2, n + 1);
     for (Eigen::Index first = 0; first < count; first += jetWidth) {
         std::vector<Jet> parameters(static_cast<std::size_t>(count));
         for (Eigen::Index k = 0; k < count; ++k)
@@ -166,36 +180,31 @@ SmallSignal linearForm(const Model& model, bool withGradient, Drives drives)
                                                           : Jet(theta[k]);
         const auto jets = columns(model, parameters, drives);
         for (Eigen::Index k = first; k < std::min<Eigen::Index>(count, first + jetWidth); ++k) {
-            const auto own = static_cast<std::size_t>(k);
-            for (std::size_t column = 0; column < jets.rates.size(); ++column) {
-                const bool isState = column + 1 < jets.rates.size();
-                const auto at = static_cast<Eigen::Index>(column);
+            for (Eigen::Index column = 0; column <= n; ++column) {
+                const auto at = static_cast<std::size_t>(column);
                 for (Eigen::Index row = 0; row < n; ++row)
-                    (isState ? result.dA[own](row, at)
-                             : result.dB[own][row]) = jets.rates[column][static_cast<std::size_t>(row)].v[k - first];
+                    inside.add(row, column, k, jets.rates[at][static_cast<std::size_t>(row)].v[k - first]);
                 for (Eigen::Index row = 0; row < 2; ++row)
-                    (isState ? result.dC[own](row, at)
-                             : result.dD[own][row]) = jets.outputs[column][static_cast<std::size_t>(row)].v[k - first];
+                    outside.add(row, column, k, jets.outputs[at][static_cast<std::size_t>(row)].v[k - first]);
             }
-            result.dLateness[own] = jets.lateness.v[k - first];
+            form.dLateness.push_back(jets.lateness.v[k - first]);
         }
     }
-    return result;
+    form.inside = std::move(inside).taken();
+    form.outside = std::move(outside).taken();
+    return form;
 }
 
 /// The responses of a linear part to what drives it, once z = (s I - A)^-1 B is known.
 struct DrivenResponse {
-    SmallSignal linear;
+    LinearForm linear;
     std::vector<Observed> observed;
-    std::vector<Place> inside, outside;
 
-    DrivenResponse(const Model& model, SmallSignal part, const std::vector<Quantity>& quantities)
-        : linear(std::move(part))
+    DrivenResponse(const Model& model, LinearForm form, const std::vector<Quantity>& quantities)
+        : linear(std::move(form))
     {
         for (const auto quantity : quantities)
-            observed.push_back(observe(model, linear, quantity));
-        inside = placesOf(linear.dA, linear.dB);
-        outside = placesOf(linear.dC, linear.dD);
+            observed.push_back(observe(model, linear.part, quantity));
     }
 
     std::complex<double> factor(std::size_t q, std::complex<double> s) const
@@ -203,7 +212,7 @@ struct DrivenResponse {
         std::complex<double> result = observed[q].gain;
         for (int k = 0; k < observed[q].order; ++k)
             result *= s;
-        return observed[q].delayed ? result * std::exp(-s * linear.lateness) : result;
+        return observed[q].delayed ? result * std::exp(-s * linear.part.lateness) : result;
     }
 
     std::complex<double> value(std::size_t q, std::complex<double> s, const Eigen::VectorXcd& z) const
@@ -222,9 +231,9 @@ struct DrivenResponse {
             for (const auto& [parameter, slope] : place.slopes)
                 row[parameters[static_cast<std::size_t>(parameter)]] += slope * moved;
         };
-        for (const auto& place : inside)
+        for (const auto& place : linear.inside)
             act(place, by * left[place.row]);
-        for (const auto& place : outside)
+        for (const auto& place : linear.outside)
             if (place.row == observed[q].source)
                 act(place, by);
         if (observed[q].delayed)
@@ -237,48 +246,45 @@ struct DrivenResponse {
 
 SmallSignal smallSignal(const Model& model, bool withGradient, Drives drives)
 {
-    const auto [states, parameters, n, count] = linearAmongAll(model);
-    auto part = linearForm(linearPart(model), withGradient, drives);
-    if (static_cast<Eigen::Index>(states.size()) == n && static_cast<Eigen::Index>(parameters.size()) == count)
-        return part;
-
-    const auto square = [&states = states, n = n](const Eigen::MatrixXd& A) {
-        Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n, n);
-        whole(states, states) = A;
-        return whole;
-    };
-    const auto wide = [&states = states, n = n](const Eigen::MatrixXd& C) {
-        Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(C.rows(), n);
-        whole(Eigen::all, states) = C;
-        return whole;
-    };
-    const auto tall = [&states = states, n = n](const Eigen::VectorXd& B) {
-        Eigen::VectorXd whole = Eigen::VectorXd::Zero(n);
-        whole(states) = B;
-        return whole;
-    };
+    const auto among = linearAmongAll(model);
+    const auto n = among.order;
+    const auto form = linearForm(linearPart(model), withGradient, drives);
     SmallSignal result;
-    result.A = square(part.A);
-    result.B = tall(part.B);
-    result.C = wide(part.C);
-    result.D = part.D;
-    result.lateness = part.lateness;
-    if (withGradient) {
-        const auto all = static_cast<std::size_t>(count);
-        result.dA.assign(all, Eigen::MatrixXd::Zero(n, n));
-        result.dB.assign(all, Eigen::VectorXd::Zero(n));
-        result.dC.assign(all, Eigen::MatrixXd::Zero(2, n));
-        result.dD.assign(all, Eigen::VectorXd::Zero(2));
-        result.dLateness.assign(all, 0.0);
-        for (std::size_t k = 0; k < parameters.size(); ++k) {
-            const auto place = static_cast<std::size_t>(parameters[k]);
-            result.dA[place] = square(part.dA[k]);
-            result.dB[place] = tall(part.dB[k]);
-            result.dC[place] = wide(part.dC[k]);
-            result.dD[place] = part.dD[k];
-            result.dLateness[place] = part.dLateness[k];
-        }
-    }
+    result.A = Eigen::MatrixXd::Zero(n, n);
+    result.A(among.states, among.states) = form.part.A;
+    result.B = Eigen::VectorXd::Zero(n);
+    result.B(among.states) = form.part.B;
+    result.C = Eigen::MatrixXd::Zero(2, n);
+    result.C(Eigen::all, among.states) = form.part.C;
+    result.D = form.part.D;
+    result.lateness = form.part.lateness;
+    if (!withGradient)
+        return result;
+    const auto all = static_cast<std::size_t>(among.count);
+    result.dA.assign(all, Eigen::MatrixXd::Zero(n, n));
+    result.dB.assign(all, Eigen::VectorXd::Zero(n));
+    result.dC.assign(all, Eigen::MatrixXd::Zero(2, n));
+    result.dD.assign(all, Eigen::VectorXd::Zero(2));
+    result.dLateness.assign(all, 0.0);
+    const auto of = [&](Eigen::Index parameter) {
+        return static_cast<std::size_t>(among.parameters[static_cast<std::size_t>(parameter)]);
+    };
+    const auto fill = [&](const std::vector<Place>& places, auto&& rowOf, auto& matrices, auto& vectors) {
+        for (const auto& place : places)
+            for (const auto& [parameter, slope] : place.slopes)
+                if (const auto own = of(parameter), column = static_cast<std::size_t>(place.column);
+                    column < among.states.size())
+                    matrices[own](rowOf(place.row), among.states[column]) = slope;
+                else
+                    vectors[own][rowOf(place.row)] = slope;
+    };
+    fill(
+        form.inside, [&](Eigen::Index row) { return among.states[static_cast<std::size_t>(row)]; }, result.dA,
+        result.dB);
+    fill(
+        form.outside, [](Eigen::Index row) { return row; }, result.dC, result.dD);
+    for (std::size_t k = 0; k < form.dLateness.size(); ++k)
+        result.dLateness[of(static_cast<Eigen::Index>(k))] = form.dLateness[k];
     return result;
 }
 
@@ -309,10 +315,10 @@ std::vector<std::vector<Response>> respondToEach(const Model& model, const std::
     std::vector<DrivenResponse> driven;
     for (const auto drive : drives)
         driven.emplace_back(model, linearForm(small, withGradient, drive), quantities);
-    const ArrowResolvent resolvent(driven.front().linear.A);
+    const ArrowResolvent resolvent(driven.front().linear.part.A);
     std::vector<Eigen::VectorXcd> inputs, outputs;
     for (const auto& d : driven)
-        inputs.push_back(resolvent.turnedRight(d.linear.B.cast<std::complex<double>>()));
+        inputs.push_back(resolvent.turnedRight(d.linear.part.B.cast<std::complex<double>>()));
     for (const auto& of : driven.front().observed)
         outputs.push_back(resolvent.turnedLeft(of.row));
     std::vector<std::vector<Response>> responses(drives.size(), std::vector<Response>(quantities.size()));
