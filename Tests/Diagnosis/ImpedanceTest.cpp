@@ -68,7 +68,8 @@ double errorDb(const Rung& rung) { return rung.comparison.channels.front().total
 
 }  // namespace
 
-TEST_CASE("A port and a part that swings are found together, and neither where it is not", "[.thorough][improve][responses]")
+TEST_CASE("A port and a part that swings are found together, and neither where it is not",
+          "[.thorough][improve][responses]")
 {
     for (const auto& woofer : {Woofer {true, true}, Woofer {true, false}, Woofer {false, true}}) {
         CAPTURE(woofer.port, woofer.part);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"
+#include "Engine/Loudspeaker/ModelFile.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
 
 #include <catch2/catch.hpp>
@@ -76,6 +77,16 @@ TEST_CASE("What is plausible of creep beforehand follows the stiffness, whoever 
     CHECK(S.prior == Approx(0.3 * K).epsilon(0.01));
     own[0].value = 2.1 * K;
     CHECK_FALSE(isItself(model, 1));
+}
+
+TEST_CASE("A file that does not tell the scale of creep says as much of it beforehand", "[creep]")
+{
+    auto model = withEffect(woofer(), effectNamed("creep"), {});
+    auto document = toJson(model);
+    document["effects"][0]["operatingRange"]["scale"] = 1.0;
+    const auto read = modelFromJson(document, "old.json");
+    CHECK(read.components.back().parameters.front().prior == Approx(0.3 * K));
+    CHECK(read.components.back().operatingRange.scale == 1.0);
 }
 
 TEST_CASE("Logarithmic creep is creep, however much of the stiffness it takes", "[creep]")

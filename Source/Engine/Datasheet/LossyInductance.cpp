@@ -4,6 +4,7 @@
 #include "Engine/Datasheet/Impedances.h"
 #include "Engine/Datasheet/ResponseCurves.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Numerics/TrustRegion.h"
 
 #include <algorithm>
@@ -232,9 +233,7 @@ LossyInductance lossyInductance(const Model& model, double low, double high)
     const auto band = bandOf(model);
     LossyInductance result;
     result.high = high > 0.0 ? high : band.second;
-    result.low = low > 0.0
-                     ? low
-                     : std::min(std::max(band.first, 3.0 * resonanceOf(model.base().parameters)), 0.1 * result.high);
+    result.low = low > 0.0 ? low : std::min(std::max(band.first, 3.0 * resonanceOf(model)), 0.1 * result.high);
     if (!(result.high >= 2.0 * result.low) || !std::isfinite(result.high))
         throw Error(
             Error::Kind::usage,

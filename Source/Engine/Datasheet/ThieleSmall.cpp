@@ -39,7 +39,7 @@ const std::vector<DatasheetFigure>& blanks()
     return figures;
 }
 
-/// Where Im Z vanishes, nearest to the base's own resonance: what creeps raises it, a part that swings lowers it.
+/// Where Im Z vanishes, nearest to the cone's resonance on the suspension: a part that swings lowers it.
 double resonanceIn(const OpenCoilMechanics& mechanics, double near)
 {
     constexpr int steps = 96;
@@ -63,7 +63,7 @@ double resonanceIn(const OpenCoilMechanics& mechanics, double near)
     }
     if (best == 0.0)
         throw Error(Error::Kind::data, "The linear part of the model has no resonance of the cone within two octaves "
-                                       "of its base's; Thiele/Small parameters are not "
+                                       "of that of mass and stiffness; Thiele/Small parameters are not "
                                        "defined for it.");
     return best;
 }

@@ -65,38 +65,46 @@ Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model m
 bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
 {
     chooseResiduals(model);
-    if (left(model).chiSquaredPerValue < clean)
+    auto now = left(model);
+    if (now.chiSquaredPerValue < clean)
         return false;
-    auto settled = model;  // fitted as what it is compared with
-    auto now = left(fit(settled, onTrial, progress).usable() ? settled : model);
+    if (auto settled = model; fit(settled, onTrial, progress).usable())  // as what it is compared with
+        if (auto then = left(settled); then.chiSquaredPerValue < now.chiSquaredPerValue) {
+            model = std::move(settled);
+            now = std::move(then);
+        }
     const auto seen = seenIn(record_);
     const auto range = visitedRange(model, record_, test_.degree);
     const LinearResponses still(withoutLaws(model, record_, options_.threads));
-    const auto isBetter = [&](Model& other, std::size_t parameters) {
+    const Progress stoppable = progress.part(0.0, 0.0);
+    // dB that the model leaves more than the other, less what that has to bring
+    const auto gainOf = [&](Model& other) {
+        constexpr double none = 0.0;
         if (!findNewest(other, still) || left(other).chiSquaredPerValue > hopeless * now.chiSquaredPerValue
-            || !fit(other, onTrial, progress).usable() || !strangeIn(other).empty())
-            return false;
-        const double price = freeParameters(other).size() > parameters ? dearer : hardlyNeeded;
-        auto then = left(other);
-        const bool better = then.chiSquaredPerValue < now.chiSquaredPerValue && lost(now, then) > price;
-        if (better)
-            now = std::move(then);
-        return better;
+            || !fit(other, onTrial, stoppable).usable() || !strangeIn(other).empty())
+            return none;
+        const auto then = left(other);
+        const double price = freeParameters(other).size() > freeParameters(model).size() ? dearer : hardlyNeeded;
+        return then.chiSquaredPerValue < now.chiSquaredPerValue ? lost(now, then) - price : none;
     };
     bool any = false;
     for (const auto& id : model.effectIds()) {
         if (base_.has(id) || !effectNamed(id).linear())
             continue;
         std::optional<Model> best;
+        double most = 0.0;
         for (const auto* effect : catalogue()) {
             if (!effect->linear() || model.has(effect->id()) || !whyUnseen(*effect, seen).empty())
                 continue;
             auto other = withEffect(withoutEffect(model, id), *effect, range);
-            if (isBetter(other, freeParameters(model).size()))
+            if (const double gain = gainOf(other); gain > most) {
+                most = gain;
                 best = std::move(other);
+            }
         }
         if (best) {
             model = std::move(*best);
+            now = left(model);
             any = true;
         }
     }

@@ -154,8 +154,10 @@ Whole grown(const Model& base, const Record& record, WholeSearch& search, const 
     Whole whole {base, {}, {}};
     grow(whole, base, record, search, progress.part(0.0, 0.7));
     if (search.exchangeStandIns(whole.model, progress.part(0.7, 0.8))) {  // beside the right ones others may show
-        whole.fit = search.fit(whole.model);
-        grow(whole, base, record, search, progress.part(0.8, 1.0));
+        auto fitted = whole.model;
+        if (const auto summary = search.fit(fitted, progress.part(0.8, 0.82)); summary.usable())
+            whole = {std::move(fitted), summary, {}};
+        grow(whole, base, record, search, progress.part(0.82, 1.0));
     }
     return whole;
 }

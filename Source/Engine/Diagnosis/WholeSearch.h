@@ -101,7 +101,8 @@ public:
     Model withLinear(const std::vector<const Effect*>&, Model, const Progress& = {}) const;
 
     /// Exchanges linear effects, on trial, for those that the model does not have: one may have come in for another,
-    /// of which nothing is left to be seen then. Whether one of those stayed. Chooses residuals.
+    /// of which nothing is left to be seen then. Whether one of those stayed. Fits the model briefly first, and
+    /// chooses residuals.
     bool exchangeStandIns(Model&, const Progress& = {});
 
 private:

@@ -149,7 +149,7 @@ double stepOnResponses(Model& model, const std::vector<ResponseTarget>& targets)
 SearchSummary fitResponse(Model& model, const std::vector<ResponseTarget>& targets, const LeastSquaresOptions& options)
 {
     for (std::size_t k = 0; k < model.components.size(); ++k)
-        if (model.components[k].effect->linear())
+        if (model.components[k].effect->creeps())
             resize(model, k);
     const auto active = movedIn(model);
     const auto all = parametersOf(model);

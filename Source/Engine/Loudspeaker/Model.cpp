@@ -126,8 +126,10 @@ void resize(Model& model, std::size_t k)
     if (base.empty())
         return;
     auto& range = component.operatingRange;
-    range.scale = model.baseParameter(base).value
-                  + component.effect->addsTo(base, range, valuesOf(component).data(), range.lowFrequency);
+    range.scale = model.baseParameter(base).value;
+    if (!component.effect->creeps())
+        return;
+    range.scale += component.effect->addsTo(base, range, valuesOf(component).data(), range.lowFrequency);
     const auto sized = component.effect->parameters(range);
     for (std::size_t n = 0; n < sized.size(); ++n)
         component.parameters[n].prior = sized[n].prior;

@@ -208,6 +208,13 @@ Model modelFromJson(const JsonField& field)
         model.components.push_back(
             componentFrom(item, effect, operatingRangeFrom(item.at("operatingRange", "extent"))));
     }
+    // Older files do not tell the scale of what creeps. What was read is written again as it was.
+    for (std::size_t k = 1; k < model.components.size(); ++k)
+        if (model.components[k].effect->creeps()) {
+            const double told = model.components[k].operatingRange.scale;
+            resize(model, k);
+            model.components[k].operatingRange.scale = told;
+        }
     const auto path = field.at("path");
     model.path.parameters = parametersFrom(path.at("parameters"), model.path.parameters);
     model.microphoneDistance = path.at("microphoneDistance").numberWithin(1e-6, 1e6);

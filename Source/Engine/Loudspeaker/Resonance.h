@@ -13,9 +13,9 @@ struct Resonance {
 
 /// The resonance of the cone, as defined by Thiele and Small,
 ///     f0 = sqrt(K/m)/(2 pi),   Q0 = sqrt(K m)/(Rms + Bl^2/Re),
-/// without the term in Bl for a driver without a coil. The impedance has its peak there. The poles of the linear part
-/// are not a better measure: they include those of eddy currents, and a well-damped woofer of 32 Hz may have its pair
-/// at 62 Hz.
+/// without the term in Bl for a driver without a coil. The impedance has its peak there if nothing creeps. The poles of
+/// the linear part are not a better measure: they include those of eddy currents, and a well-damped woofer of 32 Hz may
+/// have its pair at 62 Hz.
 Resonance coneResonance(const Model&);
 
 /// Hz, at which the cone resonates on what the suspension is there, 2 pi f = sqrt(K(f)/m): what creeps may have taken

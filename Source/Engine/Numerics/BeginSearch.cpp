@@ -8,6 +8,11 @@
 
 namespace excursion {
 
+bool isFinite(const NormalEquations& normal)
+{
+    return std::isfinite(normal.cost) && normal.N.allFinite() && normal.g.allFinite();
+}
+
 bool beginSearch(const NormalEvaluation& evaluate, const Eigen::VectorXd& theta, const LeastSquaresOptions& options,
                  NormalEquations& at, SearchSummary& summary)
 {
@@ -16,7 +21,7 @@ bool beginSearch(const NormalEvaluation& evaluate, const Eigen::VectorXd& theta,
         throw Error(Error::Kind::usage, "The fit cannot run: " + invalid + ".");
     if (theta.size() == 0)
         summary.end(Termination::nothingFree);
-    else if (!evaluate(theta, true, at) || !std::isfinite(at.cost) || !at.N.allFinite() || !at.g.allFinite())
+    else if (!evaluate(theta, true, at) || !isFinite(at))
         summary.end(Termination::startUndefined);
     else {
         summary.initialCost = summary.finalCost = at.cost;

@@ -5,6 +5,9 @@
 
 namespace excursion {
 
+/// Whether cost and slopes are.
+bool isFinite(const NormalEquations&);
+
 /// What a search on normal equations begins with: it looks at its start. False if there is nothing to search, with the
 /// reason in the summary; else its costs are those of the start.
 /// @param at  normal equations at theta

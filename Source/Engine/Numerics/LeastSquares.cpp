@@ -25,11 +25,6 @@ struct Box {
     VectorXd nearest(const VectorXd& theta) const { return theta.cwiseMax(lower).cwiseMin(upper); }
 };
 
-bool isFinite(const NormalEquations& normal)
-{
-    return std::isfinite(normal.cost) && normal.N.allFinite() && normal.g.allFinite();
-}
-
 /// -(N + lambda diag N)^-1 pull, of these parameters alone.
 VectorXd dampedSolve(const std::vector<Index>& free, const Eigen::MatrixXd& N, const VectorXd& pull, double lambda)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Predistortion/PredictedDistortion.h"
 
-#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Error.h"
+#include "Engine/Loudspeaker/Resonance.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Predistortion/Speaker.h"
 #include "Engine/Signal/Fft.h"

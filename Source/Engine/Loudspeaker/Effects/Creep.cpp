@@ -74,12 +74,12 @@ public:
         return result;
     }
 
-    /// No suspension stiffens threefold, nor by a half within a decade: the air of a closed box that leaks does. What
-    /// lies far below the band is not asked for, as it does not show.
+    /// No suspension stiffens threefold from a third of the lowest frequency on, nor by a half within the first decade
+    /// from there: the air of a closed box that leaks does. What lies farther below the band does not show.
     bool plausible(const OperatingRange& e, const std::vector<Parameter>& own,
                    const std::vector<Parameter>& base) const override
     {
-        constexpr double most = 3.0, mostWithinDecade = 1.5, below = 1.0 / 3.0;  // the last of the lowest frequency
+        constexpr double most = 3.0, mostWithinDecade = 1.5, below = 1.0 / 3.0;
         std::vector<double> values;
         for (const auto& p : own)
             values.push_back(p.value);
