@@ -208,12 +208,13 @@ Model modelFromJson(const JsonField& field)
         model.components.push_back(
             componentFrom(item, effect, operatingRangeFrom(item.at("operatingRange", "extent"))));
     }
-    // Older files do not tell the scale of what creeps. What was read is written again as it was.
+    // Older files do not tell the scale of what creeps; they have a 1 there, and are written again as they were read.
+    constexpr double untold = 1.0;
     for (std::size_t k = 1; k < model.components.size(); ++k)
-        if (model.components[k].effect->creeps()) {
-            const double told = model.components[k].operatingRange.scale;
+        if (auto& scale = model.components[k].operatingRange.scale;
+            model.components[k].effect->creeps() && scale == untold) {
             resize(model, k);
-            model.components[k].operatingRange.scale = told;
+            scale = untold;
         }
     const auto path = field.at("path");
     model.path.parameters = parametersFrom(path.at("parameters"), model.path.parameters);

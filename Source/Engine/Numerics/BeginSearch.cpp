@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/BeginSearch.h"
 
-#include "Engine/Error.h"
-
 #include <cmath>
-#include <string>
 
 namespace excursion {
 
@@ -13,12 +10,9 @@ bool isFinite(const NormalEquations& normal)
     return std::isfinite(normal.cost) && normal.N.allFinite() && normal.g.allFinite();
 }
 
-bool beginSearch(const NormalEvaluation& evaluate, const Eigen::VectorXd& theta, const LeastSquaresOptions& options,
-                 NormalEquations& at, SearchSummary& summary)
+bool beginSearch(const std::function<bool(const Eigen::VectorXd& theta, bool gradient, NormalEquations&)>& evaluate,
+                 const Eigen::VectorXd& theta, NormalEquations& at, SearchSummary& summary)
 {
-    std::string invalid;
-    if (!options.isValid(&invalid))
-        throw Error(Error::Kind::usage, "The fit cannot run: " + invalid + ".");
     if (theta.size() == 0)
         summary.end(Termination::nothingFree);
     else if (!evaluate(theta, true, at) || !isFinite(at))

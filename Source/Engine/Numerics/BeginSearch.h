@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Numerics/LeastSquares.h"
+#include "Engine/Numerics/NormalEquations.h"
+#include "Engine/Numerics/SearchSummary.h"
+
+#include <Eigen/Core>
+
+#include <functional>
 
 namespace excursion {
 
@@ -10,9 +15,9 @@ bool isFinite(const NormalEquations&);
 
 /// What a search on normal equations begins with: it looks at its start. False if there is nothing to search, with the
 /// reason in the summary; else its costs are those of the start.
+/// @param evaluate  see NormalEvaluation
 /// @param at  normal equations at theta
-/// Throws Error (usage) for options that make no sense.
-bool beginSearch(const NormalEvaluation&, const Eigen::VectorXd& theta, const LeastSquaresOptions&, NormalEquations& at,
-                 SearchSummary&);
+bool beginSearch(const std::function<bool(const Eigen::VectorXd& theta, bool gradient, NormalEquations&)>& evaluate,
+                 const Eigen::VectorXd& theta, NormalEquations& at, SearchSummary&);
 
 }  // namespace excursion

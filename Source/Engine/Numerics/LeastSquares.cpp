@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/LeastSquares.h"
 
+#include "Engine/Error.h"
 #include "Engine/Numerics/BeginSearch.h"
 #include "Engine/Validity.h"
 
@@ -122,11 +123,14 @@ bool LeastSquaresOptions::isValid(std::string* reason) const
 SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const VectorXd& lower, const VectorXd& upper,
                        const LeastSquaresOptions& options, const Progress& progress, const Curvature& curvature)
 {
+    std::string invalid;
+    if (!options.isValid(&invalid))
+        throw Error(Error::Kind::usage, "The fit cannot run: " + invalid + ".");
     const Box box {lower, upper};
     theta = box.nearest(theta);
     NormalEquations at;
     SearchSummary result;
-    if (!beginSearch(evaluate, theta, options, at, result))
+    if (!beginSearch(evaluate, theta, at, result))
         return result;
     const auto tried = [&](const VectorXd& where) {
         Trial trial {box.nearest(where)};

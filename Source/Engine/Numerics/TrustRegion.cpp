@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Numerics/TrustRegion.h"
 
+#include "Engine/Error.h"
 #include "Engine/Numerics/BeginSearch.h"
 
 #include <ceres/ceres.h>
@@ -137,9 +138,12 @@ SearchSummary minimizeInTrustRegion(const NormalEvaluation& evaluate, Eigen::Vec
                                     const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                                     const LeastSquaresOptions& options, const Progress& progress)
 {
+    std::string invalid;
+    if (!options.isValid(&invalid))
+        throw Error(Error::Kind::usage, "The fit cannot run: " + invalid + ".");
     NormalEquations atStart;
     SearchSummary result;
-    if (!beginSearch(evaluate, theta, options, atStart, result))
+    if (!beginSearch(evaluate, theta, atStart, result))
         return result;
     // The solver's own tests compare with 1; strengths start at zero and take their size from the sensitivity.
     Eigen::VectorXd scale(theta.size());
