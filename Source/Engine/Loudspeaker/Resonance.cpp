@@ -24,12 +24,15 @@ double resonanceOf(const Model& model)
     // From above, where the suspension is stiffest: below, it may be so soft that nothing resonates.
     double frequency = std::numeric_limits<double>::infinity();
     for (int n = 0; n < rounds; ++n) {
+        const double before = frequency;
         K = atRest;
         for (const auto& one : model.components)
             if (one.effect->creeps() && isAtWork(one))
                 K += one.effect->addsTo("K", one.operatingRange, valuesOf(one).data(),
                                         std::min(frequency, one.operatingRange.highFrequency));
         frequency = resonanceOf(there);
+        if (frequency == before)
+            break;
     }
     return frequency;
 }
