@@ -278,10 +278,8 @@ Diagnosis diagnose(const Model& model, const Record& record, const Comparison& b
                 entry.confirmedChiSquaredPerValue = after->chiSquaredPerValue;
                 for (const auto& channel : after->channels)
                     entry.confirmedErrorDb[channel.quantity] = channel.total.db;
-                const auto& added = trial.components.back();
                 entry.significant = falls(before.chiSquaredPerValue, after->chiSquaredPerValue, options.significantFall)
-                                    && added.effect->plausible(added.operatingRange, added.parameters,
-                                                               trial.base().parameters);
+                                    && isPlausible(trial, trial.components.size() - 1);
                 errorAfter = entry.confirmedErrorDb;
                 if (entry.significant)
                     bestLeft = std::min(bestLeft, excess(after->chiSquaredPerValue));

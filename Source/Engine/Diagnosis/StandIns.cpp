@@ -22,10 +22,8 @@ constexpr double hopeless = 4.0;  // times what is left with the effect that may
 /// Whether a search for the newest effect on responses comes to what can be this effect.
 bool findNewest(Model& model, const LinearResponses& still)
 {
-    if (!fitNewestByResponse(model, still.gridFor(model.components.back())).usable())
-        return false;
-    const auto& newest = model.components.back();
-    return newest.effect->plausible(newest.operatingRange, newest.parameters, model.base().parameters);
+    return fitNewestByResponse(model, still.gridFor(model.components.back())).usable()
+           && isPlausible(model, model.components.size() - 1);
 }
 
 }  // namespace

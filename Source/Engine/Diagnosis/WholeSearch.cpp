@@ -20,11 +20,9 @@ double inDecibels(double ratio) { return 10.0 * std::log10(ratio); }
 std::set<std::string> implausible(const Model& model)
 {
     std::set<std::string> found;
-    for (std::size_t k = 1; k < model.components.size(); ++k) {
-        const auto& one = model.components[k];
-        if (!one.effect->plausible(one.operatingRange, one.parameters, model.base().parameters))
-            found.insert(one.effect->id());
-    }
+    for (std::size_t k = 1; k < model.components.size(); ++k)
+        if (!isPlausible(model, k))
+            found.insert(model.components[k].effect->id());
     return found;
 }
 

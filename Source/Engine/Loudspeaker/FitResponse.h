@@ -74,6 +74,9 @@ SearchSummary fitByResponse(Model&, std::size_t k, const std::vector<ResponseTar
 /// may have uncovered more parts. The parts are unchanged if that brings little.
 SearchSummary refineByResponse(Model&, const std::vector<ResponseTarget>&);
 
+/// Whether a component has plausible values (Effect::plausible()) beside the model's base.
+bool isPlausible(const Model&, std::size_t component);
+
 /// Whether a component is what its name says: no parameter of its shape is at a bound, and not all of them have
 /// implausible values, which would stand for something else.
 bool isItself(const Model&, std::size_t component);

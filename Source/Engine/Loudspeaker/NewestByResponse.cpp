@@ -23,10 +23,7 @@ bool cheaper(const Way& a, const Way& b) { return a.cost < b.cost; }
 /// What can be the effect comes before what has been bent to stand for something else, and then what leaves less.
 bool better(const Way& a, const Way& b)
 {
-    const auto plausible = [](const Model& model) {
-        const auto& newest = model.components.back();
-        return newest.effect->plausible(newest.operatingRange, newest.parameters, model.base().parameters);
-    };
+    const auto plausible = [](const Model& model) { return isPlausible(model, model.components.size() - 1); };
     const bool first = plausible(a.model), second = plausible(b.model);
     return first != second ? first : a.cost < b.cost;
 }
@@ -244,11 +241,17 @@ SearchSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& 
     return summary;
 }
 
+bool isPlausible(const Model& model, std::size_t component)
+{
+    const auto& own = model.components[component];
+    return own.effect->plausible(own.operatingRange, own.parameters, model.base().parameters);
+}
+
 bool isItself(const Model& model, std::size_t component)
 {
     constexpr double atBound = 0.002;  // of the range
     const auto& own = model.components[component];
-    return own.effect->plausible(own.operatingRange, own.parameters, model.base().parameters)
+    return isPlausible(model, component)
            && std::none_of(own.parameters.begin(), own.parameters.end(), [](const Parameter& p) {
                   const double range = p.upper - p.lower;
                   return !p.strength && std::isfinite(range)
