@@ -8,7 +8,8 @@
 
 namespace excursion {
 
-std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, int by)
+std::vector<std::string> raiseDegrees(Model& model, const Record& record, const ScoreOptions& options, double share,
+                                      int by)
 {
     std::vector<std::string> raised;
     // All laws with room are raised at once; then each is judged on its own columns.
@@ -47,7 +48,7 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     const double price = priceOfCoefficient * unit;
     // Far above the noise, or where it is not known, what is left may be no noise at all: then it must also fall by a
     // share that is worth it.
-    const double least = record.noiseKnown && unit < nearNoise ? 0.0 : 0.02 * now;
+    const double least = record.noiseKnown && unit < nearNoise ? share * now : 0.02 * now;
     Model result = model;
     for (const auto k : candidates) {
         auto use = old;

@@ -16,6 +16,7 @@ inline constexpr double priceOfCoefficient = 2.4;
 
 /// Raises the degree of the model's laws by `by` if a score test justifies the new coefficients. Returns the effects
 /// that were raised. The new coefficients start at zero.
-std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&, int by = 4);
+/// @param share  of the cost by which each must also lower it
+std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&, double share = 0.0, int by = 4);
 
 }  // namespace excursion

@@ -298,13 +298,14 @@ bool findPartsAnew(Model& model, const Record& record, const std::vector<std::si
 }
 
 std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, const std::vector<std::size_t>& sections,
-                                        const FitOptions& options, const ScoreOptions& score, const Progress& progress)
+                                        const FitOptions& options, const ScoreOptions& score, double share,
+                                        const Progress& progress)
 {
     std::optional<FitSummary> last;
     constexpr int mostRaises = 3;
     for (int n = 0; n < mostRaises; ++n) {
         auto higher = model;
-        if (raiseDegrees(higher, record, score).empty())
+        if (raiseDegrees(higher, record, score, share).empty())
             break;
         const auto part = progress.part(static_cast<double>(n) / mostRaises, (n + 1.0) / mostRaises);
         const auto next = fitFed(higher, record, sections, options, part);
@@ -347,7 +348,7 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
     auto summary = fitFed(model, record, sections, quick, progress.part(0.0, 0.3));
     if (!quick.fedGradient)
         chooseResiduals(quick, score, model, record, sections);
-    if (const auto raised = raiseAsItPays(model, record, sections, quick, score, progress.part(0.3, 0.75)))
+    if (const auto raised = raiseAsItPays(model, record, sections, quick, score, 0.0, progress.part(0.3, 0.75)))
         summary = *raised;
     if (hasPeriods(record)) {
         if (record.noiseKnown && (summary.chiSquaredPerValue > atNoise || !summary.onlyNoise))

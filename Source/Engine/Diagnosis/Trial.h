@@ -60,8 +60,10 @@ bool findPartsAnew(Model&, const Record&, const std::vector<std::size_t>& sectio
 
 /// Expands laws as far as their coefficients pay, with a fit after each step. The last fit, if there was one.
 /// @param score  with the residuals that the fits minimize
+/// @param share  of the cost by which each must also lower it
 std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector<std::size_t>& sections,
-                                        const FitOptions&, const ScoreOptions& score, const Progress& = {});
+                                        const FitOptions&, const ScoreOptions& score, double share,
+                                        const Progress& = {});
 
 /// Adds an effect to the model with the start values of the score test, and makes a quick fit. Throws Error (data) if
 /// the model already has the effect or cannot have it.

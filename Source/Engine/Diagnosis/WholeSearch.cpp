@@ -49,6 +49,14 @@ FitOptions WholeSearch::within(const LeastSquaresOptions& steps) const
 
 FitSummary WholeSearch::fit(Model& model, const Progress& progress) const { return fit(model, search, progress); }
 
+/// With laws that are fed alone, as they are quick.
+FitSummary WholeSearch::glanceAt(Model& model) const
+{
+    auto options = within(glance);
+    options.fedGradient = false;
+    return quickFit(model, record_, sections_, options, {});
+}
+
 FitSummary WholeSearch::fit(Model& model, const LeastSquaresOptions& steps, const Progress& progress) const
 {
     return quickFit(model, record_, sections_, within(steps), progress);
@@ -67,13 +75,19 @@ void WholeSearch::findPartsAnew(Model& model) const
     excursion::findPartsAnew(model, record_, sections_, within(brief));
 }
 
-void WholeSearch::raiseDegrees(Model& model) const { raiseAsItPays(model, record_, sections_, within(brief), test_); }
+void WholeSearch::raiseDegrees(Model& model) const
+{
+    constexpr double hides = 0.005;  // what lowers the cost by less hides no effect
+    raiseAsItPays(model, record_, sections_, within(brief), test_, hides);
+}
 
-Left WholeSearch::left(const Model& model) const
+Left WholeSearch::left(const Model& model) const { return left(model, test_.played); }
+
+Left WholeSearch::left(const Model& model, bool played) const
 {
     OutputErrorOptions plain;
     plain.gradient = false;
-    plain.played = test_.played;
+    plain.played = played;
     plain.substeps = test_.substeps;
     plain.threads = options_.threads;
     const auto fits = quickError(model, record_, sections_, {}, plain);
@@ -119,42 +133,45 @@ double WholeSearch::lost(const Left& more, const Left& less) const
 
 /// The vote on an effect that was really taken out. At the noise what it explains is what is left more without it, not
 /// the little that derivatives say of that; while more is missing the doubt of these stands.
-Vote WholeSearch::votedBy(const std::string& effect, const Vote& vote, const Left& without, const Left& with) const
+Vote WholeSearch::votedBy(const std::string& effect, const Vote& vote, const Left& without, const Left& with,
+                          bool atNoise) const
 {
     const double explained = std::max(without.cost - with.cost, 1e-300);
     return {lost(without, with),
             effectNamed(effect).linear() ? 0.0
-            : with.areNoise()            ? vote.byLevel / explained
+            : atNoise                    ? vote.byLevel / explained
                                          : vote.inconsistency,
             vote.byLevel};
 }
 
 /// @param still  responses of the record without the model's laws, once they were needed
-Removal WholeSearch::without(const Model& model, const Left& now, const std::string& effect, const Vote& vote,
+Removal WholeSearch::without(const Model& model, const Asked& now, const std::string& effect, const Vote& vote,
                              bool thorough, std::optional<LinearResponses>& still) const
 {
     Removal removal {vote, {}};
     auto leaner = withoutEffect(model, effect);
-    if (!fit(leaner, glance).usable())
+    if (!glanceAt(leaner).usable())
         return removal;
-    auto then = left(leaner);
+    auto then = left(leaner, false);
     // What is found at the noise is believed later on, so there a glance is not enough.
-    if (lost(then, now) < (thorough || now.isNoise() ? sorelyMissed : barelyMissed)) {
+    const bool told = !(lost(then, now.fed) < (thorough || now.chosen.isNoise() ? sorelyMissed : barelyMissed));
+    if (!told) {
         if (!fit(leaner, brief).usable())
             return removal;
         then = left(leaner);
-        if (effectNamed(effect).linear() && lost(then, now) < barelyMissed) {
+        if (effectNamed(effect).linear() && lost(then, now.chosen) < barelyMissed) {
             if (!still)
                 still.emplace(withoutLaws(model, record_, options_.threads));
-            if (reshape(leaner, then, now, *still))
+            if (reshape(leaner, then, now.chosen, *still))
                 then = left(leaner);
         }
-        const double missed = lost(then, now);
+        const double missed = lost(then, now.chosen);
         if (thorough && test_.played && missed > hardlyNeeded && missed < barelyMissed && fitExactly(leaner).usable())
             then = left(leaner);
     }
-    removal.vote = votedBy(effect, vote, then, now);
-    removal.times = then.chiSquaredPerValue / now.chiSquaredPerValue;
+    const auto& with = told ? now.fed : now.chosen;
+    removal.vote = votedBy(effect, vote, then, with, now.chosen.areNoise());
+    removal.times = then.chiSquaredPerValue / with.chiSquaredPerValue;
     removal.staysNoise = then.areNoise();
     removal.leaner = std::move(leaner);
     return removal;
@@ -163,7 +180,7 @@ Removal WholeSearch::without(const Model& model, const Left& now, const std::str
 WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough, const Removals& before) const
 {
     Removals tried;
-    const auto now = left(model);
+    const Asked now {left(model), left(model, false)};
     const auto strange = implausible(model);
     std::optional<LinearResponses> still;
     for (const auto& [effect, vote] : votesOf(model, record_, test_)) {
@@ -201,7 +218,7 @@ bool WholeSearch::takeOut(Model& model, bool thorough, const std::function<bool(
             if (!fit(leaner, brief).usable() || (thorough && test_.played && !fitExactly(leaner).usable()))
                 continue;
             const auto then = left(leaner), now = left(model);
-            if (keeps({votedBy(effect, removal.vote, then, now),
+            if (keeps({votedBy(effect, removal.vote, then, now, now.areNoise()),
                        {},
                        then.chiSquaredPerValue / now.chiSquaredPerValue,
                        then.areNoise(),

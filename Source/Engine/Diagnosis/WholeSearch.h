@@ -106,6 +106,10 @@ public:
     bool exchangeStandIns(Model&, const Progress& = {});
 
 private:
+    /// What a model leaves by the residuals that were chosen, and by those of fed laws.
+    struct Asked {
+        Left chosen, fed;
+    };
     struct Leaner {
         std::string effect;  ///< that went
         Model model;
@@ -114,14 +118,16 @@ private:
     FitOptions within(const LeastSquaresOptions&) const;
     FitSummary fit(Model&, const LeastSquaresOptions&, const Progress& = {}) const;
     FitSummary fitExactly(Model&) const;
+    FitSummary glanceAt(Model&) const;
+    Left left(const Model&, bool played) const;
     std::set<std::string> strangeIn(const Model&) const;
     std::set<std::string> takeOutOneByOne(Model&) const;
     std::optional<Leaner> withoutOneOf(const std::set<std::string>& effects, const Model&) const;
     bool bringBack(Model&, const std::string& effect, const Left& without) const;
     bool reshape(Model&, const Left& now, const Left& enough, const LinearResponses& still) const;
-    Removal without(const Model&, const Left& now, const std::string& effect, const Vote&, bool thorough,
+    Removal without(const Model&, const Asked& now, const std::string& effect, const Vote&, bool thorough,
                     std::optional<LinearResponses>& still) const;
-    Vote votedBy(const std::string& effect, const Vote&, const Left& without, const Left& with) const;
+    Vote votedBy(const std::string& effect, const Vote&, const Left& without, const Left& with, bool atNoise) const;
 
     const Model& base_;
     const Record& record_;

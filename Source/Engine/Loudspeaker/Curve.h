@@ -62,14 +62,24 @@ struct Bend {
     return Tangent(value, slope * q.v);
 }
 
-/// A polynomial of degree n, by Horner's scheme. On Tangent the chain rule is applied once, to the result and not at
-/// every step of the scheme, which takes a third of the time: coefficients depend neither on time nor on the current.
+/// A polynomial of degree n, by Horner's scheme. The chain rule is applied once, to the result and not at every step of
+/// the scheme, which takes a third of the time. On Tangent coefficients depend neither on time nor on the current; on
+/// Jet they have slopes of their own.
 template <class T>
 [[gnu::always_inline]] inline T polynomial(int n, const T* b, const T& s)
 {
     if constexpr (std::is_same_v<T, Tangent>) {
         const auto bend = bendAt(n, b, s.a);
         return along(bend.value, bend.slope, s);
+    } else if constexpr (std::is_same_v<T, Jet>) {
+        T value = b[n];
+        double slope = 0.0;
+        for (int j = n - 1; j >= 0; --j) {
+            slope = slope * s.a + value.a;
+            value = value * s.a + b[j];
+        }
+        value.v += slope * s.v;
+        return value;
     } else {
         T value = b[n];
         for (int j = n - 1; j >= 0; --j)
@@ -99,11 +109,32 @@ template <class T>
     }
     T value = b[n];
     T slope = T(0.0);
-    for (int j = n - 1; j >= 0; --j) {
-        slope = slope * s + value;
-        value = value * s + b[j];
+    if constexpr (std::is_same_v<T, Jet>) {
+        double half = 0.0;  // of the curvature
+        for (int j = n - 1; j >= 0; --j) {
+            half = half * s.a + slope.a;
+            slope = slope * s.a + value;
+            value = value * s.a + b[j];
+        }
+        value.v += slope.a * s.v;
+        slope.v += 2.0 * half * s.v;
+    } else {
+        for (int j = n - 1; j >= 0; --j) {
+            slope = slope * s + value;
+            value = value * s + b[j];
+        }
     }
     return {value, outside ? T(0.0) : slope * (1.0 / range)};
+}
+
+/// The value at q alone.
+template <class T>
+[[gnu::always_inline]] inline T valueOn(int n, const T* b, const T& q, double range)
+{
+    T s = q * (1.0 / range);
+    if (s > T(1.0) || s < T(-1.0))
+        s = s > T(0.0) ? T(1.0) : T(-1.0);
+    return polynomial(n, b, s);
 }
 
 /// The continuation of a curve beyond the visited range, from its end value. Its first two terms, which are determined

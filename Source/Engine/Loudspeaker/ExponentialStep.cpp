@@ -2,26 +2,13 @@
 #include "Engine/Loudspeaker/ExponentialStep.h"
 
 #include "Engine/Loudspeaker/SmallSignal.h"
-#include "Engine/Numerics/Eigenvalues.h"
 #include "Engine/Numerics/Exponential.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 namespace excursion {
 namespace {
-
-/// max |lambda|; of two rows from lambda^2 - tr(J) lambda + det(J) = 0.
-double spectralRadius(const Eigen::MatrixXd& J)
-{
-    if (J.rows() > 2)
-        return eigenvalues(J).cwiseAbs().maxCoeff();
-    const std::complex<double> half = 0.5 * J.trace(), root = std::sqrt(half * half - J.determinant());
-    return std::max(std::abs(half + root), std::abs(half - root));
-}
 
 /// The states that act on those that lead, in the end: what is in the row of a state acts on it.
 std::vector<bool> acting(const Eigen::MatrixXd& A, Eigen::Index lead)
@@ -234,41 +221,6 @@ double ExponentialStep::step(std::span<const double> u)
     for (Eigen::Index k = 0; k < memories; ++k)
         memory[k] += step_ / 6.0 * (N1[rates + k] + 2.0 * (N2[rates + k] + N3[rates + k]) + N4[rates + k]);
     return acceleration;
-}
-
-double ExponentialStep::fastestLaw()
-{
-    // N moves di/dt, dv/dt and the laws' memories alone, so its eigenvalues are those of its derivatives by i, v and
-    // these memories.
-    const auto laws = N_[0].size(), memories = laws - rates;
-    double fastest = 0.0;
-    for (const auto& law : laws_) {
-        const auto& operatingRange = law.component->operatingRange;
-        for (const double i : {-operatingRange.current, operatingRange.current})
-            for (int k = -4; k <= 4; ++k)
-                for (const double v : {-operatingRange.velocity, operatingRange.velocity}) {
-                    const auto at = [&](double current, double velocity, Eigen::Index memory) -> Eigen::VectorXd {
-                        y_.setZero();
-                        y_.head(3) << current, 0.25 * k * operatingRange.displacement, velocity;
-                        y_[3] = C_.row(3).head(3) * y_.head(3);
-                        y_[4] = C_.row(4).head(3) * y_.head(3);
-                        if (memory >= 0)
-                            y_[motions + memory] = 1.0;  // what is affine in them does not mind the size
-                        ask(0.0, N_[0].data());
-                        return N_[0];
-                    };
-                    const double di = 1e-6 * operatingRange.current, dv = 1e-6 * operatingRange.velocity;
-                    const Eigen::VectorXd here = at(i, v, -1);
-                    Eigen::MatrixXd J(laws, laws);
-                    J.col(0) = (at(i + di, v, -1) - here) / di;
-                    J.col(1) = (at(i, v + dv, -1) - here) / dv;
-                    for (Eigen::Index m = 0; m < memories; ++m)
-                        J.col(rates + m) = at(i, v, m) - here;
-                    if (J.allFinite())
-                        fastest = std::max(fastest, spectralRadius(J));
-                }
-    }
-    return fastest;
 }
 
 }  // namespace excursion

@@ -50,9 +50,16 @@ public:
     double velocity() const { return z_[2]; }      ///< m/s
     void state(Eigen::VectorXd& z) const;
 
-    /// The eigenvalue of dN/d(i, v, the laws' memories) that is largest in size over the visited range (1/s). If h
-    /// times it exceeds 2, the step is too long to be stable.
+    /// The eigenvalue of dN/d(i, v, the laws' memories) that is largest in size over the visited range (1/s). Up to 2/h
+    /// steps are stable; where the linear part is fast as well they may be beyond it (isStable).
     double fastestLaw();
+
+    /// Whether the difference between two motions grows no more within a step than the equations let it grow, about
+    /// places all over the visited range. The laws are linear about a place, N = J y, and the step is a matrix there,
+    /// whose eigenvalues tell. What loops in the iron take from the coil is stiff and exact, but for the share
+    /// by which a law changes the inductance: if it changes from L0 to L, a long step multiplies what it was by
+    /// 2 q^4 - q^2, q = L0/L - 1, no matter how fast the loops are.
+    bool isStable();
 
 private:
     friend class ExponentialAdams;
@@ -80,6 +87,17 @@ private:
 
     /// Columns for the linear part's states, then inputs, as `from_` has them.
     Eigen::MatrixXd arranged(const Eigen::MatrixXd& map) const;
+
+    /// J = dN/dy at places all over the visited range, rates and the laws' memories x y.
+    std::vector<Eigen::MatrixXd> lawSlopes();
+    /// What the laws make of (i, v, their memories), which are all that N moves.
+    Eigen::MatrixXd among(const Eigen::MatrixXd& J) const;
+    /// How the difference d of two motions near a place goes on, of (the states that act, the laws' memories):
+    /// dd/dt = rate d, and d(h) = step d(0).
+    struct Difference {
+        Eigen::MatrixXd rate, step;
+    };
+    Difference differenceNear(const Eigen::MatrixXd& J) const;
 
     const Model model_;
     std::vector<Law> laws_;

@@ -8,9 +8,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace excursion {
+namespace {
+
+constexpr int mostSubsteps = 64;
+
+}  // namespace
 
 const std::vector<double>& Trajectory::operator[](Trace trace) const
 {
@@ -108,11 +112,12 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
     return true;
 }
 
-int stableSubsteps(const Model& model, double sampleRate, double limit)
+int stableSubsteps(const Model& model, double sampleRate)
 {
-    return std::clamp(
-        static_cast<int>(std::ceil(ExponentialStep(model, 1.0 / sampleRate).fastestLaw() / (limit * sampleRate))), 1,
-        64);
+    int substeps = 1;
+    while (substeps < mostSubsteps && !ExponentialStep(model, 1.0 / (sampleRate * substeps)).isStable())
+        ++substeps;
+    return substeps;
 }
 
 }  // namespace excursion

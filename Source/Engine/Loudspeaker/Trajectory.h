@@ -39,8 +39,8 @@ bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, c
 bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, std::size_t first,
                    const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
 
-/// The smallest number of steps per sample, at most 64, for which the laws' fastest eigenvalue times the step stays
-/// within the limit; by default the limit up to which both of the above are stable.
-int stableSubsteps(const Model&, double sampleRate, double limit = 2.0);
+/// The smallest number of steps per sample, at most 64, for which both of the above are stable
+/// (ExponentialStep::isStable).
+int stableSubsteps(const Model&, double sampleRate);
 
 }  // namespace excursion

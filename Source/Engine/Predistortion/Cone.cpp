@@ -2,9 +2,9 @@
 #include "Engine/Predistortion/Cone.h"
 
 #include "Engine/Loudspeaker/SmallSignal.h"
-#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Predistortion/Cubic.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace excursion {
@@ -12,11 +12,18 @@ namespace {
 
 constexpr double shareTime = 0.003;  // s, see Glide
 
+/// Steps a sample, at most 64, for which the laws' fastest eigenvalue times the step stays within the limit.
+int stepsWithin(double limit, const Model& model, double sampleRate)
+{
+    const double fastest = ExponentialStep(model, 1.0 / sampleRate).fastestLaw();
+    return static_cast<int>(std::clamp(std::ceil(fastest / (limit * sampleRate)), 1.0, 64.0));
+}
+
 }  // namespace
 
 Cone::Cone(const Model& model, double sampleRate)
-    : corrected_(stableSubsteps(model, sampleRate, ExponentialAdams::stable) > 1),
-      substeps_(corrected_ ? stableSubsteps(model, sampleRate, ExponentialAdams::stableCorrected) : 1),
+    : corrected_(stepsWithin(ExponentialAdams::stable, model, sampleRate) > 1),
+      substeps_(corrected_ ? stepsWithin(ExponentialAdams::stableCorrected, model, sampleRate) : 1),
       motion_(model, 1.0 / (sampleRate * substeps_), corrected_),
       plausible_(model),
       reference_(model, sampleRate),

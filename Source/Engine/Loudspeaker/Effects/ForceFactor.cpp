@@ -33,7 +33,7 @@ public:
     template <class T>
     void addTo(const OperatingRange& e, const T* c, const Motion<T>& at, const T*, T*, Balance<T>& sum) const
     {
-        const T difference = curve::at(e.degree, c, at.x, e.displacement).value;
+        const T difference = curve::valueOn(e.degree, c, at.x, e.displacement);
         sum.force += difference * at.i;
         sum.drop += difference * at.v;
     }

@@ -102,6 +102,26 @@ private:
             return {curve::along(fluxBeyond, fluxSlope, i), curve::along(fluxSlope, fluxCurvature, i),
                     curve::along(coenergy, fluxBeyond, i)};
         }
+        if constexpr (std::is_same_v<T, Jet>) {
+            const double end = s.a;
+            T value = T(0.0), slope = T(0.0), integral = T(0.0);
+            double half = 0.0;  // of the curvature
+            for (int j = e.degree; j >= 0; --j) {
+                half = half * end + slope.a;
+                slope = slope * end + value;
+                value = value * end + c[j];
+                integral = integral * end + c[j] * (1.0 / (j + 2));
+            }
+            const T flux = value * (end * e.current), fluxSlope = value + end * slope;
+            const double off = beyond.a;
+            Flux<T> at {flux + fluxSlope * off, fluxSlope,
+                        integral * (end * end * e.current * e.current) + off * (flux + 0.5 * off * fluxSlope)};
+            const double curvature = off == 0.0 ? 2.0 * (slope.a + end * half) / e.current : 0.0;
+            at.coenergy.v += at.flux.a * i.v;
+            at.flux.v += fluxSlope.a * i.v;
+            at.slope.v += curvature * i.v;
+            return at;
+        }
         T value = T(0.0), slope = T(0.0), integral = T(0.0);
         for (int j = e.degree; j >= 0; --j) {
             slope = slope * s + value;

@@ -82,7 +82,7 @@ public:
             stretch -= yield[2 * k + 1] * h;
             yielded += yield[2 * k + 1] * (h - q);
         }
-        const T difference = curve::at(e.degree, c, stretch, e.displacement).value
+        const T difference = curve::valueOn(e.degree, c, stretch, e.displacement)
                              + curve::beyond(c[e.degree + 1], c[e.degree + 2], stretch, e.displacement);
         const T bent = difference * stretch;
         for (int k = 0; k < n; ++k) {

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long the steps of ExponentialStep may be.
+#include "Engine/Loudspeaker/ExponentialStep.h"
+
+#include "Engine/Numerics/Eigenvalues.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace excursion {
+namespace {
+
+/// max |lambda|; of two rows from lambda^2 - tr(J) lambda + det(J) = 0.
+double spectralRadius(const Eigen::MatrixXd& J)
+{
+    if (J.rows() > 2)
+        return eigenvalues(J).cwiseAbs().maxCoeff();
+    const std::complex<double> half = 0.5 * J.trace(), root = std::sqrt(half * half - J.determinant());
+    return std::max(std::abs(half + root), std::abs(half - root));
+}
+
+bool samePlaces(const OperatingRange& a, const OperatingRange& b)
+{
+    return a.displacement == b.displacement && a.velocity == b.velocity && a.current == b.current
+           && a.highFrequency == b.highFrequency;
+}
+
+}  // namespace
+
+std::vector<Eigen::MatrixXd> ExponentialStep::lawSlopes()
+{
+    std::vector<const OperatingRange*> ranges;
+    for (const auto& law : laws_)
+        if (const auto& range = law.component->operatingRange;
+            std::none_of(ranges.begin(), ranges.end(), [&](const auto* known) { return samePlaces(*known, range); }))
+            ranges.push_back(&range);
+    std::vector<Eigen::MatrixXd> slopes;
+    const auto rateAt = [this](const Eigen::VectorXd& y) -> Eigen::VectorXd {
+        y_ = y;
+        ask(0.0, N_[0].data());
+        return N_[0];
+    };
+    Eigen::VectorXd y(y_.size()), little(y_.size());
+    for (const auto* range : ranges) {
+        const double rise = 2.0 * std::numbers::pi * range->highFrequency * range->current;  // A/s
+        // A law is affine in its memories, or they are shares of a limit, up to 1.
+        little.setOnes();
+        little.head<motions>() << range->current, range->displacement, range->velocity, rise,
+            range->velocity * rise / range->current;
+        little *= 1e-6;
+        for (const double angle : {0.0, 0.25, 0.75, 1.0, 1.25, 1.75})  // a sinusoid of the highest frequency
+            for (int k = -4; k <= 4; ++k)
+                for (const double v : {-range->velocity, range->velocity})
+                    for (const double carried : {0.0, std::copysign(1.0, v)}) {
+                        y.setConstant(carried);
+                        y.head(3) << range->current * std::cos(angle * std::numbers::pi),
+                            0.25 * k * range->displacement, v;
+                        y[3] = rise * std::sin(angle * std::numbers::pi);
+                        y[4] = 0.0;
+                        const auto here = rateAt(y);
+                        Eigen::MatrixXd J(here.size(), y.size());
+                        for (Eigen::Index c = 0; c < y.size(); ++c) {
+                            auto there = y;
+                            there[c] += little[c];
+                            J.col(c) = (rateAt(there) - here) / little[c];
+                        }
+                        if (J.allFinite())
+                            slopes.push_back(std::move(J));
+                    }
+    }
+    return slopes;
+}
+
+Eigen::MatrixXd ExponentialStep::among(const Eigen::MatrixXd& J) const
+{
+    const auto laws = J.rows();
+    Eigen::MatrixXd own(laws, laws);
+    for (const Eigen::Index q : {0, 1})
+        own.col(q) = J.col(2 * q) + J.middleCols(3, 2) * C_.block(3, 2 * q, 2, 1);
+    own.rightCols(laws - rates) = J.rightCols(laws - rates);
+    return own;
+}
+
+double ExponentialStep::fastestLaw()
+{
+    double fastest = 0.0;
+    for (const auto& J : lawSlopes())
+        fastest = std::max(fastest, spectralRadius(among(J)));
+    return fastest;
+}
+
+ExponentialStep::Difference ExponentialStep::differenceNear(const Eigen::MatrixXd& J) const
+{
+    const auto n = moving_, memories = J.rows() - rates;
+    const auto wide = [&](const Eigen::MatrixXd& linear, double kept) {
+        Eigen::MatrixXd map = Eigen::MatrixXd::Zero(linear.rows() + memories, n + memories);
+        map.topLeftCorner(linear.rows(), n) = linear.leftCols(n);
+        map.bottomRightCorner(memories, memories).diagonal().setConstant(kept);
+        return map;
+    };
+    const auto states = A_.rows();
+    const Eigen::MatrixXd seen = wide(C_, 1.0), half = wide(C_ * halfway_.leftCols(states), 1.0),
+                          end = wide(C_ * whole_.leftCols(states), 1.0);
+    const auto stage = [&](const Eigen::MatrixXd& from, const Eigen::MatrixXd& moved, double time,
+                           const Eigen::MatrixXd& N) -> Eigen::MatrixXd {
+        Eigen::MatrixXd y = from;
+        y.topRows(motions) += moved;
+        y.bottomRows(memories) += time * N.bottomRows(memories);
+        return J * y;
+    };
+    const Eigen::MatrixXd N1 = J * seen, N2 = stage(half, stage_ * N1.topRows(rates), 0.5 * step_, N1),
+                          N3 = stage(half, stage_ * N2.topRows(rates), 0.5 * step_, N2),
+                          N4 = stage(end,
+                                     last_ * N1.topRows(rates) + stage_ * (2.0 * N3.topRows(rates) - N1.topRows(rates)),
+                                     step_, N3);
+    const Eigen::MatrixXd twice = N2 + N3, across = quadrature_.topRows(n);
+    Difference d {.rate = wide(A_.topRows(n), 0.0), .step = wide(whole_.topRows(n), 1.0)};
+    d.rate.topRows(n) += E_.topRows(n) * N1.topRows(rates);
+    d.rate.bottomRows(memories) += N1.bottomRows(memories);
+    d.step.topRows(n) += across.leftCols(rates) * N1.topRows(rates)
+                         + across.middleCols(rates, rates) * twice.topRows(rates)
+                         + across.rightCols(rates) * N4.topRows(rates);
+    d.step.bottomRows(memories) += step_ / 6.0 * (N1 + 2.0 * twice + N4).bottomRows(memories);
+    return d;
+}
+
+bool ExponentialStep::isStable()
+{
+    constexpr double explicitLimit = 2.0;  // of Runge and Kutta's method of fourth order, 2.8 on either axis
+    constexpr double rounding = 1e-4;
+    for (const auto& J : lawSlopes()) {
+        if (step_ * spectralRadius(among(J)) <= explicitLimit)
+            continue;
+        const auto difference = differenceNear(J);
+        const double grows = std::max(0.0, eigenvalues(difference.rate).real().maxCoeff());
+        if (!(spectralRadius(difference.step) <= (1.0 + rounding) * std::exp(step_ * grows)))
+            return false;
+    }
+    return true;
+}
+
+}  // namespace excursion
