@@ -92,7 +92,7 @@ void run(const DiagnoseArguments& options, Terminal& terminal)
     const auto open = openTake(options.take);
     requireSameKind(model, seenIn(open.take.either()));
     auto diagnosis = diagnosisOf(model, open, terminal);
-    diagnosis.problems = open.take.report().problems;
+    tell(diagnosis, open.take.report().problems);
     print(diagnosis, terminal);
     terminal.document(toJson(diagnosis));
     if (diagnosis.verdict == Verdict::badMeasurement)

@@ -89,6 +89,35 @@ TEST_CASE("lost samples are a dropout")
     CHECK(find(report, "dropout", std::nullopt)->value == 1000.0);
 }
 
+TEST_CASE("a rest that jumps is no dropout: what repeats is fit for use")
+{
+    const auto sound = soundTake();
+    const auto& e = *sound.excitation;
+    for (const double share : {0.5, -2.0}) {
+        auto take = sound;
+        auto& samples = samplesOf(take, Quantity::displacement);
+        const double moved = share * synthetic::rms(samples);
+        const auto from = static_cast<std::size_t>(e.samplesPerRealization() * 4 + e.period * 2 + e.period / 3),
+                   until = from + static_cast<std::size_t>(e.samplesPerRealization() + e.period / 4);
+        for (auto n = from; n < until; ++n)
+            samples[n] += moved;
+        const auto report = check(take);
+        INFO(fatalSentences(report));
+        CHECK(report.fitForUse());
+        const auto* problem = find(report, "rest-jump", Quantity::displacement);
+        REQUIRE(problem);
+        CHECK(problem->value == Approx(std::abs(moved)).epsilon(0.05));
+        CHECK(!find(report, "dropout", Quantity::displacement));
+        CHECK(!find(check(sound), "rest-jump", Quantity::displacement));
+
+        auto drifting = sound;  // by as much over the take
+        auto& slow = samplesOf(drifting, Quantity::displacement);
+        for (std::size_t n = 0; n < slow.size(); ++n)
+            slow[n] += 3.0 * moved * std::pow(static_cast<double>(n) / static_cast<double>(slow.size()), 2);
+        CHECK(!find(check(drifting), "rest-jump", Quantity::displacement));
+    }
+}
+
 TEST_CASE("a gain that jumps is told from samples that are lost and from a loudspeaker that changes")
 {
     const auto sound = soundTake();

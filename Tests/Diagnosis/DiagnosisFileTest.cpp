@@ -120,3 +120,23 @@ TEST_CASE("A ladder that cannot be is refused with file and field", "[files]")
     CHECK_THAT(refusal("/rungs/0/comparison/channels/0/quantity", "taste"), Contains("quantity"));
     CHECK_THAT(refusal("/responses/0/re", nlohmann::json::array()), Contains("responses[0].re"));
 }
+
+TEST_CASE("Beside a rest that jumps nothing is complete", "[diagnosis]")
+{
+    const std::vector<Problem> jump {{"rest-jump", Quantity::displacement, 1e-3, "m", false, "It jumps by 1 mm."}},
+        hum {{"hum", Quantity::current, -50.0, "dB", false, "It hums."}};
+    Diagnosis diagnosis;
+    diagnosis.verdict = Verdict::complete;
+    diagnosis.sentence = "The model is complete.";
+    tell(diagnosis, hum);
+    CHECK(diagnosis.verdict == Verdict::complete);
+    CHECK(diagnosis.problems.size() == 1);
+    tell(diagnosis, jump);
+    CHECK(diagnosis.verdict == Verdict::unknownEffect);
+    CHECK(diagnosis.sentence.find("It jumps by 1 mm.") != std::string::npos);
+    diagnosis.verdict = Verdict::missingEffect;
+    diagnosis.sentence = "Friction is missing.";
+    tell(diagnosis, jump);
+    CHECK(diagnosis.verdict == Verdict::missingEffect);
+    CHECK(diagnosis.sentence == "Friction is missing.");
+}

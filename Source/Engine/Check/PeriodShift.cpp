@@ -6,6 +6,7 @@
 #include "Engine/Signal/Level.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -206,6 +207,61 @@ double relativeDifference(std::span<const double> earlier, std::span<const doubl
     return power > 0.0 ? difference / power : 0.0;
 }
 
+/// PeriodJump::moved: what the best two steps among blocks of the difference span.
+double restMoved(std::span<const double> earlier, std::span<const double> later)
+{
+    constexpr std::size_t blocks = 64;
+    constexpr int pieces = 3;
+    constexpr double much = 0.25;  // of the difference: at its new rest the cone swings in
+    const std::size_t length = earlier.size() / blocks;
+    if (length == 0)
+        return 0.0;
+    double whole = 0.0;
+    std::array<double, blocks + 1> sum {};  // of the difference, up to a block
+    for (std::size_t b = 0; b < blocks; ++b) {
+        sum[b + 1] = sum[b];
+        for (std::size_t n = b * length; n < (b + 1) * length; ++n) {
+            const double difference = later[n] - earlier[n];
+            sum[b + 1] += difference;
+            whole += difference * difference;
+        }
+    }
+    const auto mean = [&](std::size_t from, std::size_t to) {
+        return (sum[to] - sum[from]) / static_cast<double>(length * (to - from));
+    };
+    struct Best {
+        double explained = -1.0;
+        std::size_t from = 0;
+    };
+    std::array<std::array<Best, blocks + 1>, pieces + 1> best {};
+    best[0][0].explained = 0.0;
+    for (int piece = 1; piece <= pieces; ++piece)
+        for (std::size_t to = 1; to <= blocks; ++to)
+            for (std::size_t from = 0; from < to; ++from)
+                if (const double before = best[piece - 1][from].explained; before >= 0.0) {
+                    const double here = mean(from, to),
+                                 all = before + here * here * static_cast<double>(length * (to - from));
+                    if (all > best[piece][to].explained)
+                        best[piece][to] = {all, from};
+                }
+    if (!(best[pieces][blocks].explained > much * whole))
+        return 0.0;
+    // What jumps does so from one block to the next, or within one; a rest that drifts takes its time.
+    bool jumps = false;
+    double least = mean(best[pieces][blocks].from, blocks), largest = least;
+    std::size_t to = best[pieces][blocks].from, end = blocks;
+    for (int piece = pieces - 1; piece > 0; --piece) {
+        const auto from = best[piece][to].from;
+        const double before = mean(from, to), step = mean(to, end) - before;
+        jumps = jumps || (mean(to, to + 1) - mean(to - 1, to)) / step > 0.5;
+        least = std::min(least, before);
+        largest = std::max(largest, before);
+        end = to;
+        to = from;
+    }
+    return jumps ? largest - least : 0.0;
+}
+
 }  // namespace
 
 std::optional<PeriodShift> periodShift(const AveragedPeriods& averages, const Channel& channel, int level)
@@ -243,16 +299,24 @@ std::vector<PeriodJump> periodJumps(const AveragedPeriods& averages, const Chann
             for (int p = 0; p + 1 < e.periods; ++p) {
                 differences.push_back(relativeDifference(earlyPeriod(take, channel, level, m, p),
                                                          earlyPeriod(take, channel, level, m, p + 1)));
-                pairs.push_back({level, m, p, 10.0 * std::log10(differences.back() + 1e-300), false, 0.0});
+                pairs.push_back({level, m, p, 10.0 * std::log10(differences.back() + 1e-300), false, 0.0, 0.0});
             }
         if (pairs.size() < 3)
             continue;
         // Most pairs are sound; thousands of lines make their differences equal within a few percent.
         const double typical = medianOf(differences);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            if (!(differences[i] > 1e-4 && differences[i] > 30.0 * typical))
+            if (!(differences[i] > 1e-4))
+                continue;
+            // Rests that jump may do so in most pairs.
+            const double moved = channel.quantity == Quantity::displacement ? restMoved(
+                                     earlyPeriod(take, channel, level, pairs[i].realization, pairs[i].period),
+                                     earlyPeriod(take, channel, level, pairs[i].realization, pairs[i].period + 1))
+                                                                            : 0.0;
+            if (!(differences[i] > 30.0 * typical || moved != 0.0))
                 continue;
             auto& jump = jumps.emplace_back(pairs[i]);
+            jump.moved = moved;
             const auto spectra = earlySpectra(take, channel, level, jump.realization, lines);
             const auto p = static_cast<std::size_t>(jump.period);
             jump.change = isChange(spectra, p, lines, e.period);

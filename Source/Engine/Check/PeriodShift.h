@@ -33,6 +33,9 @@ struct PeriodJump {
     /// smooth over frequency makes of the period. Neither were samples lost, which turns it, nor did anything knock.
     bool change = false;
     double gainDb = 0.0;  ///< by which it has changed, from the period before that pair until the last one
+    /// By which the channel's rest has moved, in its unit, where that is most of the difference: constant but for one
+    /// or two steps. Else 0.
+    double moved = 0.0;
 };
 std::vector<PeriodJump> periodJumps(const AveragedPeriods&, const Channel&);
 

@@ -350,6 +350,18 @@ Diagnosis diagnose(const Model& model, const Spectra& spectra, const Comparison&
     return diagnosis;
 }
 
+void tell(Diagnosis& diagnosis, const std::vector<Problem>& problems)
+{
+    diagnosis.problems = problems;
+    const auto jump = std::find_if(problems.begin(), problems.end(),
+                                   [](const Problem& p) { return p.kind == "rest-jump"; });
+    if (jump == problems.end() || diagnosis.verdict != Verdict::complete)
+        return;
+    diagnosis.verdict = Verdict::unknownEffect;
+    diagnosis.sentence = "Something is left that no effect of the catalogue explains and that does not repeat. "
+                         + jump->sentence;
+}
+
 void nameNext(Diagnosis& diagnosis, const Model& model, const Spectra& spectra, const Comparison& before,
               const Step& next)
 {

@@ -76,6 +76,10 @@ Diagnosis diagnose(const Model&, const Record&, const Comparison& before, const 
 Diagnosis diagnose(const Model&, const Spectra&, const Comparison& before, const DiagnoseOptions& = {},
                    const Progress& = {});
 
+/// Adds what the check of the take has found. Where the rest of the cone jumps, what does not repeat is no noise:
+/// nothing is complete then.
+void tell(Diagnosis&, const std::vector<Problem>&);
+
 /// Updates such a diagnosis of the model if the step's effect is known to be missing, because other missing effects
 /// have shown it. The effect comes first, with the step's model if that leaves less.
 void nameNext(Diagnosis&, const Model&, const Spectra&, const Comparison& before, const Step&);

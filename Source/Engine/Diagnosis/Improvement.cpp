@@ -206,7 +206,7 @@ Rung Improvement::judged(Rung rung, const Progress& progress) const
 
 void Improvement::keep(Rung rung)
 {
-    rung.diagnosis.problems = take_.report().problems;
+    tell(rung.diagnosis, take_.report().problems);
     ladder_.rungs.push_back(std::move(rung));
     concludeFromLast();
 }

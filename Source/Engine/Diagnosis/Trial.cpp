@@ -232,11 +232,13 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
-    summary = stage(20, 5e-7, true, 0.3, 0.5);
-    // The last word has the simulation's own slopes, of which come the standard errors, too. Along a valley at the
-    // noise the cost falls by next to nothing for long.
-    if (near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean)
-        return stage(1, 5e-5, false, 0.5, 1.0);
+    // The last word has the simulation's own slopes, of which come the standard errors, too. Beside it those of fed
+    // laws lead no further.
+    const auto onlyNoise = [&] { return near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean; };
+    if (!onlyNoise())
+        summary = stage(20, 5e-7, true, 0.3, 0.5);
+    if (onlyNoise())
+        return stage(8, 2e-5, false, 0.5, 1.0);
     if (!record.noiseKnown)
         return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
     return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);

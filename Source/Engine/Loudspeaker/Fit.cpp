@@ -61,26 +61,13 @@ std::vector<Eigen::Index> telling(const Model& model, const ErrorOf& errorOf, st
     return kept;
 }
 
-/// Laws that are fed with what a take shows.
-struct FedSections {
-    const Record& record;
-    const std::vector<std::size_t>& sections;
-    const ShownMotions& motions;
-    OutputErrorOptions run;
-
-    std::vector<SectionFit> predict(const Model& model) const
-    {
-        auto options = run;
-        options.gradient = false;
-        options.spectra = true;
-        return feedbackError(model, record, sections, motions, {}, options);
-    }
-};
+/// Sections as a model predicts them, with spectra.
+using PredictOf = std::function<std::vector<SectionFit>(const Model&)>;
 
 /// The search of the model's parameters for the least error.
-/// @param fed  null, or fed laws, by which steps follow the bend of the error's valley; errorOf tells slopes then
-FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const FitOptions& options,
-                  const Progress& progress, const FedSections* fed = nullptr)
+/// @param predict  none, or by what steps follow the bend of the error's valley; errorOf tells slopes then
+FitSummary search(Model& model, const Record& record, const std::vector<std::size_t>& sections, const ErrorOf& errorOf,
+                  const FitOptions& options, const Progress& progress, const PredictOf& predict = {})
 {
     FitSummary summary;
     for (auto* parameter : parametersOf(model))
@@ -103,10 +90,10 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
             all[static_cast<std::size_t>(active[static_cast<std::size_t>(k)])]->value = at[k];
     };
     std::optional<StepCurvature> bend;
-    if (fed)
-        bend.emplace(fed->record, fed->sections, [&](const Eigen::VectorXd& at) {
+    if (predict)
+        bend.emplace(record, sections, [&](const Eigen::VectorXd& at) {
             place(at);
-            return fed->predict(model);
+            return predict(model);
         });
     const auto along = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& step) {
         return bend->along(at, step, lower, upper);
@@ -123,8 +110,8 @@ FitSummary search(Model& model, const ErrorOf& errorOf, bool noiseKnown, const F
         if (!total)
             return false;
         sum = std::move(*total);
-        const bool onlyNoise = noiseKnown && worstPower(fits) <= ErrorPower::most;
-        sum.sure = noiseKnown && !onlyNoise ? sureNoise * sum.rows : 0.0;
+        const bool onlyNoise = record.noiseKnown && worstPower(fits) <= ErrorPower::most;
+        sum.sure = record.noiseKnown && !onlyNoise ? sureNoise * sum.rows : 0.0;
         if (variance == 0.0)
             variance = std::max(1.0, sum.cost / std::max(1.0, sum.rows));
         addPrior(model, active, sum, variance);
@@ -233,7 +220,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
             if (n > 0)
                 motions = shownMotions(model, record, sections, motions, options.threads);
             known.assign(sections.size(), {});
-            const auto round = search(model, errorOf, record.noiseKnown, options, progress);
+            const auto round = search(model, record, sections, errorOf, options, progress);
             if (n > 0 && !round.usable())
                 break;
             summary = round;
@@ -252,11 +239,17 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
     const auto motions = slopesFed ? settledMotions(model, record, sections, options.threads) : ShownMotions {};
     std::vector<KnownSlopes> known(sections.size());
     PlayedSections played;
-    const FedSections fed {record, sections, motions, run};
-    run.slopes = slopesFed && options.bent
+    run.slopes = options.bent && hasPeriods(record)
                  && residualsOf(record, sections) * parametersOf(model).size() < roomForSlopes;
+    const PredictOf predict = [&](const Model& at) {
+        auto plain = run;
+        plain.gradient = plain.slopes = false;
+        plain.spectra = true;
+        return slopesFed ? feedbackError(at, record, sections, motions, {}, plain)
+                         : outputError(at, record, sections, {}, plain);
+    };
     auto summary = search(
-        model,
+        model, record, sections,
         [&](const std::vector<Eigen::Index>& active, bool gradient) {
             run.gradient = gradient;
             if (!slopesFed)
@@ -265,7 +258,7 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
             return gradient ? feedbackError(model, record, sections, motions, active, run, progress, &simulated, &known)
                             : simulated;
         },
-        record.noiseKnown, options, progress, run.slopes ? &fed : nullptr);
+        options, progress, run.slopes ? predict : PredictOf());
     summary.substeps = run.substeps;
     return summary;
 }

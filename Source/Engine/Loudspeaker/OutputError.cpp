@@ -68,8 +68,11 @@ public:
             fit.finite = sensitivities(sensors, J);
             if (!fit.finite)
                 return fit;
-            for (std::size_t c = 0; c < channels; ++c)
+            for (std::size_t c = 0; c < channels; ++c) {
                 fit.channels[c].differentiateBy(J[c], residual[c]);
+                if (options_.slopes)
+                    fit.slopes.push_back(J[c].cast<float>());
+            }
         }
         if (options_.spectra)
             fit.predicted = std::move(predicted);
