@@ -219,13 +219,17 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto near = [&](const FitSummary& s) {
         return s.usable() && !(record.noiseKnown && s.chiSquaredPerValue > nearNoise);
     };
-    const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
+    const auto run = [&](const LeastSquaresOptions& search, bool fedGradient, bool bent, double from, double to) {
         auto chosen = options;
-        chosen.search = {iterations, tolerance};
-        chosen.bent = tolerance < 1e-4;  // the last digits lie along valleys
+        chosen.search = search;
+        chosen.bent = bent;
         chosen.fedGradient = fedGradient && hasPeriods(record);
         chosen.exactGradient = !fedGradient;
         return fit(model, record, sections, chosen, progress.part(from, to));
+    };
+    const auto stage = [&](int iterations, double tolerance, bool fedGradient, double from, double to) {
+        // the last digits lie along valleys
+        return run({iterations, tolerance}, fedGradient, fedGradient && tolerance < 1e-4, from, to);
     };
     auto summary = stage(15, 1e-3, true, 0.0, 0.2);
     if (summary.usable() && !near(summary))  // where laws rule the motion the slopes of fed ones may lead nowhere
@@ -237,8 +241,9 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
     const auto onlyNoise = [&] { return near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean; };
     if (!onlyNoise())
         summary = stage(20, 5e-7, true, 0.3, 0.5);
+    constexpr LeastSquaresOptions alongTheFloor {.maximumIterations = 4, .costTolerance = 1e-5, .firstDamping = 1e-7};
     if (onlyNoise())
-        return stage(8, 2e-5, false, 0.5, 1.0);
+        return run(alongTheFloor, false, true, 0.5, 1.0);
     if (!record.noiseKnown)
         return stage(options.search.maximumIterations, options.search.costTolerance, false, 0.5, 1.0);
     return toTheEnd ? stage(30, 1e-4, false, 0.5, 1.0) : stage(15, 1e-3, false, 0.5, 1.0);

@@ -84,7 +84,7 @@ VectorXd bendOf(const NormalEquations& at, const VectorXd& theta, const VectorXd
 /// refused lets it rise, by 2, 4, 8 and so on.
 class Damping {
 public:
-    explicit Damping(double fall) : fall_(fall), lambda_(first * fall) {}
+    Damping(double first, double fall) : fall_(fall), lambda_(first * fall) {}
 
     void begin()
     {
@@ -100,7 +100,7 @@ public:
     double lambda() const { return lambda_; }
 
 private:
-    static constexpr double first = 1e-3, least = 1e-9, most = 1e9;
+    static constexpr double least = 1e-9, most = 1e9;
     double fall_, lambda_, rise_ = 2.0;
 };
 
@@ -154,7 +154,7 @@ SearchSummary minimize(const NormalEvaluation& evaluate, VectorXd& theta, const 
         auto bent = tried(theta + d + 0.5 * bendOf(at, theta, d, pull, box, lambda));
         return bent.cost < straight.cost ? bent : straight;
     };
-    Damping damping(curvature ? 2.0 : 3.0);  // a step that follows the bend costs more
+    Damping damping(options.firstDamping, curvature ? 2.0 : 3.0);  // a step that follows the bend costs more
     for (;;) {
         progress.at(static_cast<double>(result.iterations) / options.maximumIterations, "refining the parameters");
         ++result.iterations;

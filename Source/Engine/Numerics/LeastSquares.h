@@ -16,6 +16,9 @@ struct LeastSquaresOptions {
     int maximumIterations = 30;  ///< steps that are taken
     /// stop when a step that is taken lowers the cost, without NormalEquations::sure, by less than this fraction
     double costTolerance = 1e-6;
+    /// lambda of the first step, which solves (N + lambda diag N) d = -g. Along a valley whose floor is flatter than
+    /// that, in units of the parameters' own errors, a step leads only part of the way.
+    double firstDamping = 1e-3;
 
     bool isValid(std::string* reason = nullptr) const;
 };
