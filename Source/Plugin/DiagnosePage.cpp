@@ -112,7 +112,7 @@ void DiagnosePage::show(const std::shared_ptr<const Findings>& fresh)
     truth_.setVisible(truth_.isVisible() && !findings.truth.empty() && ladder.rungs.size() > 1);
     truth_.setText("Hidden: " + words(findings.truth), juce::dontSendNotification);
     const bool fit = findings.report.fitForUse();
-    const bool unknown = !ladder.rungs.empty() && ladder.verdict == Verdict::unknownEffect;
+    const bool unknown = !ladder.rungs.empty() && ladder.rungs.back().diagnosis.verdict == Verdict::unknownEffect;
     const auto verdict = unknown ? foundInWords(ladder) + "Left unexplained: "
                                        + inFewWords(ladder.rungs.back().diagnosis.remainder) + "."
                                  : ladder.sentence;

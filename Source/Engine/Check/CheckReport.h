@@ -11,8 +11,8 @@
 namespace excursion {
 
 /// Something wrong with a take. Kinds: channel-dead, clipping, dc-offset, not-settled, poor-repeatability, low-snr,
-/// hum, clock-drift, dropout, rest-jump, excitation, gain-jump, overload, mislabelled, channel-delay, polarity; and assumption: the
-/// voltage was not measured, or the reader of a foreign file had to assume something.
+/// hum, clock-drift, dropout, rest-jump, excitation, gain-jump, overload, mislabelled, channel-delay, polarity; and
+/// assumption: the voltage was not measured, or the reader of a foreign file had to assume something.
 struct Problem {
     std::string kind;
     std::optional<Quantity> channel;  ///< absent: the take as a whole

@@ -202,6 +202,36 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
              std::abs(ppm) > 0.5 && std::abs(shift->samples) > 6.0 * shift->standardError && shift->explained > 0.6});
     }
 
+    // Samples that are lost break the other channels as much; of a rest that moves they show how the cone swings in.
+    const auto sameTime = [](const PeriodJump& a, const PeriodJump& b) {
+        return a.level == b.level && a.realization == b.realization && std::abs(a.period - b.period) <= 1;
+    };
+    constexpr double asMuch = 10.0;  // dB
+    std::vector<std::pair<std::size_t, PeriodJump>> rests;
+    for (const auto& own : jumps)
+        if (own.second.moved != 0.0 && std::none_of(jumps.begin(), jumps.end(), [&](const auto& other) {
+                const auto& [c, jump] = other;
+                const auto quantity = take.channels[c].quantity;
+                return c != own.first && sameTime(jump, own.second)
+                       && (quantity == Quantity::voltage || quantity == Quantity::force
+                           || jump.db > own.second.db - asMuch);
+            }))
+            rests.push_back(own);
+    if (!rests.empty()) {
+        const auto& [c, jump] = *std::max_element(
+            rests.begin(), rests.end(), [](const auto& a, const auto& b) { return a.second.moved < b.second.moved; });
+        const auto& unit = take.channels[c].unit;
+        problems.push_back({"rest-jump", take.channels[c].quantity, jump.moved, unit, false,
+                            "The rest position of the cone jumps by " + nominal(jump.moved, unit) + " at level "
+                                + std::to_string(jump.level) + ", realization " + std::to_string(jump.realization)
+                                + ", around used period " + std::to_string(jump.period)
+                                + ": the suspension snaps over, or the sensor was knocked."});
+    }
+    std::erase_if(jumps, [&](const auto& jump) {
+        return std::any_of(rests.begin(), rests.end(),
+                           [&](const auto& rest) { return sameTime(rest.second, jump.second); });
+    });
+
     // A system that changes shows in every channel that answers; one channel by itself has changed its gain.
     const auto withoutCompany = [&](const std::pair<std::size_t, PeriodJump>& own) {
         return std::count(alive.begin(), alive.end(), true) > 2
@@ -226,33 +256,6 @@ void checkClocks(const AveragedPeriods& averages, const std::vector<bool>& alive
                                 + ": look for a loose contact, an automatic gain or a switched range; record again."});
     }
     std::erase_if(jumps, [](const auto& jump) { return jump.second.change; });
-
-    // A rest that moves is none of the input's; the other channels show how the cone swings in.
-    const auto sameTime = [](const PeriodJump& a, const PeriodJump& b) {
-        return a.level == b.level && a.realization == b.realization && std::abs(a.period - b.period) <= 1;
-    };
-    std::vector<std::pair<std::size_t, PeriodJump>> rests;
-    for (const auto& own : jumps)
-        if (own.second.moved != 0.0 && std::none_of(jumps.begin(), jumps.end(), [&](const auto& other) {
-                return (take.channels[other.first].quantity == Quantity::voltage
-                        || take.channels[other.first].quantity == Quantity::force)
-                       && sameTime(other.second, own.second);
-            }))
-            rests.push_back(own);
-    if (!rests.empty()) {
-        const auto& [c, jump] = *std::max_element(
-            rests.begin(), rests.end(), [](const auto& a, const auto& b) { return a.second.moved < b.second.moved; });
-        const auto& unit = take.channels[c].unit;
-        problems.push_back({"rest-jump", take.channels[c].quantity, jump.moved, unit, false,
-                            "The cone's rest jumps by " + nominal(jump.moved, unit) + " at level "
-                                + std::to_string(jump.level) + ", realization " + std::to_string(jump.realization)
-                                + ", around used period " + std::to_string(jump.period)
-                                + ": the suspension snaps over, or the sensor was knocked."});
-    }
-    std::erase_if(jumps, [&](const auto& jump) {
-        return std::any_of(rests.begin(), rests.end(),
-                           [&](const auto& rest) { return sameTime(rest.second, jump.second); });
-    });
 
     // What all jump over together is the recorder's; it is told once.
     if (!jumps.empty()) {

@@ -212,7 +212,7 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
 {
     constexpr std::size_t blocks = 64;
     constexpr int pieces = 3;
-    constexpr double much = 0.25;  // of the difference: at its new rest the cone swings in
+    constexpr double most = 0.5, much = 0.25;  // at its new rest the cone swings in
     const std::size_t length = earlier.size() / blocks;
     if (length == 0)
         return 0.0;
@@ -244,9 +244,11 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
                     if (all > best[piece][to].explained)
                         best[piece][to] = {all, from};
                 }
-    if (!(best[pieces][blocks].explained > much * whole))
+    // A rest that drifts makes the difference constant: what steps is asked for beside the mean.
+    const double constant = sum[blocks] * mean(0, blocks);
+    if (!(best[pieces][blocks].explained - constant > most * (whole - constant)))
         return 0.0;
-    // What jumps does so from one block to the next, or within one; a rest that drifts takes its time.
+    // What jumps does so from one block to the next, or within one; what drifts faster and faster takes its time.
     bool jumps = false;
     double least = mean(best[pieces][blocks].from, blocks), largest = least;
     std::size_t to = best[pieces][blocks].from, end = blocks;
@@ -259,7 +261,8 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
         end = to;
         to = from;
     }
-    return jumps ? largest - least : 0.0;
+    const double moved = largest - least;
+    return jumps && moved * moved * static_cast<double>(length * blocks) > much * whole ? moved : 0.0;
 }
 
 }  // namespace

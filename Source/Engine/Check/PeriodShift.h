@@ -33,8 +33,8 @@ struct PeriodJump {
     /// smooth over frequency makes of the period. Neither were samples lost, which turns it, nor did anything knock.
     bool change = false;
     double gainDb = 0.0;  ///< by which it has changed, from the period before that pair until the last one
-    /// By which the channel's rest has moved, in its unit, where that is most of the difference: constant but for one
-    /// or two steps. Else 0.
+    /// By how much the rest position of the cone has moved, in the displacement's unit, where that is most of what is
+    /// not constant in the difference. Else 0. Such pairs need not differ more than others.
     double moved = 0.0;
 };
 std::vector<PeriodJump> periodJumps(const AveragedPeriods&, const Channel&);

@@ -84,6 +84,8 @@ void dropConsequences(std::vector<Problem>& problems)
         if (p.kind != "not-settled" && p.kind != "poor-repeatability" && p.kind != "low-snr" && p.kind != "hum")
             return false;
         return std::any_of(causes.begin(), causes.end(), [&](const Problem& cause) {
+            if (cause.kind == "rest-jump")  // it shows in every channel that answers
+                return p.kind != "hum";
             return (cause.kind == "clock-drift" || cause.kind == "dropout" || cause.kind == "gain-jump"
                     || (cause.kind == "hum" && p.kind != "hum"))
                    && cause.fatal && (!cause.channel || cause.channel == p.channel);

@@ -35,7 +35,7 @@ bool stoodAlone(const Rung& before, const Rung& rung)
 /// of it: they are taken back.
 void withdrawDoubtful(Ladder& ladder)
 {
-    if (ladder.verdict != Verdict::unknownEffect || !ladder.rungs.back().comparison.noiseKnown)
+    if (ladder.rungs.back().diagnosis.verdict != Verdict::unknownEffect || !ladder.rungs.back().comparison.noiseKnown)
         return;
     constexpr double convincing = 3.0;
     const Comparison last = ladder.rungs.back().comparison;
@@ -66,7 +66,7 @@ Ladder improve(const PreparedTake& take, const ImproveOptions& options, const Pr
     work.begin(progress.part(0.02, begun));
     const bool inTime = take.inTime() != nullptr;
     // What no effect explains by itself several may explain together.
-    const bool together = !inTime || work.ladder().verdict == Verdict::unknownEffect;
+    const bool together = !inTime || work.ladder().rungs.back().diagnosis.verdict == Verdict::unknownEffect;
     const double searched = together ? 0.7 : begun;
     if (together && work.addTogether(progress.part(begun, searched)))
         tell();

@@ -206,14 +206,15 @@ Rung Improvement::judged(Rung rung, const Progress& progress) const
 
 void Improvement::keep(Rung rung)
 {
-    tell(rung.diagnosis, take_.report().problems);
+    rung.diagnosis.problems = take_.report().problems;
     ladder_.rungs.push_back(std::move(rung));
     concludeFromLast();
 }
 
 void Improvement::concludeFromLast()
 {
-    const auto& diagnosis = ladder_.rungs.back().diagnosis;
+    auto diagnosis = ladder_.rungs.back().diagnosis;
+    tell(diagnosis, ladder_.problems);
     ladder_.verdict = diagnosis.verdict;
     ladder_.sentence = (diagnosis.verdict == Verdict::unknownEffect ? foundInWords(ladder_) : std::string())
                        + diagnosis.sentence;

@@ -236,7 +236,7 @@ FitSummary fitBySimulation(Model& model, const Record& record, const FitOptions&
         summary = stage(15, 1e-3, false, 0.2, 0.3);
     if (!near(summary))
         return summary;
-    // The last word has the simulation's own slopes, of which come the standard errors, too. Beside it those of fed
+    // The last word has the simulation's own slopes, of which come the standard errors, too. At the noise those of fed
     // laws lead no further.
     const auto onlyNoise = [&] { return near(summary) && summary.onlyNoise && summary.chiSquaredPerValue < clean; };
     if (!onlyNoise())

@@ -150,11 +150,15 @@ Removal WholeSearch::without(const Model& model, const Asked& now, const std::st
 {
     Removal removal {vote, {}};
     auto leaner = withoutEffect(model, effect);
-    if (!glanceAt(leaner).usable())
+    auto seen = leaner;
+    if (!glanceAt(seen).usable())
         return removal;
-    auto then = left(leaner, false);
+    auto then = left(seen, false);
     // What is found at the noise is believed later on, so there a glance is not enough.
-    const bool told = !(lost(then, now.fed) < (thorough || now.chosen.isNoise() ? sorelyMissed : barelyMissed));
+    const bool thoroughly = thorough || test_.played || now.chosen.isNoise();
+    const bool told = !(lost(then, now.fed) < (thoroughly ? sorelyMissed : barelyMissed));
+    if (told || left(seen).cost < left(leaner).cost)
+        leaner = std::move(seen);
     if (!told) {
         if (!fit(leaner, brief).usable())
             return removal;
@@ -180,7 +184,8 @@ Removal WholeSearch::without(const Model& model, const Asked& now, const std::st
 WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough, const Removals& before) const
 {
     Removals tried;
-    const Asked now {left(model), left(model, false)};
+    const auto chosen = left(model);
+    const Asked now {chosen, test_.played ? left(model, false) : chosen};
     const auto strange = implausible(model);
     std::optional<LinearResponses> still;
     for (const auto& [effect, vote] : votesOf(model, record_, test_)) {

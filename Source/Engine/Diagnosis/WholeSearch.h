@@ -52,7 +52,7 @@ struct Removal {
 };
 
 /// The steps of a search for all effects of a loudspeaker at once: they judge by two realizations a level, and by what
-/// a simulation leaves where that is less than what fed laws leave.
+/// a simulation leaves where that is less than what fed laws leave. A removal that fed laws miss much is not played.
 class WholeSearch {
 public:
     /// @param base  what it has stays in every model; it and the record outlive the search

@@ -54,12 +54,16 @@ public:
     /// steps are stable; where the linear part is fast as well they may be beyond it (isStable).
     double fastestLaw();
 
+    /// J = dN/dy at places all over the visited range, rates and the laws' memories x y. It depends on no step.
+    std::vector<Eigen::MatrixXd> lawSlopes();
+
     /// Whether the difference between two motions grows no more within a step than the equations let it grow, about
     /// places all over the visited range. The laws are linear about a place, N = J y, and the step is a matrix there,
     /// whose eigenvalues tell. What loops in the iron take from the coil is stiff and exact, but for the share
     /// by which a law changes the inductance: if it changes from L0 to L, a long step multiplies what it was by
     /// 2 q^4 - q^2, q = L0/L - 1, no matter how fast the loops are.
-    bool isStable();
+    /// @param slopes  lawSlopes()
+    bool isStable(const std::vector<Eigen::MatrixXd>& slopes) const;
 
 private:
     friend class ExponentialAdams;
@@ -88,8 +92,6 @@ private:
     /// Columns for the linear part's states, then inputs, as `from_` has them.
     Eigen::MatrixXd arranged(const Eigen::MatrixXd& map) const;
 
-    /// J = dN/dy at places all over the visited range, rates and the laws' memories x y.
-    std::vector<Eigen::MatrixXd> lawSlopes();
     /// What the laws make of (i, v, their memories), which are all that N moves.
     Eigen::MatrixXd among(const Eigen::MatrixXd& J) const;
     /// How the difference d of two motions near a place goes on, of (the states that act, the laws' memories):

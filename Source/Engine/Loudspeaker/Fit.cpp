@@ -213,7 +213,8 @@ FitSummary fit(Model& model, const Record& record, const std::vector<std::size_t
             return feedbackError(model, record, sections, motions, active, run, progress, nullptr, &known);
         };
         // What the take does not show is expected better from the model that has been found.
-        const int rounds = std::min(4, options.search.maximumIterations);
+        constexpr int mostRounds = 4;
+        const int rounds = std::min(mostRounds, options.search.maximumIterations);  // each takes a step
         constexpr double settled = 0.95;
         double before = std::numeric_limits<double>::infinity();
         for (int n = 0; n < rounds; ++n) {

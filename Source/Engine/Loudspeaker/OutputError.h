@@ -20,7 +20,7 @@ struct SectionFit {
     std::vector<NormalEquations> channels;                     ///< [channel]
     std::vector<ErrorPower> power;                             ///< [channel]
     std::vector<std::vector<std::complex<double>>> predicted;  ///< [channel][line], if asked for
-    std::vector<Eigen::MatrixXf> slopes;                       ///< [channel], J of N and g, of fed laws if asked for
+    std::vector<Eigen::MatrixXf> slopes;                       ///< [channel], J of N and g, if asked for
 };
 
 struct OutputErrorOptions {

@@ -14,10 +14,11 @@ namespace excursion {
 
 /// How the residuals of a fit bend along a step of its search, as the parameters see it,
 ///     J^T r'',   r'' = (r(theta + h d) - 2 r(theta) + r(theta - h d)) / h^2,
-/// with r'' of fed laws, which cost less than a simulation, and J of the place that the step begins at.
+/// with J of the place that the step begins at. Where J is that of fed laws r'' is, too, as they cost less than a
+/// simulation.
 class StepCurvature {
 public:
-    /// Sections as fed laws predict them at theta, with spectra.
+    /// Sections as they are predicted at theta, with spectra.
     using Predict = std::function<std::vector<SectionFit>(const Eigen::VectorXd& theta)>;
 
     /// @param sections  indices into record.sections; they and the record outlive this

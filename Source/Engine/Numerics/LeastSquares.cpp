@@ -117,6 +117,8 @@ bool LeastSquaresOptions::isValid(std::string* reason) const
         return refuse(reason, "a fit needs at least one iteration");
     if (!(costTolerance > 0.0 && costTolerance < 1.0))
         return refuse(reason, "the cost tolerance of a fit must lie between 0 and 1");
+    if (!(firstDamping > 0.0 && std::isfinite(firstDamping)))
+        return refuse(reason, "the first damping of a fit must be positive");
     return true;
 }
 
