@@ -248,21 +248,24 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
     const double constant = sum[blocks] * mean(0, blocks);
     if (!(best[pieces][blocks].explained - constant > most * (whole - constant)))
         return 0.0;
-    // What jumps does so from one block to the next, or within one; what drifts faster and faster takes its time.
-    bool jumps = false;
-    double least = mean(best[pieces][blocks].from, blocks), largest = least;
+    // What jumps does so from one block to the next, or within one; what drifts faster and faster takes its time. A
+    // motion that settles comes back, and takes its time for that.
+    int jumps = 0;
+    const double last = mean(best[pieces][blocks].from, blocks);
+    double first = last, least = last, largest = last;
     std::size_t to = best[pieces][blocks].from, end = blocks;
     for (int piece = pieces - 1; piece > 0; --piece) {
         const auto from = best[piece][to].from;
-        const double before = mean(from, to), step = mean(to, end) - before;
-        jumps = jumps || (mean(to, to + 1) - mean(to - 1, to)) / step > 0.5;
-        least = std::min(least, before);
-        largest = std::max(largest, before);
+        first = mean(from, to);
+        jumps += (mean(to, to + 1) - mean(to - 1, to)) / (mean(to, end) - first) > 0.5;
+        least = std::min(least, first);
+        largest = std::max(largest, first);
         end = to;
         to = from;
     }
     const double moved = largest - least;
-    return jumps && moved * moved * static_cast<double>(length * blocks) > much * whole ? moved : 0.0;
+    const bool stays = jumps == pieces - 1 || (jumps > 0 && std::abs(last - first) > 0.5 * moved);
+    return stays && moved * moved * static_cast<double>(length * blocks) > much * whole ? moved : 0.0;
 }
 
 }  // namespace

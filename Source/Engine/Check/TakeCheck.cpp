@@ -12,6 +12,7 @@
 #include "Engine/Take/Motion.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace excursion {
 namespace {
@@ -77,15 +78,22 @@ void checkOverload(const AveragedPeriods& averages, const std::vector<bool>& ali
 }
 
 /// A channel that drifts, breaks or hums does not repeat either and seems unsettled: only the cause is told.
-void dropConsequences(std::vector<Problem>& problems)
+void dropConsequences(CheckReport& report)
 {
+    auto& problems = report.problems;
+    const auto sizeOf = [&](const Problem& jump) {  // dB of the channel's signal
+        for (const auto& figures : report.channels)
+            if (figures.quantity == jump.channel)
+                return 20.0 * std::log10(jump.value / figures.rms);
+        return -300.0;
+    };
     const auto causes = problems;
     std::erase_if(problems, [&](const Problem& p) {
         if (p.kind != "not-settled" && p.kind != "poor-repeatability" && p.kind != "low-snr" && p.kind != "hum")
             return false;
         return std::any_of(causes.begin(), causes.end(), [&](const Problem& cause) {
             if (cause.kind == "rest-jump")  // it shows in every channel that answers
-                return p.kind != "hum";
+                return p.kind == "low-snr" || (p.kind != "hum" && p.value < sizeOf(cause));
             return (cause.kind == "clock-drift" || cause.kind == "dropout" || cause.kind == "gain-jump"
                     || (cause.kind == "hum" && p.kind != "hum"))
                    && cause.fatal && (!cause.channel || cause.channel == p.channel);
@@ -152,7 +160,7 @@ CheckReport check(const AveragedPeriods& averages)
                 checkOverload(averages, alive, problems);
         }
 
-        dropConsequences(problems);
+        dropConsequences(report);
 
         // On a channel that drifts a delay has no meaning.
         auto judgeable = alive;
