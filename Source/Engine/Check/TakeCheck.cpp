@@ -9,10 +9,10 @@
 #include "Engine/Document/Figures.h"
 #include "Engine/Error.h"
 #include "Engine/Estimate/Welch.h"
+#include "Engine/Signal/Level.h"
 #include "Engine/Take/Motion.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace excursion {
 namespace {
@@ -84,7 +84,7 @@ void dropConsequences(CheckReport& report)
     const auto sizeOf = [&](const Problem& jump) {  // dB of the channel's signal
         for (const auto& figures : report.channels)
             if (figures.quantity == jump.channel)
-                return 20.0 * std::log10(jump.value / figures.rms);
+                return decibelsOf(jump.value * jump.value / (figures.rms * figures.rms));
         return -300.0;
     };
     const auto causes = problems;
