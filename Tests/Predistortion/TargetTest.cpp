@@ -53,7 +53,7 @@ double db(double ratio) { return 20.0 * std::log10(ratio); }
 TEST_CASE("The own resonance is that of Thiele and Small", "[predistortion][target]")
 {
     const auto truth = ownOf({});
-    for (const auto& model : {midbass(), everything()}) {
+    for (const auto& model : {midbass(), withoutEffect(everything(), "creep")}) {
         const OwnLinearPart own(model);
         REQUIRE(own.single);
         CHECK(own.single->frequency == Approx(truth.frequency).epsilon(1e-12));
@@ -63,6 +63,23 @@ TEST_CASE("The own resonance is that of Thiele and Small", "[predistortion][targ
     const OwnLinearPart force(mechanical);
     REQUIRE(force.single);
     CHECK(force.single->frequency == Approx(resonanceOf(mechanical.base().parameters)).epsilon(1e-12));
+}
+
+TEST_CASE("A suspension that has crept resonates, and is turned around, on what it is there", "[predistortion][target]")
+{
+    // Three quarters of the stiffness relax within seconds, far below the resonance.
+    auto soft = midbass(), stiff = soft;
+    const double K = stiff.baseParameter("K").value;
+    soft.baseParameter("K").value = 0.25 * K;
+    soft = withEffect(std::move(soft), effectNamed("creep"), stiff.base().operatingRange);
+    auto& creep = soft.components.back().parameters;
+    for (const auto& [name, value] : {std::pair {"S", 0.75 * K}, {"centre", -1.0}, {"width", 0.5}})
+        std::find_if(creep.begin(), creep.end(), [name](const Parameter& p) { return p.name == name; })->value = value;
+    const OwnLinearPart own(soft), truth(stiff);
+    REQUIRE(own.single);
+    CHECK(own.single->frequency == Approx(truth.single->frequency).epsilon(2e-4));
+    CHECK(own.single->quality == Approx(truth.single->quality).epsilon(0.01));
+    CHECK(own.suspensionVolume.value_or(0.0) == Approx(truth.suspensionVolume.value_or(0.0)).epsilon(4e-4));
 }
 
 TEST_CASE("In a vented box two resonances share the motion: no target, and a sentence that says so",

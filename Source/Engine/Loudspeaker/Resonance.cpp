@@ -4,37 +4,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace excursion {
 
-Resonance coneResonance(const Model& model)
+std::vector<Parameter> baseAt(const Model& model, double frequency)
 {
-    const auto base = [&model](const char* name) { return model.baseParameter(name).value; };
-    const double K = base("K"), m = base("m"),
-                 losses = base("Rms") + (model.electrical() ? base("Bl") * base("Bl") / base("Re") : 0.0);
-    return {resonanceOf(model.base().parameters), std::sqrt(K * m) / losses};
+    auto there = model.base().parameters;
+    for (const auto& one : model.components)
+        if (one.effect->creeps() && isAtWork(one))
+            for (auto& p : there)
+                p.value += one.effect->addsTo(p.name, one.operatingRange, valuesOf(one).data(),
+                                              std::min(frequency, one.operatingRange.highFrequency));
+    return there;
 }
 
 double resonanceOf(const Model& model)
 {
-    auto there = model.base().parameters;
-    auto& K = std::find_if(there.begin(), there.end(), [](const Parameter& p) { return p.name == "K"; })->value;
-    const double atRest = K;
     constexpr int rounds = 20;
     // From above, where the suspension is stiffest: below, it may be so soft that nothing resonates.
     double frequency = std::numeric_limits<double>::infinity();
     for (int n = 0; n < rounds; ++n) {
-        const double before = frequency;
-        K = atRest;
-        for (const auto& one : model.components)
-            if (one.effect->creeps() && isAtWork(one))
-                K += one.effect->addsTo("K", one.operatingRange, valuesOf(one).data(),
-                                        std::min(frequency, one.operatingRange.highFrequency));
-        frequency = resonanceOf(there);
+        const double before = std::exchange(frequency, resonanceOf(baseAt(model, frequency)));
         if (frequency == before)
             break;
     }
     return frequency;
+}
+
+Resonance coneResonance(const Model& model)
+{
+    const double frequency = resonanceOf(model);
+    const auto base = baseAt(model, frequency);
+    const auto at = [&base](const char* name) { return parameterNamed(base, name).value; };
+    const double losses = at("Rms") + (model.electrical() ? at("Bl") * at("Bl") / at("Re") : 0.0);
+    return {frequency, std::sqrt(at("K") * at("m")) / losses};
 }
 
 }  // namespace excursion

@@ -114,14 +114,16 @@ void OwnLinearPart::takeResonance(const std::function<std::complex<double>(doubl
 OwnLinearPart::OwnLinearPart(const Model& model)
 {
     const auto straight = linearPart(model);
-    const auto base = [&model](const char* name) { return model.baseParameter(name).value; };
+    const auto own = coneResonance(model);
+    const auto there = baseAt(model, own.frequency);
+    const auto base = [&there](const char* name) { return parameterNamed(there, name).value; };
+    const double stiffness = base("K");
     takeResonance(
-        [&straight](double f) { return respond(straight, {Quantity::displacement}, {f}).front().value.front(); },
-        coneResonance(model), (model.electrical() ? base("Bl") / base("Re") : 1.0) / base("K"));
+        [&straight](double f) { return respond(straight, {Quantity::displacement}, {f}).front().value.front(); }, own,
+        (model.electrical() ? base("Bl") / base("Re") : 1.0) / stiffness);
     // As it is made, a model knows no area; what is free has been fitted.
     static const double unknown = makeModel("electrodynamic").path.parameters.front().value;
     const auto& area = model.path.parameters.front();
-    const double stiffness = base("K");
     if ((area.free || area.value != unknown) && stiffness > 0.0)
         suspensionVolume = airDensity * speedOfSound * speedOfSound * area.value * area.value / stiffness;
     std::vector<double> centres;

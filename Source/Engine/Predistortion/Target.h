@@ -67,15 +67,15 @@ struct OwnLinearPart {
 
     /// @param motion  displacement per input at a frequency, in any unit
     /// @param own     candidate for its resonance
-    /// @param slow    the motion at 0 Hz
+    /// @param slow    the motion far below it, on the stiffness that the suspension has at the resonance
     void takeResonance(const std::function<std::complex<double>(double)>& motion, const Resonance& own, double slow);
 
     /// The single resonance of the motion. Nothing if the linear part departs from it by more than 6 dB between a
     /// quarter of f0 and twice f0, as in a vented box, where two resonances share the motion. Then the only target is
     /// the own linear part.
     std::optional<Resonance> single;
-    /// Vas = rho c^2 Sd^2/K, m^3: volume of air with the stiffness of the suspension; nothing if the cone area is not
-    /// known.
+    /// Vas = rho c^2 Sd^2/K, m^3: volume of air with the stiffness that the suspension has at the resonance; nothing if
+    /// the cone area is not known.
     std::optional<double> suspensionVolume;
     std::optional<ThirdOctaves> sound;  ///< level, dB; nothing if the model gives no sound
 
