@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace excursion {
 namespace {
@@ -31,34 +32,51 @@ double power(const Spectrum& spectrum)
     return sum;
 }
 
-/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. Played lines share it
-/// among themselves, the others, too: what drifts in the course of the take, as a coil that warms, scatters what was
-/// played and hardly anything else. A line that sticks out (hum) keeps its own level.
-std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited)
-{
-    constexpr double enough = 12.0;  // lines that share
-    std::vector<char> played(raw.size(), 0);
-    for (const int k : excited)
-        if (static_cast<std::size_t>(k) < played.size())
-            played[static_cast<std::size_t>(k)] = 1;
-    std::vector<double> result(raw.size());
-    for (const char kind : {0, 1}) {
-        std::vector<double> total(raw.size() + 1, 0.0), count(raw.size() + 1, 0.0);
+/// Sums over lines of one kind, to be asked between any two.
+struct Tally {
+    std::vector<double> total, count;
+
+    Tally(const std::vector<double>& raw, const std::vector<char>& played, char kind)
+        : total(raw.size() + 1, 0.0), count(raw.size() + 1, 0.0)
+    {
         for (std::size_t k = 0; k < raw.size(); ++k) {
             total[k + 1] = total[k] + (played[k] == kind ? raw[k] : 0.0);
             count[k + 1] = count[k] + (played[k] == kind ? 1.0 : 0.0);
         }
-        for (std::size_t k = 0; k < raw.size(); ++k) {
-            if (played[k] != kind)
-                continue;
-            std::size_t reach = std::max<std::size_t>(12, k / 16), from = 0, to = raw.size();
-            do {  // on a sparse grid as far as it takes to find enough of them
-                from = k > reach ? k - reach : 0;
-                to = std::min(raw.size(), k + reach + 1);
-                reach *= 2;
-            } while (count[to] - count[from] < enough && (from > 0 || to < raw.size()));
-            result[k] = std::max((total[to] - total[from]) / (count[to] - count[from]), raw[k] / 6.0);
+    }
+    /// The mean from k - reach to k + reach; nothing of fewer than `enough` lines.
+    std::optional<double> around(std::size_t k, std::size_t reach, double enough) const
+    {
+        const std::size_t from = k > reach ? k - reach : 0, to = std::min(count.size() - 1, k + reach + 1);
+        const double lines = count[to] - count[from];
+        return lines < enough ? std::nullopt : std::optional((total[to] - total[from]) / lines);
+    }
+};
+
+/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. What drifts in the
+/// course of the take, as a coil that warms, scatters what was played and hardly anything else, and is no noise: a
+/// model can follow it. So a played line has the noise of the silent ones around it. Where none are near, played lines
+/// share their scatter, drift and all. A silent line that sticks out (hum) keeps its own level.
+std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited)
+{
+    constexpr double enough = 12.0, enoughSilent = 6.0;  // lines that share
+    std::vector<char> played(raw.size(), 0);
+    for (const int k : excited)
+        if (static_cast<std::size_t>(k) < played.size())
+            played[static_cast<std::size_t>(k)] = 1;
+    const Tally silentOnes(raw, played, 0), playedOnes(raw, played, 1);
+    std::vector<double> result(raw.size());
+    for (std::size_t k = 0; k < raw.size(); ++k) {
+        std::size_t reach = std::max<std::size_t>(12, k / 16);
+        if (const auto near = played[k] ? silentOnes.around(k, reach, enoughSilent) : std::nullopt) {
+            result[k] = *near;
+            continue;
         }
+        const auto& alike = played[k] ? playedOnes : silentOnes;
+        std::optional<double> mean;
+        for (; !mean; reach *= 2)  // on a sparse grid as far as it takes to find enough of them
+            mean = alike.around(k, reach, reach < raw.size() ? enough : 1.0);
+        result[k] = std::max(*mean, raw[k] / 6.0);
     }
     return result;
 }
