@@ -179,7 +179,7 @@ void addImport(CLI::App& app, Terminal& terminal)
     addRecordingOptions(*verb, o->recording);
     verb->add_option("--map", o->map,
                      "for a recording CHANNEL=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example "
-                     "1=voltage:16, 2=current:-500mA (negative: "
+                     "1=voltage:32, 2=current:-500mA (negative: "
                      "inverted), 3=loopback (the interface's output, straight into its input); channels are counted "
                      "from 1 through all files, or FILE:CHANNEL. "
                      "For other files: what a column is, by its title or its number from 1: V1=force:V, "

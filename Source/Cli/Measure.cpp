@@ -281,7 +281,7 @@ void addMeasure(CLI::App& app, Terminal& terminal)
     verb->add_option(
             "--map", o->recording.map,
             "what an input is, INPUT=QUANTITY:FULLSCALE, the quantity at a sample of 1.0, for example "
-            "1=voltage:16, 2=current:-500mA (negative: inverted), 3=loopback (an output of the device, straight "
+            "1=voltage:32, 2=current:-500mA (negative: inverted), 3=loopback (an output of the device, straight "
             "into this input); inputs are counted from 1. May be repeated")
         ->expected(1)
         ->take_all();

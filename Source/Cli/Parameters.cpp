@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/KnownMotion.h"
 #include "Cli/ModelTables.h"
 #include "Cli/OpenDriver.h"
 #include "Cli/Terminal.h"
@@ -33,7 +34,7 @@ using Json = nlohmann::ordered_json;
 struct ParametersArguments {
     std::string from, out, lawsOut, spice, zma, frd;
     std::vector<double> inductanceBand, band;
-    std::optional<double> mass, forceFactor, coneArea;
+    KnownScale known;
     double level = 0.0;  ///< V rms; 0: not given
     int points = 41;
 
@@ -148,8 +149,8 @@ void sayWritten(const Json& written, Terminal& terminal)
 
 void runOnTake(const ParametersArguments& options, Terminal& terminal)
 {
-    if (options.sheetWanted() || options.mass || options.forceFactor || options.coneArea || !options.band.empty()
-        || !options.inductanceBand.empty())
+    if (options.sheetWanted() || options.known.mass || options.known.forceFactor || options.known.coneArea
+        || !options.band.empty() || !options.inductanceBand.empty())
         throw Error(Error::Kind::usage,
                     "'" + options.from
                         + "' is a take: only --zma, --frd and --level are for one. Fit a model to it for the rest.");
@@ -176,7 +177,7 @@ void run(const ParametersArguments& options, Terminal& terminal)
     if (isTake(options.from))
         return runOnTake(options, terminal);
 
-    const auto given = withKnown(openDriver(options.from), {options.mass, options.forceFactor, options.coneArea});
+    const auto given = withKnown(openDriver(options.from), options.known);
     const auto& inductance = options.inductanceBand;
     const auto sheet = datasheetOf(given, inductance.empty() ? 0.0 : inductance[0],
                                    inductance.empty() ? 0.0 : inductance[1], options.points);
@@ -225,9 +226,8 @@ void addParameters(CLI::App& app, Terminal& terminal)
             "Bl(x), K(x), Cms(x), Le(x), Le(i), Rms(v) with 95 % bands and the limits of the stroke, a .csv or .json")
         ->type_name("FILE");
     verb->add_option("--points", o->points, "of each law")->check(CLI::Range(3, 100001))->capture_default_str();
-    verb->add_option("--mass", o->mass, "moving mass in kg, where voltage and current alone do not show it");
-    verb->add_option("--bl", o->forceFactor, "force factor in N/A, in place of the mass");
-    verb->add_option("--cone-area", o->coneArea, "area of the cone in m^2");
+    addMotionOptions(*verb, o->known);
+    verb->add_option("--cone-area", o->known.coneArea, "area of the cone in m^2");
     verb->add_option("--inductance-band", o->inductanceBand,
                      "Hz, band in which the lossy inductance is fitted; by default from 3 fs to the highest frequency "
                      "that was measured")

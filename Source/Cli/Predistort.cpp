@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/KnownMotion.h"
 #include "Cli/Predistorting.h"
 #include "Cli/Verbs.h"
 
@@ -8,6 +9,7 @@
 #include "Engine/Document/Engineering.h"
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
+#include "Engine/Import/ChannelMap.h"
 #include "Engine/Loudspeaker/ModelFile.h"
 #include "Engine/Predistortion/Predistorter.h"
 #include "Engine/Signal/Level.h"
@@ -103,7 +105,11 @@ void run(const PredistortArguments& options, Terminal& terminal)
     const JsonField field(document, "", options.model);
     if (isModelDocument(field))
         return runBlackBox(options, blackBoxOf(modelDocumentFrom(field)), terminal);
-    const auto model = modelFromJson(field);
+    const auto [model, motionIsGuessed, areaIsGuessed] = withKnown(modelFromJson(field), options.known);
+    if (motionIsGuessed && options.displacementLimit)
+        throw Error(Error::Kind::usage, guessedMotion("The motion of this model")
+                                            + " Without --limit-x the cone is kept to where the model was measured, "
+                                              "which needs neither.");
     const auto wav = readPlayable(options.input, options.out);
     if (options.coilResistance)
         throw Error(Error::Kind::usage, "--coil-resistance is of models without physics; a driver knows its own.");
@@ -124,9 +130,17 @@ void run(const PredistortArguments& options, Terminal& terminal)
     std::vector<std::vector<std::string>> rows;
     bool limited = false;
     int faults = 0;
+    const double measured = measuredDisplacement(model);
+    const auto motion = [&, guessed = motionIsGuessed](double x) {
+        return !guessed                  ? significant(1e3 * x) + " mm"
+               : std::isfinite(measured) ? significant(100.0 * x / measured, 3) + " % of the measured motion"
+                                         : std::string("-");
+    };
+    double farthest = 0.0;
     const auto make = [&] { return std::make_unique<Predistorter>(model, realTime, controls); };
     const auto told = [&](double before, double after, const Predistorter::Meters& meters) {
         faults += meters.faults;
+        farthest = std::max(farthest, meters.displacement);
         limited = limited || wasLimited(meters);
         channels.push_back({{"peakIn", before},
                             {"peakOut", after},
@@ -137,7 +151,7 @@ void run(const PredistortArguments& options, Terminal& terminal)
                             {"powerReduction", meters.powerReduction},
                             {"faults", meters.faults}});
         rows.push_back({std::to_string(channels.size()), significant(before) + " " + unit,
-                        significant(after) + " " + unit, significant(1e3 * meters.displacement) + " mm",
+                        significant(after) + " " + unit, motion(meters.displacement),
                         turnedDown(meters.displacementReduction,
                                    options.displacementLimit || std::isfinite(controls.displacementLimit)),
                         turnedDown(meters.voltageReduction, options.voltageLimit.has_value())});
@@ -162,14 +176,17 @@ void run(const PredistortArguments& options, Terminal& terminal)
     terminal.table(heads, rows);
     if (limited)
         terminal.say("A limit was reached ("
-                     + (std::isfinite(controls.displacementLimit)
-                            ? significant(1e3 * controls.displacementLimit, 3) + " mm"
-                            : "no limit of the excursion")
+                     + (std::isfinite(controls.displacementLimit) ? motion(controls.displacementLimit)
+                                                                  : "no limit of the excursion")
                      + ", "
                      + (std::isfinite(controls.voltageLimit) ? significant(controls.voltageLimit, 3) + " " + unit
                                                              : "no limit of the voltage")
                      + (options.powerLimit ? ", " + significant(*options.powerLimit, 3) + " W" : "")
                      + "): there the signal was turned down, the lowest notes first.");
+    if (farthest > 1.05 * measured)
+        terminal.say("The cone moves " + motion(farthest)
+                     + (motionIsGuessed ? std::string() : ", but the model was measured to " + motion(measured))
+                     + ": beyond that its laws are a guess.");
     sayLoudest(options, loudest, terminal);
     if (faults > 0)
         terminal.say("The predistorter had to start anew " + std::to_string(faults) + (faults == 1 ? " time" : " times")
@@ -195,7 +212,18 @@ void addPredistort(CLI::App& app, Terminal& terminal)
                      "V at the loudspeaker for a WAV sample of 1.0 (N for a model without a coil)")
         ->required();
     verb->add_option("--limit-x", o->displacementLimit,
-                     "limit of the cone's motion, m (default: as far as the model was measured)");
+                     "limit of the cone's motion, such as 2.4mm; without a unit in m (default: as far as the model was "
+                     "measured)")
+        ->transform(CLI::Validator(
+            [](std::string& text) {
+                const auto metres = amountOf(Quantity::displacement, text);
+                if (!metres)
+                    return "'" + text + "' is no length, such as 2.4mm";
+                text = significant(*metres, 15);
+                return std::string();
+            },
+            "LENGTH"));
+    addMotionOptions(*verb, o->known);
     verb->add_option("--limit-u", o->voltageLimit, "limit of the output voltage, V (default: no limit)");
     verb->add_option("--limit-p", o->powerLimit,
                      "limit of the heat in the voice coil, W: Re i^2 averaged over 1 s (default: no limit)");

@@ -36,6 +36,8 @@ PredistortionControls controlsFrom(const PredistortArguments& options, const Reh
 /// What no limit can be kept of.
 void requireKnown(const PredistortArguments& options, const BlackBox& box)
 {
+    if (options.known.mass || options.known.forceFactor)
+        throw Error(Error::Kind::usage, "--mass and --bl are of a driver; this model knows no physics.");
     if (!tellsExcursion(box) && (options.displacementLimit || options.margin != 0.0))
         throw Error(Error::Kind::usage, "--limit-x and --margin are of the excursion, and this model tells the "
                                             + box.output + ": leave them out; it keeps to where it was fitted.");

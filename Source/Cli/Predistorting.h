@@ -5,6 +5,7 @@
 #include "Cli/Terminal.h"
 
 #include "Engine/BlackBox/BlackBox.h"
+#include "Engine/Datasheet/KnownScale.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Take/WavFile.h"
 
@@ -27,6 +28,7 @@ struct PredistortArguments {
     double amount = 1.0, margin = 0.0;
     std::optional<double> coilResistance;  ///< ohm, of a model without physics
     int oversampling = 2;
+    KnownScale known;
     TargetArguments target;
 };
 

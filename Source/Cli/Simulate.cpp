@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Cli/Destination.h"
+#include "Cli/KnownMotion.h"
 #include "Cli/Terminal.h"
 #include "Cli/Verbs.h"
 #include "Engine/Import/ReadTake.h"
@@ -28,6 +29,7 @@ struct SimulateArguments {
     std::string model, input, out;
     double fullScale = 0.0;  ///< V or N; 0: not given
     SimulationOptions simulation;
+    KnownScale known;
 };
 
 /// What is played: samples of a WAV, or the input channel of a take or a plan, which brings its excitation along.
@@ -145,7 +147,7 @@ void runDocument(const SimulateArguments& options, const ModelDocument& model, T
 }
 
 /// How far the model is driven beyond what it was measured at; empty where all of it was.
-std::string beyond(const Model& model, const Measurement& take)
+std::string beyond(const Model& model, bool motionIsGuessed, const Measurement& take)
 {
     double range = 0.0;
     for (const auto& component : model.components)
@@ -155,6 +157,9 @@ std::string beyond(const Model& model, const Measurement& take)
     const double peak = x ? peakOf(x->samples) : 0.0;
     if (range == 0.0 || peak <= 1.05 * range)
         return "";
+    if (motionIsGuessed)
+        return "The cone moves " + significant(peak / range, 3)
+               + " times as far as the model was measured: beyond that its laws are a guess.";
     return "The cone moves " + significant(1e3 * peak, 3) + " mm, but the model was measured to "
            + significant(1e3 * range, 3) + " mm: beyond that its laws are a guess.";
 }
@@ -167,9 +172,12 @@ void run(const SimulateArguments& options, Terminal& terminal)
     requireFolderPlace(options.out);
     const auto source = readJson(options.model);
     const JsonField field(source, "", options.model);
-    if (isModelDocument(field))
+    if (isModelDocument(field)) {
+        if (options.known.mass || options.known.forceFactor)
+            throw Error(Error::Kind::usage, "--mass and --bl are of a driver; this model knows no physics.");
         return runDocument(options, modelDocumentFrom(field), terminal);
-    const auto model = modelFromJson(field);
+    }
+    const auto [model, motionIsGuessed, areaIsGuessed] = withKnown(modelFromJson(field), options.known);
     const auto given = played(options, model.electrical());
     SimulationSummary summary;
     auto take = simulate(model, given.channel.samples, given.sampleRate, options.simulation, &summary,
@@ -194,8 +202,11 @@ void run(const SimulateArguments& options, Terminal& terminal)
                  + " a sample; half the step changes the result by "
                  + fixed(20.0 * std::log10(std::max(summary.accuracy, 1e-12)), 0) + " dB"
                  + (summary.converged ? "." : ", more than --tolerance allows."));
-    if (const auto warning = beyond(model, take); !warning.empty()) {
-        terminal.say(warning);
+    auto warning = beyond(model, motionIsGuessed, take);
+    if (motionIsGuessed)
+        warning += (warning.empty() ? "" : " ") + guessedMotion("The motion");
+    if (!warning.empty()) {
+        terminal.say(wrapped(warning));
         document["warning"] = warning;
     }
     sayTake(options, take, terminal);
@@ -221,6 +232,7 @@ void addSimulate(CLI::App& app, Terminal& terminal)
     verb->add_option("--tolerance", o->simulation.tolerance,
                      "largest relative change of any channel when the step is halved")
         ->capture_default_str();
+    addMotionOptions(*verb, o->known);
     verb->add_option("--out", o->out, "folder of the take")->required()->type_name("DIR");
     verb->footer("Exit code 1: the take was written, but the tolerance was not reached.");
 }

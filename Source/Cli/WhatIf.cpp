@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Cli/KnownMotion.h"
 #include "Cli/ModelTables.h"
 #include "Cli/OpenTake.h"
 #include "Cli/Terminal.h"
@@ -21,6 +22,7 @@ namespace {
 
 struct WhatIfArguments {
     std::string model, take;
+    KnownScale known;
 };
 
 /// "-31.2", or "<-100" where there is none to speak of.
@@ -51,7 +53,7 @@ void printChannel(const DistortionByEffect& distortion, std::size_t channel, Ter
 
 void run(const WhatIfArguments& options, Terminal& terminal)
 {
-    const auto model = readModel(options.model);
+    const auto [model, motionIsGuessed, areaIsGuessed] = withKnown(readModel(options.model), options.known);
     const auto open = openTake(options.take);
     requireSameKind(model, seenIn(open.take.either()));
     if (open.take.asResponses())
@@ -71,9 +73,12 @@ void run(const WhatIfArguments& options, Terminal& terminal)
     printLimits(result.stroke, terminal);
     terminal.say("");
     terminal.say(wrapped(advice(result)));
+    if (motionIsGuessed)
+        terminal.say(wrapped(guessedMotion("Every length above")));
     nlohmann::ordered_json document {
         {"format", "excursion-whatif"}, {"version", 1}, {"model", options.model}, {"take", options.take}};
     document.update(toJson(result));
+    document["motionIsGuessed"] = motionIsGuessed;
     terminal.document(document);
 }
 
@@ -86,6 +91,7 @@ void addWhatIf(CLI::App& app, Terminal& terminal)
         "Which effect makes which distortion, how far the coil may go, and what to change", run);
     verb->add_option("MODEL", o->model, "the model, a .json")->required();
     verb->add_option("TAKE", o->take, "the loudest part of this take is played")->required();
+    addMotionOptions(*verb, o->known);
 }
 
 }  // namespace excursion::cli

@@ -22,9 +22,9 @@ using namespace excursion;
 constexpr auto tour = R"(Excursion finds out what a loudspeaker model is missing.
 
   excursion excite --out plan                 the signal to play, and its plan
-  excursion measure --device 1 --plan plan --map 1=voltage:16 --map 2=current:4 --out take
+  excursion measure --device 1 --plan plan --map 1=voltage:32 --map 2=current:4 --out take
                                               play it, record, and make a take of both; or, of what
-  excursion import rec.wav --plan plan --map 1=voltage:16 --map 2=current:4 --out take
+  excursion import rec.wav --plan plan --map 1=voltage:32 --map 2=current:4 --out take
                                               another program has recorded meanwhile
   excursion check take                        is the take fit for use?
   excursion bla take                          frequency response, noise and distortion

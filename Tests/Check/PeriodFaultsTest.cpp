@@ -37,6 +37,31 @@ TEST_CASE("hum is named with its strength")
     }
 }
 
+TEST_CASE("hum beside a line of the period is as strong as it is")
+{
+    // What the average of the periods takes away of it is known: with 32768 samples at 96 kHz 50 Hz is line 17.07.
+    std::mt19937_64 random(3);
+    synthetic::Plan plan;
+    plan.sampleRate = 96000.0;
+    plan.period = 32768;
+    plan.periods = 3;
+    plan.realizations = 2;
+    plan.noiseDb = -75.0;
+    auto take = synthetic::record(synthetic::Loudspeaker(), plan, random);
+    auto& samples = samplesOf(take, Quantity::current);
+    const auto& e = *take.excitation;
+    const auto last = static_cast<std::ptrdiff_t>(e.samplesPerRealization()) * e.realizations;
+    const double loud = synthetic::rms({samples.end() - last, samples.end()});
+    for (std::size_t n = 0; n < samples.size(); ++n)
+        samples[n] += loud * 0.03 * std::sin(2.0 * std::numbers::pi * 50.0 * static_cast<double>(n) / take.sampleRate);
+    const auto report = check(take);
+    INFO(fatalSentences(report));
+    const auto* problem = find(report, "hum", Quantity::current);
+    REQUIRE(problem);
+    CHECK(problem->value == Approx(10.0 * std::log10(0.5 * 0.03 * 0.03)).margin(2.0));
+    CHECK(problem->fatal);
+}
+
 TEST_CASE("clock drift is named in ppm, of one channel or of all")
 {
     for (const double ppm : {50.0, -20.0, 5.0}) {

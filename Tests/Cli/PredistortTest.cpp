@@ -158,6 +158,38 @@ TEST_CASE("predistort says when a limit was reached", "[cli]")
     CHECK(document.at("channels")[0].at("powerReduction").get<double>() > 3.0);
 }
 
+TEST_CASE("a limit in metres wants a motion that is known", "[cli][predistort]")
+{
+    const Scratch scratch;
+    auto document = nlohmann::json::parse(bytesOf(bentModel(scratch)));
+    document["base"]["parameters"][3]["free"] = false;  // as after a fit to voltage and current alone
+    const auto model = (scratch / "guessed.json").string();
+    std::ofstream(model) << document.dump(2);
+    const auto in = wavOf(scratch, {tone(0.25)}), out = (scratch / "out.wav").string();
+    std::vector<std::string> plain {"predistort", model, in, out, "--full-scale", "20"};
+    const auto with = [&](std::vector<std::string> more) {
+        auto all = plain;
+        all.insert(all.end(), more.begin(), more.end());
+        return runProgram(scratch.folder(), all);
+    };
+    const auto displacement = [](const Outcome& told) {
+        return nlohmann::json::parse(told.out).at("channels").at(0).at("displacement").get<double>();
+    };
+    CHECK_THAT(with({}).out, Catch::Contains("% of the measured motion") && !Catch::Contains("mm"));
+    const auto refused = with({"--limit-x", "3mm"});
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Catch::Contains("--mass"));
+    // A quarter of the mass moves twice as far for the same current.
+    const auto guessed = with({"--json"}), light = with({"--mass", "0.0035875", "--json"});
+    CHECK(displacement(light) == Approx(2.0 * displacement(guessed)).epsilon(1e-6));
+    const auto metres = with({"--mass", "0.0035875", "--limit-x", "0.0005", "--json"}),
+               millimetres = with({"--mass", "0.0035875", "--limit-x", "0.5mm", "--json"});
+    CHECK(metres.code == 1);
+    CHECK(displacement(metres) < 0.6e-3);
+    CHECK(displacement(metres) == displacement(millimetres));
+    CHECK(with({"--mass", "0.0035875", "--limit-x", "5V"}).code == 2);
+}
+
 TEST_CASE("predistort plays a target, and tells what it costs first", "[cli][predistort]")
 {
     const Scratch scratch;

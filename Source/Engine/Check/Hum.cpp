@@ -12,6 +12,12 @@
 namespace excursion {
 namespace {
 
+/// The Hann window from 0 to `length`.
+double window(std::size_t n, std::size_t length)
+{
+    return 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
+}
+
 /// Power spectrum of the used periods less their average, Hann-windowed, averaged over realizations and levels,
 /// scaled so that the sum over lines is the mean square of the residual.
 std::vector<double> residualSpectrum(const AveragedPeriods& averages, const Channel& channel)
@@ -25,9 +31,7 @@ std::vector<double> residualSpectrum(const AveragedPeriods& averages, const Chan
             const auto used = usedPeriods(averages.take(), channel, level, m);
             const auto& mean = averages.inTime(channel, level, m);
             for (std::size_t n = 0; n < length; ++n) {
-                const double window =
-                    0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
-                residual[n] = (used[n] - mean[n % mean.size()]) * window;
+                residual[n] = (used[n] - mean[n % mean.size()]) * window(n, length);
             }
             const auto spectrum = fft(residual);
             for (std::size_t k = 1; k < power.size(); ++k)
@@ -52,14 +56,32 @@ double signalPower(const AveragedPeriods& averages, const Channel& channel)
     return power;
 }
 
-/// The share of a sinusoid's power that is left when the average of P periods is taken away: 1 - |D|^2 with
-/// D = 1/P sum_p exp(2 pi j f N p / fs).
-double shareLeft(double frequency, const Excitation& e, double sampleRate)
+/// The share of a sinusoid's power that the residual spectrum shows within `reach` lines of it: sent through the same
+/// average, window and lines. A sinusoid near a line of the period goes with the average, and what is left is torn.
+double shareLeft(double frequency, double reach, const Excitation& e, double sampleRate)
 {
-    std::complex<double> sum = 0.0;
+    constexpr double least = 0.003;  // less cannot be told from the next frequency
+    const auto N = static_cast<std::size_t>(e.period), length = N * static_cast<std::size_t>(e.periods);
+    const double turn = 2.0 * std::numbers::pi * frequency / sampleRate,
+                 centre = frequency / sampleRate * static_cast<double>(length);
+    std::complex<double> average = 0.0;
     for (int p = 0; p < e.periods; ++p)
-        sum += std::polar(1.0 / e.periods, 2.0 * std::numbers::pi * frequency * e.period / sampleRate * p);
-    return std::max(0.1, 1.0 - std::norm(sum));
+        average += std::polar(1.0 / e.periods, turn * static_cast<double>(N) * p);
+    double power = 0.0;
+    for (const std::complex<double> phase : {std::complex(1.0, 0.0), std::complex(0.0, 1.0)}) {
+        std::vector<double> residual(length);
+        for (std::size_t n = 0; n < length; ++n) {
+            const auto left = std::polar(1.0, turn * static_cast<double>(N * (n / N))) - average;
+            residual[n] = (phase * left * std::polar(1.0, turn * static_cast<double>(n % N))).real()
+                          * window(n, length);
+        }
+        const auto spectrum = fft(residual);
+        for (std::size_t k = 1; k < spectrum.size(); ++k)
+            if (std::abs(static_cast<double>(k) - centre) <= reach)
+                power += 2.0 * std::norm(spectrum[k])
+                         / (0.375 * static_cast<double>(length) * static_cast<double>(length));
+    }
+    return std::max(least, power);  // each of the two phases has half of the power
 }
 
 }  // namespace
@@ -112,7 +134,7 @@ std::optional<Hum> findHum(const AveragedPeriods& averages, const Channel& chann
             ++hum.harmonics;
             highest = std::max(highest, standsOut);
             seen += sum;
-            total += sum / shareLeft(harmonic * mains, e, take.sampleRate);
+            total += sum / shareLeft(harmonic * mains, reach, e, take.sampleRate);
         }
         if (hum.harmonics < 2 && highest < 25.0)
             continue;

@@ -17,13 +17,20 @@
 namespace excursion {
 namespace {
 
-/// Whether nothing but noise is left in a channel: line by line, and in power, as a few lines with much of it hardly
-/// count among thousands.
-bool isNoise(const ChannelComparison& channel)
+/// Whether an error is nothing but noise: line by line, and in power, as a few lines with much of it hardly count among
+/// thousands.
+bool isNoise(const ErrorLevel& error)
 {
     constexpr double mostLines = 1.6, mostDb = 3.0;  // 2 dB of mean squared error over the noise's
-    return channel.total.chiSquaredPerValue <= mostLines
-           && channel.total.db <= channel.total.noiseFloorDb.value_or(-std::numeric_limits<double>::infinity()) + mostDb
+    return error.chiSquaredPerValue <= mostLines
+           && error.db <= error.noiseFloorDb.value_or(-std::numeric_limits<double>::infinity()) + mostDb;
+}
+
+/// At every level: what only the loudest shows would drown among the quiet ones.
+bool isNoise(const ChannelComparison& channel)
+{
+    return isNoise(channel.total)
+           && std::all_of(channel.byLevel.begin(), channel.byLevel.end(), [](const auto& e) { return isNoise(e); })
            && !channel.wanderDb;
 }
 

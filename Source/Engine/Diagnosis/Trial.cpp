@@ -324,8 +324,8 @@ std::optional<FitSummary> raiseAsItPays(Model& model, const Record& record, cons
     return last;
 }
 
-void tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options,
-               const Progress& progress)
+FitSummary tryEffect(Model& model, const Record& record, const Effect& effect, const FitOptions& options,
+                     const Progress& progress)
 {
     ScoreOptions test;
     test.substeps = substepsFor(model, record, options.simulationTolerance);
@@ -338,7 +338,7 @@ void tryEffect(Model& model, const Record& record, const Effect& effect, const F
     FitOptions quick = options;
     quick.substeps = test.substeps;
     quick.search = {10, 3e-3};
-    tryFit(model, *start, record, trialSections(record, 2), quick, progress.part(0.4, 1.0));
+    return tryFit(model, *start, record, trialSections(record, 2), quick, progress.part(0.4, 1.0));
 }
 
 FitSummary refine(Model& model, const Record& record, const FitOptions& options, const Progress& progress)

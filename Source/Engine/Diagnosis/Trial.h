@@ -67,7 +67,7 @@ std::optional<FitSummary> raiseAsItPays(Model&, const Record&, const std::vector
 
 /// Adds an effect to the model with the start values of the score test, and makes a quick fit. Throws Error (data) if
 /// the model already has the effect or cannot have it.
-void tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});
+FitSummary tryEffect(Model&, const Record&, const Effect&, const FitOptions&, const Progress& = {});
 
 /// Refits a model whose newest effects have just been found. Everything is free, and laws are expanded as far as
 /// justified. For a take with periods the fits are quick ones. A model that comes near the noise, or was better in

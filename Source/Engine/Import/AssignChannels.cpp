@@ -58,7 +58,7 @@ std::vector<ChannelMapping> mappingsOf(const RecordingOptions& options)
                     {"", c.channel, c.quantity, {}, std::to_string(c.channel) + "=" + std::string(name(*c.quantity))});
     if (mappings.empty())
         throw Error(Error::Kind::usage, "A recording does not say what its channels hold; give --map, for example "
-                                        "--map 1=voltage:16 --map 2=current:4.");
+                                        "--map 1=voltage:32 --map 2=current:4.");
     return mappings;
 }
 

@@ -28,7 +28,7 @@ ChannelMapping parseChannelMapping(std::string_view text)
 {
     const auto refuse = [text](const std::string& why) {
         throw Error(Error::Kind::usage, "'" + std::string(text) + "' " + why
-                                            + "; write CHANNEL=QUANTITY:FULLSCALE, for example 1=voltage:16, "
+                                            + "; write CHANNEL=QUANTITY:FULLSCALE, for example 1=voltage:32, "
                                               "2=current:-4A, mic.wav:1=pressure:20Pa or 3=loopback.");
     };
     ChannelMapping mapping;

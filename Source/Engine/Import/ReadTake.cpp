@@ -26,7 +26,7 @@ Take readTake(const std::filesystem::path& given)
             Error::Kind::input,
             "'" + given.string()
                 + "' is a recording, not a take yet; make one of it and of the plan that was played: excursion import '"
-                + given.string() + "' --plan plan --map 1=voltage:16 --map 2=current:4 --out take.");
+                + given.string() + "' --plan plan --map 1=voltage:32 --map 2=current:4 --out take.");
     return importText(given);
 }
 

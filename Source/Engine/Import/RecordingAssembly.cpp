@@ -41,7 +41,11 @@ void requireUnclipped(const AssignedChannel& a, const std::vector<RecordingSourc
     Channel part;
     part.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(std::clamp(begin, 0.0, size)),
                         x.begin() + static_cast<std::ptrdiff_t>(std::clamp(end, 0.0, size)));
-    if (const auto clipped = clippedSamples(part); clipped > 0)
+    // A converter's limit shows in single samples, where a top is one or two samples wide; 16 bits end at 0.99997.
+    constexpr double limit = 0.9999;
+    const auto atLimit = std::count_if(part.samples.begin(), part.samples.end(),
+                                       [](double sample) { return std::abs(sample) >= limit; });
+    if (const auto clipped = std::max(static_cast<long>(atLimit), clippedSamples(part)); clipped > 0)
         throw Error(Error::Kind::data,
                     labelOf(a, sources) + " clips: " + std::to_string(clipped)
                         + " samples stand at its limit; lower the gain of that input and record again.");
