@@ -6,14 +6,17 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
 #include "Engine/Import/Calibration.h"
+#include "Engine/Import/ChannelMap.h"
 #include "Engine/Import/ResponseCurve.h"
 #include "Engine/Import/Tone.h"
 #include "Engine/Take/Air.h"
 #include "Engine/Take/WavFile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace excursion::cli {
 namespace {
@@ -21,10 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CalibrateArguments {
-    std::string file, out, quantity, sensitivity, curve;
+    std::string file, out, quantity, sensitivity, curve, latency;
     int channel = 1;
     double voltage = 0.0, spl = 0.0, divider = 0.0, resistor = 0.0, preamp = 0.0;
-    bool hasSpl = false, hasPreamp = false, inverted = false;
+    bool hasSpl = false, hasPreamp = false;
+    std::optional<bool> inverted;
 };
 
 ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calibration, const Tone& tone)
@@ -67,7 +71,13 @@ ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calib
     if (a.hasPreamp)
         entry.preampGainDb = a.preamp;
     if (a.inverted)
-        entry.inverted = true;
+        entry.inverted = *a.inverted;
+    if (!a.latency.empty()) {
+        const auto latency = durationOf(a.latency);
+        if (!latency)
+            throw Error(Error::Kind::usage, "'" + a.latency + "' is no latency of 0 to 1 s, such as 0.5ms.");
+        entry.latency = *latency;
+    }
     if (!a.curve.empty()) {
         readMicrophoneCurve(a.curve, entry.referenceFrequency);  // refused now rather than by import
         std::error_code error;
@@ -107,8 +117,9 @@ void run(const CalibrateArguments& a, Terminal& terminal)
     terminal.say("Tone on " + label + ": " + fixed(tone.frequency, 2) + " Hz, " + significant(tone.rms)
                  + " rms of full scale, from " + fixed(tone.begin, 2) + " to " + fixed(tone.end, 2) + " s; all else is "
                  + fixed(-tone.noiseDb, 0) + " dB below it.");
-    terminal.say("A sample of 1.0 is " + significant(entry.fullScale) + " " + entry.unit + " (+-"
-                 + significant(100 * tone.relativeError, 2) + " %)" + stands + ".");
+    terminal.say("A sample of 1.0 is " + significant(entry.fullScale) + " " + entry.unit + stands
+                 + ". The tone is read to +-" + significant(std::max(100 * tone.relativeError, 1e-4), 2)
+                 + " %; the error of the meter or calibrator that told its level comes on top.");
     terminal.say((merged ? "Wrote channel " : "Wrote " + a.out + " with channel ") + std::to_string(a.channel)
                  + (merged ? " into " + a.out : "") + ".");
     terminal.document({{"format", "excursion-calibrate"},
@@ -153,9 +164,10 @@ void addCalibrate(CLI::App& app, Terminal& terminal)
         ->type_name("TEXT");
     auto* preamp = verb->add_option("--preamp", o->preamp, "gain of a preamplifier between sensor and input, dB")
                        ->check(CLI::Range(-120.0, 120.0));
-    verb->add_flag("--invert", o->inverted, "the channel is upside down");
+    verb->add_flag("--invert,!--no-invert", o->inverted, "the channel is upside down; --no-invert takes it back");
+    verb->add_option("--latency", o->latency, "by which the sensor is late, such as 0.5ms")->type_name("TIME");
     verb->add_option("--curve", o->curve,
-                     "a microphone's response: frequency in Hz, dB[, phase in degrees]; without phases it is taken as "
+                     "a sensor's response: frequency in Hz, dB[, phase in degrees]; without phases it is taken as "
                      "minimum phase")
         ->type_name("FILE");
     verb->callback([o, spl, preamp, &terminal] {

@@ -118,13 +118,14 @@ TEST_CASE("A calibration is the same when written and read again; what is wrong 
     const Scratch s;
     const auto good = R"({"format": "excursion-calibration", "version": 1, "channels": [
         {"channel": 3, "quantity": "pressure", "fullScale": 20.5, "unit": "Pa", "referenceFrequency": 250,
-         "curve": "mic.cal"},
+         "curve": "mic.cal", "latency": 0.0005},
         {"channel": 1, "quantity": "voltage", "fullScale": 4.1, "unit": "V", "relativeError": 0.001, "divider": 11},
         {"channel": 2, "quantity": "current", "fullScale": 4.1, "senseResistor": 0.22, "sign": -1,
          "something": "else"}]})";
     const auto calibration = readCalibration(s.file("cal.json", good));
     REQUIRE(calibration.channels.size() == 3);
     CHECK(calibration.find(2)->quantityAtFullScale(Quantity::current, "") == Approx(-4.1 / 0.22));
+    CHECK(calibration.find(3)->latency == 0.0005);
     CHECK(calibration.find(4) == nullptr);
     const auto written = jsonText(calibrationJson(calibration));
     CHECK(jsonText(calibrationJson(readCalibration(s.file("again.json", written)))) == written);
@@ -140,6 +141,7 @@ TEST_CASE("A calibration is the same when written and read again; what is wrong 
     bad(R"([{"channel": 1, "fullScale": -1}])", "a positive number");
     bad(R"([{"channel": 1, "fullScale": 1}, {"channel": 1, "fullScale": 1}])", "each channel once");
     bad(R"([{"channel": 1, "fullScale": 1, "sign": 0}])", "1 or -1");
+    bad(R"([{"channel": 1, "fullScale": 1, "latency": 2}])", "latency");
     bad(R"([{"channel": 1, "fullScale": 1, "sensitivity": 1}])", "sensitivityUnit");
     bad(R"([{"channel": 1, "fullScale": 1, "quantity": "current"}])", "senseResistor");
     bad(R"([{"channel": 1, "fullScale": 1, "quantity": "heat"}])", "quantity");

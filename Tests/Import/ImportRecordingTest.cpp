@@ -163,6 +163,33 @@ TEST_CASE("The response of an interface is taken off by its loopback", "[import]
     }
 }
 
+TEST_CASE("The latency of a sensor is taken off", "[import]")
+{
+    const auto& played = smallPlay();
+    const Scratch scratch;
+    auto r = recorder({0, 1, 2});
+    auto recorded = record(played, r);
+    constexpr std::size_t late = 24;  // 0.5 ms at 48 kHz
+    REQUIRE(recorded.sampleRate == 48000.0);
+    auto& laser = recorded.channels[2];
+    laser.insert(laser.begin(), late, 0.0);
+    laser.resize(laser.size() - late);
+    const auto block = static_cast<std::size_t>(played.plan.excitation->samplesPerRealization());
+    const auto lateness = [&](const std::string& laser) {
+        const auto imported = importRecording(
+            optionsFor(played, {save(scratch, "rec.wav", recorded)}, {"1=voltage:16", "2=current:4", laser}));
+        return against(imported.take.find(Quantity::displacement)->samples, played.signals[2], played.lead,
+                       4 * block + block / 3, 5 * block)
+            .late;
+    };
+    CHECK(lateness("3=displacement:8mm") > 10.0);
+    CHECK(lateness("3=displacement:8mm@0.5ms") == Approx(0.0).margin(0.05));
+    CHECK(lateness("3=displacement:8mm@500us") == Approx(0.0).margin(0.05));
+    for (const auto* wrong : {"3=displacement:8mm@", "3=displacement:8mm@2s", "3=displacement:8mm@-1ms",
+                              "3=displacement:8mm@5V", "3=loopback@1ms"})
+        refused(Kind::usage, "@", [&] { parseChannelMapping(wrong); });
+}
+
 TEST_CASE("A recording that ends early keeps the levels that are complete", "[import]")
 {
     const auto& played = smallPlay();

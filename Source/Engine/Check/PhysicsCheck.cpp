@@ -2,6 +2,7 @@
 #include "Engine/Check/PhysicsCheck.h"
 
 #include "Engine/Check/PeriodCheck.h"
+#include "Engine/Document/Engineering.h"
 #include "Engine/Estimate/Bla.h"
 #include "Engine/Estimate/Welch.h"
 #include "Engine/Take/Motion.h"
@@ -102,16 +103,20 @@ std::string hundredths(double value)
     return error == std::errc() ? std::string(text.data(), end) : std::string("?");
 }
 
-Problem delayProblem(Quantity channel, double samples)
+Problem delayProblem(Quantity channel, double samples, double sampleRate)
 {
+    const double time = std::abs(samples) / sampleRate;
     return {"channel-delay",
             channel,
             samples,
             "samples",
             true,
-            "The " + std::string(name(channel)) + " channel is " + hundredths(samples) + " samples "
-                + (samples > 0.0 ? "late" : "early")
-                + " against what the physics allows; set its sensor's or converter's latency right."};
+            "The " + std::string(name(channel)) + " channel is " + hundredths(samples) + " samples " + " ("
+                + engineering(time, "s", 3) + ") " + (samples > 0.0 ? "late" : "early")
+                + " against what the physics allows; "
+                + (samples > 0.0 ? "import it with that latency behind its full scale (CHANNEL=QUANTITY:FULLSCALE@"
+                                       + plainText(1e3 * time, 4) + "ms), or write it into the calibration."
+                                 : "the others have a latency that is to be taken off when they are imported.")};
 }
 
 Problem polarityProblem(Quantity channel, bool fatal)
@@ -176,8 +181,8 @@ void checkPhysics(const AveragedPeriods& averages, const std::vector<bool>& aliv
                && std::abs(samples) < 0.3 * std::abs(currentLate);
     });
     if (current.clear)
-        problems.push_back(motionSidesWithCurrent ? delayProblem(input, -currentLate)
-                                                  : delayProblem(Quantity::current, currentLate));
+        problems.push_back(motionSidesWithCurrent ? delayProblem(input, -currentLate, take.sampleRate)
+                                                  : delayProblem(Quantity::current, currentLate, take.sampleRate));
     for (const auto& motion : motions) {
         if (!motion.delay.clear)
             continue;
@@ -185,7 +190,7 @@ void checkPhysics(const AveragedPeriods& averages, const std::vector<bool>& aliv
         const double late = measured + (motionSidesWithCurrent ? 0.0 : currentLate);
         const double doubt = 5.0 * motion.delay.standardError * take.sampleRate + 0.05 * std::abs(measured);
         if (std::abs(late) > smallestFault + doubt)
-            problems.push_back(delayProblem(motion.quantity, late));
+            problems.push_back(delayProblem(motion.quantity, late, take.sampleRate));
     }
 
     const bool motionSharesSign = std::any_of(motions.begin(), motions.end(),

@@ -55,7 +55,7 @@ std::vector<ChannelMapping> mappingsOf(const RecordingOptions& options)
         for (const auto& c : options.calibration->channels)
             if (c.quantity)
                 mappings.push_back(
-                    {"", c.channel, c.quantity, {}, std::to_string(c.channel) + "=" + std::string(name(*c.quantity))});
+                    {"", c.channel, c.quantity, {}, {}, std::to_string(c.channel) + "=" + std::string(name(*c.quantity))});
     if (mappings.empty())
         throw Error(Error::Kind::usage, "A recording does not say what its channels hold; give --map, for example "
                                         "--map 1=voltage:32 --map 2=current:4.");
@@ -93,6 +93,7 @@ std::vector<AssignedChannel> assignChannels(const RecordingOptions& options,
             place.factor = mapping.fullScale
                                ? *mapping.fullScale
                                : calibrated->quantityAtFullScale(*place.quantity, options.calibrationFile);
+            place.latency = mapping.latency.value_or(calibrated ? calibrated->latency : 0.0);
             if (calibrated && !calibrated->curve.empty()) {
                 place.curve = options.calibration->folder / calibrated->curve;
                 place.referenceFrequency = calibrated->referenceFrequency;

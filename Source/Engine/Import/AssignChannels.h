@@ -23,6 +23,7 @@ struct AssignedChannel {
     double factor = 1.0;                ///< quantity at a sample of 1.0, in its SI unit
     std::filesystem::path curve;        ///< of a microphone; empty: none
     double referenceFrequency = 1000.0;
+    double latency = 0.0;  ///< s, of the sensor
 };
 
 /// The map of the options, or, where that is empty, the channels of the calibration that have a quantity. Throws Error:

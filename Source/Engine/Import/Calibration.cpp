@@ -54,6 +54,8 @@ ChannelCalibration parseChannel(const JsonField& field)
                                      field.at("sensitivityUnit").text("a unit such as mV/Pa")};
     if (field.has("preampGain"))
         c.preampGainDb = field.at("preampGain").numberWithin(-120.0, 120.0);
+    if (field.has("latency"))
+        c.latency = field.at("latency").numberWithin(0.0, 1.0);
     if (field.has("curve"))
         c.curve = field.at("curve").text("the name of a file");
     if (c.quantity)
@@ -194,6 +196,8 @@ nlohmann::ordered_json calibrationJson(const Calibration& calibration)
         }
         if (c.preampGainDb)
             channel["preampGain"] = *c.preampGainDb;
+        if (c.latency > 0.0)
+            channel["latency"] = c.latency;
         if (c.referenceFrequency != 1000.0)
             channel["referenceFrequency"] = c.referenceFrequency;
         if (!c.curve.empty())

@@ -39,6 +39,7 @@ struct ChannelCalibration {
     std::optional<double> senseResistor;  ///< ohm: the current flows through it, its voltage is recorded
     std::optional<Sensitivity> sensitivity;
     std::optional<double> preampGainDb;
+    double latency = 0.0;  ///< s, by which the sensor is late, 0 to 1
     /// file of a microphone's response, beside the calibration; empty: none
     std::string curve;
 

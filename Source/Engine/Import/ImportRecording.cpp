@@ -47,9 +47,9 @@ ImportedRecording asRecorded(const RecordingOptions& options, const std::vector<
     for (const auto& a : assigned) {
         if (!a.quantity)
             throw Error(Error::Kind::usage, "A loopback tells nothing without the --plan that was played.");
-        if (!a.curve.empty())
-            throw Error(Error::Kind::usage, "The curve of a microphone is applied where a --plan was played; take it "
-                                            "out of the calibration for this recording.");
+        if (!a.curve.empty() || a.latency > 0.0)
+            throw Error(Error::Kind::usage, "The curve and the latency of a sensor are taken off where a --plan was "
+                                            "played; leave them out for this recording.");
         Channel channel {*a.quantity, std::string(siUnit(*a.quantity)), std::abs(a.factor), {}};
         const auto& x = source.sound.channels[a.channel];
         channel.samples.assign(x.begin() + static_cast<std::ptrdiff_t>(options.from),

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace excursion {
 namespace {
@@ -289,10 +290,10 @@ private:
             curves.push_back(*done.loopback->curve);
         if (!a.curve.empty())
             curves.push_back(readMicrophoneCurve(a.curve, a.referenceFrequency));
-        if (curves.empty())
+        if (curves.empty() && a.latency == 0.0)
             return {};
-        return [curves](double frequency) {
-            std::complex<double> product = 1.0;
+        return [curves, latency = a.latency](double frequency) {
+            auto product = std::polar(1.0, -2.0 * std::numbers::pi * frequency * latency);
             for (const auto& curve : curves)
                 product *= curve(frequency);
             return product;
