@@ -143,6 +143,14 @@ ErrorByChannel errorByChannel(const Comparison& comparison)
     return errors;
 }
 
+bool leavesLessThanNoise(const Comparison& comparison)
+{
+    constexpr double clearly = 1.0;  // dB: a noise of thousands of lines is known far better
+    return std::any_of(comparison.channels.begin(), comparison.channels.end(), [](const ChannelComparison& c) {
+        return c.total.noiseFloorDb && c.total.db < *c.total.noiseFloorDb - clearly;
+    });
+}
+
 std::optional<Comparison> tryCompare(const Model& model, const Record& record, const CompareOptions& options,
                                      const Progress& progress)
 {

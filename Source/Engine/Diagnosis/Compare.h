@@ -65,6 +65,10 @@ struct Comparison {
 /// The error of each channel over all levels.
 ErrorByChannel errorByChannel(const Comparison&);
 
+/// Whether a model leaves less in some channel than what the periods scatter. No model can if that is noise: then it
+/// was drift, which the model follows.
+bool leavesLessThanNoise(const Comparison&);
+
 struct CompareOptions {
     int substeps = 0;     ///< 0: chosen automatically
     bool spectra = true;  ///< fill spectra, kinds and residual curves

@@ -44,6 +44,8 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
         tryEffect(model, record, effectNamed(id), options, progress.part(done, done + step));
         done += step;
     }
+    if (warms(model))
+        followDrift(record);
     if (!effects.empty())
         last = refine(model, record, options, progress.part(0.8, 1.0));
     if (!last.usable())

@@ -96,7 +96,7 @@ void Improvement::begin(const Progress& progress)
 
 bool Improvement::addTogether(const Progress& progress)
 {
-    auto rungs = std::visit([&](const auto& d) { return rungsTogether(d, progress.part(0.0, 0.8)); }, data_);
+    auto rungs = std::visit([&](auto& d) { return rungsTogether(d, progress.part(0.0, 0.8)); }, data_);
     if (rungs.empty())
         return false;
     rungs.back() = judged(std::move(rungs.back()), progress.part(0.8, 1.0));
@@ -108,7 +108,7 @@ bool Improvement::addTogether(const Progress& progress)
 
 /// The last rung, and those that follow from it together; the last of them is not diagnosed yet. None where nothing is
 /// to be added.
-std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progress& progress) const
+std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progress& progress)
 {
     const auto& options = options_.diagnose;
     const auto steps = stepsByResponse(ladder_.model(), spectra, options.fit.threads, progress.part(0.0, 0.7));
@@ -138,9 +138,9 @@ std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progr
     return rungs;
 }
 
-std::vector<Rung> Improvement::rungsTogether(const Record& record, const Progress& progress) const
+std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& progress)
 {
-    const auto& base = ladder_.rungs.back();
+    auto base = ladder_.rungs.back();
     const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(),
                                       [](const RankedEffect& r) { return r.vote.backs(); });
     const bool oneIsKnown = base.diagnosis.verdict == Verdict::missingEffect;
@@ -149,9 +149,15 @@ std::vector<Rung> Improvement::rungsTogether(const Record& record, const Progres
     const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
     if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown))
         return {};
-    auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
+    auto judge = record;
+    if (const auto reached = tryCompare(whole.model, record, {0, false}); reached && leavesLessThanNoise(*reached)) {
+        followDrift(judge);
+        base.comparison = compare(base.model, judge);
+    }
+    auto rungs = rungsTo(whole, base, judge, options_.diagnose, progress.part(0.6, 1.0));
     if (rungs.empty() || !(rungs.back().comparison.chiSquaredPerValue < base.comparison.chiSquaredPerValue))
         return {};
+    record = std::move(judge);  // should the work be cancelled before, nothing has happened
     return rungs;
 }
 

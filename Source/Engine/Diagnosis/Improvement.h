@@ -49,8 +49,8 @@ public:
     std::vector<Waveform> waveforms(int level) const;
 
 private:
-    std::vector<Rung> rungsTogether(const Spectra&, const Progress&) const;
-    std::vector<Rung> rungsTogether(const Record&, const Progress&) const;
+    std::vector<Rung> rungsTogether(const Spectra&, const Progress&);
+    std::vector<Rung> rungsTogether(Record&, const Progress&);
     Rung judged(Rung, const Progress&) const;
     void keep(Rung);
     void concludeFromLast();  ///< verdict and sentence from the last rung's diagnosis

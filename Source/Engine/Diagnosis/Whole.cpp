@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Whole.h"
 
+#include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/WholeSearch.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
@@ -245,25 +246,25 @@ Candidate best(const Model& base, const Record& record, WholeSearch& search, con
 
 }  // namespace
 
-Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
+namespace {
+
+/// What a refined candidate still lacks or has too much of.
+Whole completed(Candidate found, const Record& record, WholeSearch& search, const FitOptions& options,
+                const Progress& progress)
 {
-    WholeSearch search(base, record, options);
-    auto found = best(base, record, search, options, progress.part(0.0, 0.8));
     auto& [whole, tried] = found;
-    if (!whole.fit.usable())
-        return whole;
     search.chooseResiduals(whole.model);
     if (!search.left(whole.model).isNoise()) {  // laws of a higher degree may have laid bare what is small
-        auto more = grown(whole.model, record, search, progress.part(0.8, 0.82));
+        auto more = grown(whole.model, record, search, progress.part(0.0, 0.2));
         if (more.fit.usable()) {
-            more.fit = refine(more.model, record, options, progress.part(0.82, 0.85));
+            more.fit = refine(more.model, record, options, progress.part(0.2, 0.4));
             whole = std::move(more);
             tried.clear();
         }
         search.chooseResiduals(whole.model);
     }
     if (search.restImplausibleParts(whole.model)) {
-        whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.87));
+        whole.fit = refine(whole.model, record, options, progress.part(0.4, 0.5));
         tried.clear();
     }
     const auto keeps = [&](const Removal& one) {
@@ -280,13 +281,31 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
         if (n == rounds)
             tried = search.tryWithout(whole.model, false);
         else if (search.takeOut(whole.model, true, keeps, tried))
-            whole.fit = refine(whole.model, record, options, progress.part(0.85, 0.95));
+            whole.fit = refine(whole.model, record, options, progress.part(0.5, 0.9));
         else
             break;
     }
     for (const auto& [effect, one] : tried)
         whole.votes[effect] = one.vote;
     return whole;
+}
+
+}  // namespace
+
+Whole fitWhole(const Model& base, const Record& record, const FitOptions& options, const Progress& progress)
+{
+    WholeSearch search(base, record, options);
+    auto found = best(base, record, search, options, progress.part(0.0, 0.7));
+    if (!found.whole.fit.usable())
+        return found.whole;
+    const auto reached = tryCompare(found.whole.model, record, {0, false});
+    if (!reached || !leavesLessThanNoise(*reached))
+        return completed(std::move(found), record, search, options, progress.part(0.7, 1.0));
+    auto steady = record;
+    followDrift(steady);
+    found.tried.clear();
+    WholeSearch closer(base, steady, options);
+    return completed(std::move(found), steady, closer, options, progress.part(0.7, 1.0));
 }
 
 }  // namespace excursion

@@ -25,6 +25,7 @@ struct Whole {
 /// were raised as far as that pays. If this, refined, does not come near the noise, another search begins from the
 /// linear model of the loudest level; before the refinement if the rounds end far from the noise. If something is left
 /// that no effect explains, only effects that stand alone stay.
+/// A whole that follows what the periods drift (leavesLessThanNoise()) is completed against the noise without it.
 /// @param base  fitted; its effects stay
 Whole fitWhole(const Model& base, const Record&, const FitOptions&, const Progress& = {});
 

@@ -53,25 +53,28 @@ struct Tally {
     }
 };
 
-/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. What drifts in the
-/// course of the take, as a coil that warms, scatters what was played and hardly anything else, and is no noise: a
-/// model can follow it. So a played line has the noise of the silent ones around it. Where none are near, played lines
-/// share their scatter, drift and all. A silent line that sticks out (hum) keeps its own level.
+std::vector<char> marked(const std::vector<int>& lines, std::size_t count)
+{
+    std::vector<char> played(count, 0);
+    for (const int k : lines)
+        if (static_cast<std::size_t>(k) < count)
+            played[static_cast<std::size_t>(k)] = 1;
+    return played;
+}
+
+std::size_t reachAt(std::size_t line) { return std::max<std::size_t>(12, line / 16); }
+
+/// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. Played lines share it
+/// among themselves, the others, too: what drifts in the course of the take, as a coil that warms, scatters what was
+/// played and hardly anything else. A line that sticks out (hum) keeps its own level.
 std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited)
 {
-    constexpr double enough = 12.0, enoughSilent = 6.0;  // lines that share
-    std::vector<char> played(raw.size(), 0);
-    for (const int k : excited)
-        if (static_cast<std::size_t>(k) < played.size())
-            played[static_cast<std::size_t>(k)] = 1;
+    constexpr double enough = 12.0;  // lines that share
+    const auto played = marked(excited, raw.size());
     const Tally silentOnes(raw, played, 0), playedOnes(raw, played, 1);
     std::vector<double> result(raw.size());
     for (std::size_t k = 0; k < raw.size(); ++k) {
-        std::size_t reach = std::max<std::size_t>(12, k / 16);
-        if (const auto near = played[k] ? silentOnes.around(k, reach, enoughSilent) : std::nullopt) {
-            result[k] = *near;
-            continue;
-        }
+        auto reach = reachAt(k);
         const auto& alike = played[k] ? playedOnes : silentOnes;
         std::optional<double> mean;
         for (; !mean; reach *= 2)  // on a sparse grid as far as it takes to find enough of them
@@ -79,6 +82,19 @@ std::vector<double> smoothVariance(const std::vector<double>& raw, const std::ve
         result[k] = std::max(*mean, raw[k] / 6.0);
     }
     return result;
+}
+
+/// The same with the noise of the silent lines around it on each played one, where there are some.
+std::vector<double> withoutDrift(std::vector<double> smooth, const std::vector<double>& raw,
+                                 const std::vector<int>& excited)
+{
+    constexpr double enough = 6.0;
+    const auto played = marked(excited, raw.size());
+    const Tally silentOnes(raw, played, 0);
+    for (std::size_t k = 0; k < raw.size(); ++k)
+        if (played[k])
+            smooth[k] = silentOnes.around(k, reachAt(k), enough).value_or(smooth[k]);
+    return smooth;
 }
 
 /// @param variance  of each line; empty when unknown, then all lines weigh the same
@@ -182,11 +198,12 @@ void thinOut(Section& section, std::size_t factor)
         for (auto& value : measured)
             value *= share;
     }
-    for (auto& deviation : section.deviation) {
-        deviation.resize(lines);
-        for (auto& value : deviation)
-            value *= share;
-    }
+    for (auto* deviations : {&section.deviation, &section.steadyDeviation})
+        for (auto& deviation : *deviations) {
+            deviation.resize(lines);
+            for (auto& value : deviation)
+                value *= share;
+        }
     section.inputVariance.resize(std::min(lines, section.inputVariance.size()));
     for (auto& variance : section.inputVariance)
         variance *= share * share;
@@ -203,11 +220,13 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
         const auto& scatter = averages.noise(take.input(), level).variance;
-        const auto inputVariance = scatter.empty() ? scatter : smoothVariance(scatter, e.lines);
-        std::vector<std::vector<double>> variance;
+        const auto inputVariance = scatter.empty() ? scatter
+                                                   : withoutDrift(smoothVariance(scatter, e.lines), scatter, e.lines);
+        std::vector<std::vector<double>> variance, steady;
         for (const auto quantity : record.channels) {
             const auto& noise = averages.noise(*take.find(quantity), level).variance;
             variance.push_back(noise.empty() ? noise : smoothVariance(noise, e.lines));
+            steady.push_back(noise.empty() ? noise : withoutDrift(variance.back(), noise, e.lines));
         }
         for (int realization = 0; realization < e.realizations; ++realization) {
             Section section;
@@ -229,6 +248,8 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
             for (std::size_t c = 0; c < record.channels.size(); ++c) {
                 section.measured.push_back(fft(averages.inTime(*take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
+                section.steadyDeviation.push_back(
+                    deviations(section.measured.back(), steady[c], options.relativeFloor));
             }
             if (factor > 1)
                 thinOut(section, factor);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace excursion {
 
@@ -40,6 +41,13 @@ std::vector<double> Record::drive(const Section& section, std::size_t atLeast) c
     for (std::size_t n = 0; n < samples.size(); ++n)
         samples[n] = period[(n + begin) % N];
     return samples;
+}
+
+void followDrift(Record& record)
+{
+    for (auto& section : record.sections)
+        if (!section.steadyDeviation.empty())
+            section.deviation = std::exchange(section.steadyDeviation, {});
 }
 
 bool hasPeriods(const Record& record)

@@ -24,6 +24,9 @@ struct Section {
 
     std::vector<std::vector<std::complex<double>>> measured;  ///< [channel][line], unnormalized DFT of the window
     std::vector<std::vector<double>> deviation;               ///< [channel][line], sqrt(E|noise|^2) of `measured`
+    /// [channel][line], the same without what the played lines drift, as silent lines around them tell; empty where
+    /// none are near
+    std::vector<std::vector<double>> steadyDeviation;
     /// [line], E|noise|^2 of the input's DFT; empty when unknown
     std::vector<double> inputVariance;
     std::vector<int> excited;  ///< excited lines, if known
@@ -59,6 +62,10 @@ struct Record {
         return sampleRate * static_cast<double>(line) / static_cast<double>(section.window);
     }
 };
+
+/// Takes what the periods drift out of the noise, for models that follow it: a coil that warms scatters the played
+/// lines, and by far more than any sensor. Nothing happens where the take does not tell the two apart.
+void followDrift(Record&);
 
 /// Whether the sections of a record are periods, compared as a whole.
 bool hasPeriods(const Record&);

@@ -47,9 +47,13 @@ OperatingRange visitedRange(const Model&, const Record&, int degree = 6);
 FitSummary fit(Model&, const Record&, const std::vector<std::size_t>& sections, const FitOptions& = {},
                const Progress& = {});
 
+/// Whether an effect with a slow memory is at work, which drifts in the course of a take.
+bool warms(const Model&);
+
 /// Makes a record ready for models near this linear one: periodic sections start settled (the lead-in lasts until the
 /// resonance has decayed by 110 dB), and the input sensor's noise counts as noise of the outputs,
 ///     sigma^2 += |G|^2 sigma_u^2  on the lines that are played.
+/// What a model that warms follows is no noise to it (followDrift()).
 void adapt(Record&, const Model&);
 
 /// Steps per sample for simulating this model on this record; tolerance as FitOptions::simulationTolerance.

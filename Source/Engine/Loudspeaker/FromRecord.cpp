@@ -64,6 +64,12 @@ int substepsFor(const Model& model, const Record& record, double tolerance)
     return chooseSubsteps(model, loudest->input, record.sampleRate, options).substeps;
 }
 
+bool warms(const Model& model)
+{
+    return std::any_of(model.components.begin(), model.components.end(),
+                       [](const Component& c) { return c.effect->slow() && isAtWork(c); });
+}
+
 void adapt(Record& record, const Model& model)
 {
     if (record.sections.empty() || !record.sections.front().periodic)
@@ -81,14 +87,19 @@ void adapt(Record& record, const Model& model)
                 frequency.push_back(record.frequency(section, k));
             }
         const auto responses = respond(model, record.channels, frequency);
-        for (std::size_t c = 0; c < record.channels.size(); ++c)
-            for (std::size_t n = 0; n < played.size(); ++n)
-                section.deviation[c][played[n]] = std::hypot(section.deviation[c][played[n]],
-                                                             std::abs(responses[c].value[n])
-                                                                 * std::sqrt(section.inputVariance[played[n]]));
+        for (std::size_t n = 0; n < played.size(); ++n) {
+            const double input = std::sqrt(section.inputVariance[played[n]]);
+            for (auto* deviation : {&section.deviation, &section.steadyDeviation})
+                for (std::size_t c = 0; c < deviation->size(); ++c) {
+                    auto& own = (*deviation)[c][played[n]];
+                    own = std::hypot(own, std::abs(responses[c].value[n]) * input);
+                }
+        }
         section.inputVariance.clear();
     }
     record.leadIn = settlingTime(model, record);
+    if (warms(model))
+        followDrift(record);
 }
 
 OperatingRange visitedRange(const Model& model, const Record& record, int degree)
