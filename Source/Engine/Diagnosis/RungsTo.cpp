@@ -23,6 +23,24 @@ Model partOf(const Whole& whole, const Model& model, const std::string& more)
     return part;
 }
 
+/// Fits what is linear of a part, beside effects that stay as the whole has them: free ones would stand for what the
+/// part lacks, with shapes that no loudspeaker has.
+FitSummary fitLinear(Model& part, const Record& record, const FitOptions& options, const Progress& progress)
+{
+    std::vector<bool> free;
+    for (auto& component : part.components)
+        for (auto& p : component.parameters) {
+            free.push_back(p.free);
+            p.free = p.free && (&component == &part.components.front() || component.effect->linear());
+        }
+    auto fit = fitFed(part, record, estimationSections(record), options, progress);
+    auto was = free.begin();
+    for (auto& component : part.components)
+        for (auto& p : component.parameters)
+            p.free = *was++;
+    return fit;
+}
+
 /// A rung with one more effect of the whole that is not at work yet: what only holds together runs away in parts.
 Rung atRest(const Rung& rung, const std::vector<Score>& scores, const Whole& whole)
 {
@@ -122,7 +140,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
                 trial.fit = whole.fit;
                 trial.comparison = *reached;
             } else {
-                trial.fit = fitFed(trial.model, record, estimationSections(record), brief, part.part(0.4, 0.9));
+                trial.fit = fitLinear(trial.model, record, brief, part.part(0.4, 0.9));
                 auto comparison = tryCompare(trial.model, record);
                 if (!comparison)
                     continue;
