@@ -30,7 +30,7 @@ std::string counted(int number, const char* what)
 const Device& chooseDevice(const std::vector<Device>& devices, const std::string& wanted)
 {
     if (devices.empty())
-        throw Error(Error::Kind::usage, "There is no audio device; connect one, or start the JACK server.");
+        throw Error(Error::Kind::input, "There is no audio device; connect one, or start the JACK server.");
     if (wanted.empty())
         throw Error(Error::Kind::usage, "Say which --device is to be used; there are " + listOf(devices) + ".");
     std::vector<const Device*> matching;

@@ -75,7 +75,7 @@ void print(const HarmonicCurves& curves, int highest, double pointsPerOctave, Te
         rows.back().push_back(std::isfinite(thd) ? significant(100.0 * std::pow(10.0, thd / 20.0), 3) : "-");
     }
     terminal.say(std::string(name(curves.quantity)) + " at " + significant(curves.level, 3)
-                 + " V rms, harmonics against the fundamental of " + curves.unit + " rms");
+                 + " V rms: the fundamental in " + curves.unit + " rms, harmonics in dB of it");
     terminal.table(header, rows);
 }
 

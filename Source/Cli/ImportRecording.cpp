@@ -174,6 +174,7 @@ void importRecordings(const RecordingArguments& arguments, Terminal& terminal)
     auto imported = importRecording(options, terminal.progress());
     if (!arguments.name.empty())
         imported.take.driver.name = arguments.name;
+    imported.take.remarks = imported.remarks;
     text ? writeCsv(imported.take, arguments.out) : writeSweepTake({imported.take, imported.sweep}, arguments.out);
     sayImported(imported, options.plan.has_value(), arguments.out, terminal);
     terminal.document(importJson(imported, options.plan.has_value(), arguments.out));

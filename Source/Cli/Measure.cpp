@@ -247,6 +247,7 @@ void run(const MeasureArguments& a, Terminal& terminal)
         imported.take.driver.name = a.recording.name;
     const auto report = check(imported.take);
     const auto checked = checkJson(report, a.recording.out, imported.take.sampleRate);
+    imported.take.remarks = imported.remarks;  // after the check, as they are told beside it
     writeMeasurement(imported.take, a.recording.out);
     writeJson(checked, (std::filesystem::path(a.recording.out) / "check.json").string());
 

@@ -51,7 +51,9 @@ void drawDocument(const std::string& path, Terminal& terminal)
 void run(const std::string& place, Terminal& terminal)
 {
     std::error_code ignored;
-    (std::filesystem::is_regular_file(place, ignored) ? drawDocument : drawLadder)(place, terminal);
+    const bool document = std::filesystem::is_regular_file(place, ignored)
+                          || std::filesystem::path(place).extension() == ".json";
+    (document ? drawDocument : drawLadder)(place, terminal);
 }
 
 }  // namespace

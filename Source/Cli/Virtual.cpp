@@ -175,7 +175,8 @@ void addVirtual(CLI::App& app, Terminal& terminal)
                                   "loudspeaker: a folder from excursion excite")
                      ->type_name("DIR");
     verb->add_option("--rate", options->rate, "sample rate in Hz")->excludes(plan);
-    verb->add_option("--seconds", options->seconds, "length of the take, about")
+    verb->add_option("--seconds", options->seconds,
+                     "length of the take, about; at least what three realizations at each level need")
         ->check(CLI::Range(1.0, 120.0))
         ->excludes(plan);
     verb->add_option("--channels", options->channels, "what is recorded besides the voltage")->delimiter(',');

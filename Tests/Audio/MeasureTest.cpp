@@ -231,7 +231,7 @@ TEST_CASE("A device is chosen by name, number or a part of its name", "[audio]")
             [&] { chooseDevice(devices, "4"); });
     refused(Error::Kind::usage, "More than one audio device is 'jack'", [&] { chooseDevice(devices, "jack"); });
     refused(Error::Kind::usage, "--device", [&] { chooseDevice(devices, ""); });
-    refused(Error::Kind::usage, "There is no audio device;", [&] { chooseDevice({}, "1"); });
+    refused(Error::Kind::input, "There is no audio device;", [&] { chooseDevice({}, "1"); });
 
     CHECK_NOTHROW(requireFit(devices[0], 2, 2, 48000.0, "plan"));
     refused(Error::Kind::usage, "Input 3 is mapped, but 'HDA Intel: ALC (hw:0,0)' has 2 inputs",

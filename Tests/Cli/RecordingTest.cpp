@@ -91,6 +91,7 @@ TEST_CASE("Exchanged and inverted channels are imported, and found by check", "[
     REQUIRE(imported.code == 0);
     CHECK_THAT(documentOf(imported, "excursion-import").at("remarks").dump(), Catch::Contains("exchanged"));
     CHECK(s.run({"check", s.take(), "--quiet"}).code == 1);
+    CHECK_THAT(s.run({"check", s.take()}).out, Catch::Contains("assumption") && Catch::Contains("exchanged"));
 
     auto inverted = s.import({"voltage", "current", "displacement"}, "upside down");
     for (auto& word : inverted)

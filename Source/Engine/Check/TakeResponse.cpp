@@ -92,7 +92,8 @@ TakeResponse responseOf(const PreparedTake& take, const ResponsePorts& choice)
     if (measurement.excitation && !measurement.excitation->lines.empty()) {
         const int levels = static_cast<int>(measurement.excitation->levels.size());
         if (choice.level >= levels)
-            throw Error(Error::Kind::usage, "The take has " + std::to_string(levels) + " levels, numbered from 0.");
+            throw Error(Error::Kind::usage, "The take has " + std::to_string(levels)
+                                                + (levels == 1 ? " level" : " levels") + ", numbered from 0.");
         response.frf = bla(measurement, output, choice.level >= 0 ? choice.level : levels - 1, input).frf;
     } else {
         if (!choice.input.empty() && input != measurement.input().quantity)

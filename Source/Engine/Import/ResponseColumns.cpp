@@ -110,8 +110,8 @@ void tidy(std::vector<double>& frequency, std::vector<Parts>& all, const TextTab
     }
     if (frequency.size() < 3)
         refuseResponse(Kind::input, source,
-                       "has " + std::to_string(frequency.size())
-                           + " lines of numbers over frequency, expected at least 3.");
+                       "has " + std::to_string(frequency.size()) + (frequency.size() == 1 ? " line" : " lines")
+                           + " of numbers over frequency, expected at least 3.");
 }
 
 std::vector<Complex> complexOf(Parts& parts, const std::vector<double>& frequency, bool phaseless,

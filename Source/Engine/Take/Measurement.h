@@ -63,7 +63,7 @@ struct Measurement {
     std::vector<Channel> channels;
     std::optional<Excitation> excitation;  ///< absent: music, noise or someone else's record
     DriverInfo driver;
-    /// sentences: what the reader of a foreign file had to assume, or left out
+    /// sentences: what the reader of a foreign file or a recording had to assume, left out, or doubts
     std::vector<std::string> remarks {};
 
     std::size_t length() const { return channels.empty() ? 0 : channels.front().samples.size(); }

@@ -226,6 +226,9 @@ MeasurementHeader parseMeasurementJson(std::string_view text, const std::string&
         parseExcitation(root.at("excitation"), header);
     if (root.has("driver"))
         measurement.driver = parseDriver(root.at("driver"));
+    if (root.has("remarks"))
+        for (const auto& remark : root.at("remarks").items())
+            measurement.remarks.push_back(remark.text("a sentence"));
     return header;
 }
 
@@ -272,6 +275,8 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement, const std
         described["microphoneDistance"] = *driver.microphoneDistance;
     if (!described.empty())
         document["driver"] = described;
+    if (!measurement.remarks.empty())
+        document["remarks"] = measurement.remarks;
     return document;
 }
 
