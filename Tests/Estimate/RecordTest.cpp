@@ -93,6 +93,21 @@ TEST_CASE("A periodic take becomes one averaged period a level and realization",
     }
 }
 
+TEST_CASE("A record knows how much less a loudspeaker takes while it settles", "[record]")
+{
+    auto settling = take(1, 0.0);
+    auto& current = settling.channels[1].samples;
+    const auto block = static_cast<std::size_t>(N * (settle + periods));
+    for (std::size_t n = 0; n < current.size(); ++n)
+        if (n % block < static_cast<std::size_t>(N * settle))
+            current[n] *= 0.9;
+    for (const auto& section : makeRecord(settling).sections)
+        CHECK(section.settlingPower == Approx(0.81).epsilon(1e-6));
+    settling.channels[1].quantity = Quantity::displacement;
+    settling.channels[1].unit = "m";
+    CHECK(makeRecord(settling).sections.front().settlingPower == 1.0);
+}
+
 TEST_CASE("Samples that no compared line needs are left out", "[record]")
 {
     const auto measured = take(1, 1e-4, 61);

@@ -4,6 +4,7 @@
 #include "Engine/Error.h"
 #include "Engine/Estimate/Wander.h"
 #include "Engine/Signal/Fft.h"
+#include "Engine/Signal/Level.h"
 #include "Engine/Take/Motion.h"
 #include "Engine/Validity.h"
 
@@ -12,6 +13,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 
 namespace excursion {
 namespace {
@@ -209,6 +211,21 @@ void thinOut(Section& section, std::size_t factor)
         variance *= share * share;
 }
 
+/// Section::settlingPower: what heats the coil before the loudspeaker has settled.
+double settlingPower(const Measurement& take, int section)
+{
+    const auto& e = *take.excitation;
+    const auto* current = take.find(Quantity::current);
+    if (!current)
+        return 1.0;
+    const auto begin = static_cast<std::size_t>(e.samplesPerRealization()) * static_cast<std::size_t>(section),
+               settle = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(e.settlePeriods),
+               used = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(e.periods);
+    const std::span<const double> all(current->samples);
+    const double before = rmsOf(all.subspan(begin, settle)), after = rmsOf(all.subspan(begin + settle, used));
+    return after > 0.0 ? before * before / (after * after) : 1.0;
+}
+
 void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& options, std::size_t factor,
                          Record& record)
 {
@@ -239,6 +256,7 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
             section.begin = period * played * (level * e.realizations + realization);
             section.end = section.begin + period * played;
             section.middle = section.end - 0.5 * period * e.periods;
+            section.settlingPower = settlingPower(take, level * e.realizations + realization);
             section.input = averages.inTime(take.input(), level, realization);
             section.window = section.input.size();
             section.excited = e.lines;

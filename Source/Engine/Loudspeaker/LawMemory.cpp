@@ -28,15 +28,20 @@ struct Affine {
         return result;
     }
 
-    /// m a time later, by the fourth-order Runge-Kutta method.
+    double fastest() const
+    {
+        double most = 0.0;
+        for (const auto& value : B)
+            most = std::max(most, rateOf(value));
+        return most;
+    }
+
+    /// m a time later (or earlier), by the fourth-order Runge-Kutta method.
     void advance(std::vector<T>& m, double time) const
     {
-        if (!(time > 0.0))
+        if (time == 0.0)
             return;
-        double fastest = 0.0;
-        for (const auto& value : B)
-            fastest = std::max(fastest, rateOf(value));
-        const int steps = static_cast<int>(std::clamp(std::ceil(2.0 * fastest * time), 1.0, 2000.0));
+        const int steps = static_cast<int>(std::clamp(std::ceil(2.0 * fastest() * std::abs(time)), 1.0, 2000.0));
         RungeKutta<T> method(size);
         for (int n = 0; n < steps; ++n)
             method.step(m, rate(m), time / steps,
@@ -75,6 +80,27 @@ Affine<T> meanRate(const Component& component, const std::vector<T>& coefficient
     return result;
 }
 
+PeriodicMotion louder(PeriodicMotion motion, double power)
+{
+    for (double& i : motion.i)
+        i *= std::sqrt(power);
+    return motion;
+}
+
+/// By how much the mean of a memory over some time exceeds its value in the middle, which it has at `m`: that bends as
+/// d2m/dt2 = B dm/dt, with a mean of that times the time squared over 24.
+template <class T>
+std::vector<T> bulge(const Affine<T>& mean, const std::vector<T>& m, double timeSquared)
+{
+    auto bend = mean.rate(m);
+    const auto none = std::vector<T>(bend.size(), T(0.0));
+    const auto constant = mean.rate(none);
+    bend = mean.rate(bend);  // a + B dm/dt
+    for (std::size_t k = 0; k < bend.size(); ++k)
+        bend[k] = (bend[k] - constant[k]) * (timeSquared / 24.0);
+    return bend;
+}
+
 /// The memory at the start of every section's drive.
 template <class T>
 std::vector<std::vector<T>> walk(const Component& component, const std::vector<T>& parameters, const Record& record,
@@ -90,18 +116,37 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
     for (const auto n : order) {
         const auto& section = record.sections[n];
         const auto mean = meanRate(component, coefficients, motions[n]);
-        // from when it was played to where the drive begins
-        const double since = section.middle - section.begin - run[n];
-        starts[n] = m;
-        if (since >= 0.0) {
-            mean.advance(starts[n], since);
+        const auto first = section.settlingPower == 1.0
+                               ? mean
+                               : meanRate(component, coefficients, louder(motions[n], section.settlingPower));
+        const double averaged = 2.0 * (section.end - section.middle),
+                     settle = std::max(0.0, section.end - section.begin - averaged);
+        const auto later = [&](double time) {  // from the begin of the section
+            auto there = m;
+            first.advance(there, std::min(time, settle));
+            mean.advance(there, std::max(0.0, time - settle));
+            return there;
+        };
+        const double since = section.middle - section.begin - run[n];  // where the drive begins
+        constexpr double farBack = 3.0;                                // time constants; farther back, errors grow
+        if (section.periodic && run[n] * mean.fastest() < farBack) {
+            auto there = later(section.middle - section.begin);
+            const double window = static_cast<double>(section.window) / record.sampleRate;
+            const auto more = bulge(mean, there, averaged * averaged - window * window);
+            for (std::size_t k = 0; k < m.size(); ++k)
+                there[k] += more[k];
+            mean.advance(there, -run[n]);
+            starts[n] = there;
+        } else if (since >= 0.0) {
+            starts[n] = later(since);
         } else {
             // The lead-in is longer than what was really played before: so much has to come on top of it.
+            starts[n] = m;
             const auto rate = mean.rate(m);
             for (std::size_t k = 0; k < m.size(); ++k)
                 starts[n][k] += since * rate[k];
         }
-        mean.advance(m, section.end - section.begin);
+        m = later(section.end - section.begin);
     }
     return starts;
 }
