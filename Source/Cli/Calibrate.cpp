@@ -16,7 +16,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 namespace excursion::cli {
 namespace {
@@ -28,7 +27,7 @@ struct CalibrateArguments {
     int channel = 1;
     double voltage = 0.0, spl = 0.0, divider = 0.0, resistor = 0.0, preamp = 0.0;
     bool hasSpl = false, hasPreamp = false;
-    std::optional<bool> inverted;
+    bool inverted = false, upright = false;
 };
 
 ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calibration, const Tone& tone)
@@ -70,8 +69,8 @@ ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calib
         entry.sensitivity = parseSensitivity(a.sensitivity);
     if (a.hasPreamp)
         entry.preampGainDb = a.preamp;
-    if (a.inverted)
-        entry.inverted = *a.inverted;
+    if (a.inverted || a.upright)
+        entry.inverted = a.inverted;
     if (!a.latency.empty()) {
         const auto latency = durationOf(a.latency);
         if (!latency)
@@ -164,7 +163,8 @@ void addCalibrate(CLI::App& app, Terminal& terminal)
         ->type_name("TEXT");
     auto* preamp = verb->add_option("--preamp", o->preamp, "gain of a preamplifier between sensor and input, dB")
                        ->check(CLI::Range(-120.0, 120.0));
-    verb->add_flag("--invert,!--no-invert", o->inverted, "the channel is upside down; --no-invert takes it back");
+    auto* invert = verb->add_flag("--invert", o->inverted, "the channel is upside down");
+    verb->add_flag("--no-invert", o->upright, "it is not, though an earlier --invert said so")->excludes(invert);
     verb->add_option("--latency", o->latency, "by which the sensor is late, such as 0.5ms")->type_name("TIME");
     verb->add_option("--curve", o->curve,
                      "a sensor's response: frequency in Hz, dB[, phase in degrees]; without phases it is taken as "

@@ -71,6 +71,8 @@ void printRanking(const Diagnosis& diagnosis, Terminal& terminal)
     if (known)
         rows.push_back(std::move(floor));
     terminal.table(header, rows);
+    terminal.say(wrapped("In order: the effects that the whole catalogue speaks for, then the others, each by what is "
+                         "left. Confidence: of one effect added alone."));
 }
 
 void print(const Diagnosis& diagnosis, Terminal& terminal)

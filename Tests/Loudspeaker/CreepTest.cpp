@@ -107,27 +107,3 @@ TEST_CASE("Logarithmic creep is creep, however much of the stiffness it takes", 
             CHECK(stiffness(f) == Approx(K * (1.0 + share * std::log10(f / low))).epsilon(0.05 + 2.0 * error));
     }
 }
-
-TEST_CASE("A box is as plausible on a suspension that has crept as on one that has not", "[creep]")
-{
-    // A port at 38 Hz; at rest nine tenths of the suspension have crept, and the cone alone would resonate below 9 Hz.
-    OperatingRange range;
-    range.lowFrequency = low;
-    range.highFrequency = high;
-    range.scale = K;
-    const auto boxed = [&range](Model model) {
-        model = withEffect(std::move(model), effectNamed("vented-box"), range);
-        for (auto& p : model.components.back().parameters)
-            p.value = p.name == "Kb" ? K : p.name == "fB" ? 38.0 : std::min(p.value, 0.05);
-        return model;
-    };
-    auto crept = woofer();
-    crept.baseParameter("K").value = 0.1 * K;
-    crept = withEffect(std::move(crept), effectNamed("creep"), range);
-    for (auto& p : crept.components.back().parameters)
-        p.value = p.name == "S" ? 0.9 * K : p.name == "centre" ? -1.0 : p.name == "width" ? 0.5 : p.value;
-    const auto stiff = boxed(woofer());
-    crept = boxed(std::move(crept));
-    CHECK(isPlausible(stiff, stiff.components.size() - 1));
-    CHECK(isPlausible(crept, crept.components.size() - 1));
-}

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/FitResponse.h"
 
-#include "Engine/Loudspeaker/Resonance.h"
-
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -243,21 +241,10 @@ SearchSummary refineByResponse(Model& model, const std::vector<ResponseTarget>& 
     return summary;
 }
 
-namespace {
-
-/// What an effect is compared with: the cone on its suspension at resonance. Only what creeps is compared with the
-/// stiffness at rest, as it is a part of the other itself.
-std::vector<Parameter> baseBeside(const Component& own, const Model& model)
-{
-    return own.effect->creeps() ? model.base().parameters : baseAt(model, resonanceOf(model));
-}
-
-}  // namespace
-
 bool isPlausible(const Model& model, std::size_t component)
 {
     const auto& own = model.components[component];
-    return own.effect->plausible(own.operatingRange, own.parameters, baseBeside(own, model));
+    return own.effect->plausible(own.operatingRange, own.parameters, model.base().parameters);
 }
 
 bool isItself(const Model& model, std::size_t component)
@@ -288,7 +275,7 @@ Component withOnly(const Part& part, Component component)
 bool restImplausibleParts(Model& model, std::size_t component)
 {
     auto& own = model.components[component];
-    const auto base = baseBeside(own, model);
+    const auto& base = model.base().parameters;
     auto rested = own;
     bool stays = false, goes = false;
     for (const auto& part : own.effect->parts(own.operatingRange)) {
