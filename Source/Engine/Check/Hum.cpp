@@ -60,7 +60,7 @@ double signalPower(const AveragedPeriods& averages, const Channel& channel)
 /// average, window and lines. A sinusoid near a line of the period goes with the average, and what is left is torn.
 double shareLeft(double frequency, double reach, const Excitation& e, double sampleRate)
 {
-    constexpr double least = 0.003;  // less cannot be told from the next frequency
+    constexpr double least = 0.03;  // less depends on a frequency that mains do not keep
     const auto N = static_cast<std::size_t>(e.period), length = N * static_cast<std::size_t>(e.periods);
     const double turn = 2.0 * std::numbers::pi * frequency / sampleRate,
                  centre = frequency / sampleRate * static_cast<double>(length);

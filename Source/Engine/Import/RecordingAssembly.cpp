@@ -46,7 +46,10 @@ void requireUnclipped(const AssignedChannel& a, const std::vector<RecordingSourc
     constexpr double limit = 0.9999;
     const auto atLimit = std::count_if(part.samples.begin(), part.samples.end(),
                                        [](double sample) { return std::abs(sample) >= limit; });
-    if (const auto clipped = std::max(static_cast<long>(atLimit), clippedSamples(part)); clipped > 0)
+    const bool beyond = std::any_of(part.samples.begin(), part.samples.end(), [](double sample) {
+        return std::abs(sample) > 1.0;
+    });  // floats in a unit of their own
+    if (const auto clipped = std::max(beyond ? 0L : static_cast<long>(atLimit), clippedSamples(part)); clipped > 0)
         throw Error(Error::Kind::data,
                     labelOf(a, sources) + " clips: " + std::to_string(clipped)
                         + " samples stand at its limit; lower the gain of that input and record again.");
