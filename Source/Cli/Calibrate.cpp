@@ -26,8 +26,7 @@ struct CalibrateArguments {
     std::string file, out, quantity, sensitivity, curve, latency;
     int channel = 1;
     double voltage = 0.0, spl = 0.0, divider = 0.0, resistor = 0.0, preamp = 0.0;
-    bool hasSpl = false, hasPreamp = false;
-    bool inverted = false, upright = false;
+    bool hasSpl = false, hasPreamp = false, inverted = false, upright = false;
 };
 
 ChannelCalibration entryOf(const CalibrateArguments& a, const Calibration& calibration, const Tone& tone)

@@ -111,7 +111,7 @@ Problem delayProblem(Quantity channel, double samples, double sampleRate)
             samples,
             "samples",
             true,
-            "The " + std::string(name(channel)) + " channel is " + hundredths(samples) + " samples" + " ("
+            "The " + std::string(name(channel)) + " channel is " + hundredths(samples) + " samples ("
                 + engineering(time, "s", 3) + ") " + (samples > 0.0 ? "late" : "early")
                 + " against what the physics allows; "
                 + (samples > 0.0 ? "import it with that latency behind its full scale (CHANNEL=QUANTITY:FULLSCALE@"

@@ -244,10 +244,6 @@ Candidate best(const Model& base, const Record& record, WholeSearch& search, con
     return found;
 }
 
-}  // namespace
-
-namespace {
-
 /// What a refined candidate still lacks or has too much of.
 Whole completed(Candidate found, const Record& record, WholeSearch& search, const FitOptions& options,
                 const Progress& progress)

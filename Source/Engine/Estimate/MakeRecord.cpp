@@ -68,7 +68,7 @@ std::size_t reachAt(std::size_t line) { return std::max<std::size_t>(12, line / 
 
 /// The scatter of a few periods is a noisy estimate of the noise; neighbouring lines share it. Played lines share it
 /// among themselves, the others, too: what drifts in the course of the take, as a coil that warms, scatters what was
-/// played and hardly anything else. A line that sticks out (hum) keeps its own level.
+/// played and hardly anything else. A line that sticks out (hum) keeps its own level. Of nothing, nothing.
 std::vector<double> smoothVariance(const std::vector<double>& raw, const std::vector<int>& excited)
 {
     constexpr double enough = 12.0;  // lines that share
@@ -237,13 +237,12 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
     const int levels = static_cast<int>(e.levels.size());
     for (int level = 0; level < levels; ++level) {
         const auto& scatter = averages.noise(take.input(), level).variance;
-        const auto inputVariance = scatter.empty() ? scatter
-                                                   : withoutDrift(smoothVariance(scatter, e.lines), scatter, e.lines);
+        const auto inputVariance = withoutDrift(smoothVariance(scatter, e.lines), scatter, e.lines);
         std::vector<std::vector<double>> variance, steady;
         for (const auto quantity : record.channels) {
             const auto& noise = averages.noise(*take.find(quantity), level).variance;
-            variance.push_back(noise.empty() ? noise : smoothVariance(noise, e.lines));
-            steady.push_back(noise.empty() ? noise : withoutDrift(variance.back(), noise, e.lines));
+            variance.push_back(smoothVariance(noise, e.lines));
+            steady.push_back(withoutDrift(variance.back(), noise, e.lines));
         }
         for (int realization = 0; realization < e.realizations; ++realization) {
             Section section;
