@@ -43,12 +43,14 @@ Added addTo(const Model& model, const Effect& effect, const Spectra& spectra)
 
 /// The effect is put in where the score test says that it starts, fitted quickly, then everything is refitted. While
 /// more is missing that is with laws that are fed; played by itself such a model may leave more than the quick fit.
-Added addTo(const Model& model, const Effect& effect, const Record& record, const Progress& progress)
+Added addTo(const Model& model, const Effect& effect, Record record, const Progress& progress)
 {
     Added result;
-    result.before = compare(model, record, {0, false}, progress.part(0.0, 0.05));
     result.model = model;
-    const auto quickly = tryEffect(result.model, record, effect, {}, progress.part(0.05, 0.5));
+    const auto quickly = tryEffect(result.model, record, effect, {}, progress.part(0.0, 0.45));
+    if (followsDrift(result.model, record))
+        useSilentNoise(record);
+    result.before = compare(model, record, {0, false}, progress.part(0.45, 0.5));
     const auto quick = result.model;
     result.fit = refine(result.model, record, {}, progress.part(0.5, 0.95));
     const auto tried = quickly.usable() ? tryCompare(quick, record, {0, false}) : std::nullopt,

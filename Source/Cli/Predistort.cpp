@@ -119,9 +119,12 @@ void run(const PredistortArguments& options, Terminal& terminal)
     const auto controls = controlsFrom(options, model);
     requireValid(controls);
     nlohmann::ordered_json target;
-    if (options.target.asked())
-        target = tellTarget(forecastTarget(model, controls, options.fullScale), controls.target.kind, options.fullScale,
-                            model.electrical() ? "V" : "N", terminal);
+    if (options.target.asked()) {
+        auto told = forecastTarget(model, controls, options.fullScale);
+        if (motionIsGuessed)
+            told = withoutLengths(std::move(told));
+        target = tellTarget(told, controls.target.kind, options.fullScale, model.electrical() ? "V" : "N", terminal);
+    }
 
     auto bent = wav;
     const auto progress = terminal.progress();

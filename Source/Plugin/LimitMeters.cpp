@@ -2,6 +2,7 @@
 #include "Plugin/LimitMeters.h"
 
 #include "Engine/BlackBox/BoxProtection.h"
+#include "Engine/Datasheet/KnownScale.h"
 #include "Engine/Error.h"
 #include "Engine/Predistortion/Predistorter.h"
 
@@ -27,6 +28,8 @@ void LimitMeters::showModel(const AnyModel& model)
     box_ = box != nullptr ? *box : nullptr;
     hasCoil_ = hasCoil(model);
     givesExcursion_ = givesExcursion(model);
+    const auto* driver = std::get_if<Model>(&model);
+    motionIsGuessed_ = driver != nullptr && withKnown(*driver, {}).motionIsGuessed;
     excursion_.setHead(givesExcursion_ ? "Excursion" : "Region");
 }
 
@@ -53,6 +56,16 @@ double LimitMeters::excursionShare(double margin)
     return share_;
 }
 
+juce::String LimitMeters::motionInWords(double displacement, double range) const
+{
+    juce::StringArray parts;
+    if (!motionIsGuessed_)
+        parts.add(juce::String(1e3 * displacement, 2) + " mm");
+    if (std::isfinite(range))
+        parts.add(whole(100.0 * displacement / range) + " % of what was measured");
+    return parts.joinIntoString(", ");
+}
+
 void LimitMeters::tick()
 {
     const auto meters = processor_.collectMeters();
@@ -65,11 +78,7 @@ void LimitMeters::tick()
                         meters.displacementReduction);
     else
         excursion_.show(meters.displacement / (limits.displacementLimit * excursionShare(limits.margin)),
-                        juce::String(1e3 * meters.displacement, 2) + " mm"
-                            + (std::isfinite(range)
-                                   ? ", " + whole(100.0 * meters.displacement / range) + " % of what was measured"
-                                   : juce::String()),
-                        meters.displacementReduction);
+                        motionInWords(meters.displacement, range), meters.displacementReduction);
     voltage_.show(meters.voltage / limits.voltageLimit, juce::String(meters.voltage, 1) + " V",
                   meters.voltageReduction);
     if (const bool shown = std::isfinite(limits.powerLimit) && hasCoil_ && (!box_ || limits.coilResistance > 0.0);

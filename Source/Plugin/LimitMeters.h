@@ -26,11 +26,13 @@ public:
 
 private:
     double excursionShare(double margin);
+    juce::String motionInWords(double displacement, double range) const;
 
     Processor& processor_;
     Meter excursion_ {"Excursion"}, voltage_ {"Voltage"}, power_ {"Power"};
     LoadedBoxPointer box_;                          ///< null: a driver is shown
     bool hasCoil_ = false, givesExcursion_ = true;  ///< see AnyModel.h
+    bool motionIsGuessed_ = false;                  ///< see KnownScale.h: no millimetres are told
     /// version of the model, switches of its effects, and margin that the share is of
     std::tuple<std::uint64_t, std::uint64_t, double> asked_;
     double share_ = 1.0;

@@ -2,6 +2,7 @@
 #include "Plugin/TargetPanel.h"
 
 #include "Engine/BlackBox/BoxLinearPart.h"
+#include "Engine/Datasheet/KnownScale.h"
 #include "Engine/Error.h"
 #include "Engine/Import/LevelCurve.h"
 #include "Plugin/TargetPlots.h"
@@ -158,6 +159,8 @@ void TargetPanel::ask()
                                              *box->played.rehearsal, answer.controls, volts);
             else
                 answer.told = forecastTarget(model, answer.controls, volts);
+            if (answer.told && !box && withKnown(model, {}).motionIsGuessed)
+                answer.told = withoutLengths(std::move(*answer.told));
         } catch (const Error& error) {
             answer.refusal = std::string(error.what()) + " The own linear part is played.";
         }

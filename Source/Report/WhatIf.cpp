@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Datasheet/KnownScale.h"
 #include "Engine/Design/WhatIf.h"
 
 #include "Engine/Document/Engineering.h"
@@ -62,6 +63,10 @@ void addWhatIf(Page& page, const LadderFile& file)
     page.note("Within the " + engineering(stroke.range, "m", 3)
               + " that were measured either way; impedance and Doppler shift at " + engineering(stroke.tone, "Hz", 3)
               + ", 8.5 times the resonance. In brackets: what there is at the end of the range.");
+    if (withKnown(file.ladder.model(), {}).motionIsGuessed)
+        page.note(
+            "All lengths are in a unit of their own: voltage and current alone do not show how far the cone moves, "
+            "and the moving mass is a guess.");
     std::vector<std::pair<std::string, std::string>> facts;
     if (stroke.gapCentre)
         facts.emplace_back("Middle of the gap, from the coil's rest",

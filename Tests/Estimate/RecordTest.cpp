@@ -198,11 +198,11 @@ TEST_CASE("What drifts is no noise to a model that follows it, where silent line
         }
     };
     lines(section, 20.0 * truth, 1e3 * truth);
-    followDrift(record);
+    useSilentNoise(record);
     lines(section, 0.5 * truth, 2.0 * truth);
     // Where no line is silent nothing tells the two apart.
     auto full = makeRecord(dense);
-    followDrift(full);
+    useSilentNoise(full);
     for (int k = 20; k <= 380; ++k)
         CHECK(full.sections.back().deviation[0][static_cast<std::size_t>(k)] > 20.0 * truth);
 }

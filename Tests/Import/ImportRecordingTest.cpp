@@ -190,6 +190,30 @@ TEST_CASE("The latency of a sensor is taken off", "[import]")
         refused(Kind::usage, "@", [&] { parseChannelMapping(wrong); });
 }
 
+TEST_CASE("A late sensor that tells its file's time makes the rest of the file no earlier", "[import]")
+{
+    const auto& played = smallPlay();
+    const Scratch scratch;
+    auto recorded = record(played, recorder({1, 2}));
+    REQUIRE(recorded.sampleRate == 48000.0);
+    const auto taken = [&](const std::string& laser) {
+        auto options = optionsFor(played, {save(scratch, "rec.wav", recorded)}, {"2=" + laser});
+        options.gain = 16.0;
+        return importRecording(options).take.find(Quantity::displacement)->samples;
+    };
+    const auto punctual = taken("displacement:8mm");
+    auto& laser = recorded.channels[1];
+    laser.insert(laser.begin(), 24, 0.0);  // 0.5 ms
+    const auto late = taken("displacement:8mm@0.5ms");
+    REQUIRE(late.size() == punctual.size());
+    double left = 0.0, all = 0.0;
+    for (std::size_t n = late.size() / 2; n < late.size() * 3 / 4; ++n) {
+        left += std::pow(late[n] - punctual[n], 2);
+        all += std::pow(punctual[n], 2);
+    }
+    CHECK(left < 1e-6 * all);
+}
+
 TEST_CASE("A recording that ends early keeps the levels that are complete", "[import]")
 {
     const auto& played = smallPlay();

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -92,6 +92,7 @@ class Take:
     :param rate: samples a second, Hz
     :param excitation: what was played in periods; None for music, noise, or what is not known
     :param driver: what is known of the loudspeaker
+    :param remarks: sentences on how the take came about, such as what an import had to assume
     :param units: of arrays that are not in V, A, m, m/s, m/s², Pa or N: a dict from quantity to unit
     :param samples: one array a quantity, all of one length: ``voltage``, ``current``, ``displacement``, ``velocity``,
         ``acceleration``, ``pressure``, ``force``. There must be a voltage, or a force for a driver without its coil.
@@ -105,12 +106,14 @@ class Take:
         *,
         excitation: Excitation | None = None,
         driver: Driver | None = None,
+        remarks: Sequence[str] = (),
         units: Mapping[str, str] | None = None,
         **samples: ArrayLike,
     ) -> None:
         self.rate = float(rate)
         self.excitation = excitation
         self.driver = driver if driver is not None else Driver()
+        self.remarks = tuple(remarks)
         self.units: dict[str, str] = {}
         self.samples: dict[str, Samples] = {}
         for quantity in (*samples, *(units or {})):

@@ -143,12 +143,15 @@ ErrorByChannel errorByChannel(const Comparison& comparison)
     return errors;
 }
 
-bool leavesLessThanNoise(const Comparison& comparison)
+bool followsDrift(const Model& model, const Record& record)
 {
     constexpr double clearly = 1.0;  // dB: a noise of thousands of lines is known far better
-    return std::any_of(comparison.channels.begin(), comparison.channels.end(), [](const ChannelComparison& c) {
-        return c.total.noiseFloorDb && c.total.db < *c.total.noiseFloorDb - clearly;
-    });
+    if (!hasSilentNoise(record) || warms(model))
+        return hasSilentNoise(record);
+    const auto reached = tryCompare(model, record, {0, false});
+    return reached && std::any_of(reached->channels.begin(), reached->channels.end(), [](const ChannelComparison& c) {
+               return c.total.noiseFloorDb && c.total.db < *c.total.noiseFloorDb - clearly;
+           });
 }
 
 std::optional<Comparison> tryCompare(const Model& model, const Record& record, const CompareOptions& options,

@@ -65,10 +65,6 @@ struct Comparison {
 /// The error of each channel over all levels.
 ErrorByChannel errorByChannel(const Comparison&);
 
-/// Whether a model leaves less in some channel than what the periods scatter. No model can if that is noise: then it
-/// was drift, which the model follows.
-bool leavesLessThanNoise(const Comparison&);
-
 struct CompareOptions {
     int substeps = 0;     ///< 0: chosen automatically
     bool spectra = true;  ///< fill spectra, kinds and residual curves
@@ -80,6 +76,10 @@ std::optional<Comparison> tryCompare(const Model&, const Record&, const CompareO
 
 /// The same; throws Error (numerical) if the simulation runs away.
 Comparison compare(const Model&, const Record&, const CompareOptions& = {}, const Progress& = {});
+
+/// Whether what the periods drift is no noise to a model: it warms, or it leaves less in some channel than they
+/// scatter, which no model can if that is noise. Never once the noise is that of the silent lines (useSilentNoise()).
+bool followsDrift(const Model&, const Record&);
 
 /// A channel over time, measured and modelled, in the compared window, in the channel's unit.
 struct Waveform {

@@ -44,9 +44,10 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
         tryEffect(model, record, effectNamed(id), options, progress.part(done, done + step));
         done += step;
     }
-    if (warms(model))
-        followDrift(record);
-    if (!effects.empty())
+    const bool drift = followsDrift(model, record);
+    if (drift)
+        useSilentNoise(record);
+    if (!effects.empty() || drift)
         last = refine(model, record, options, progress.part(0.8, 1.0));
     if (!last.usable())
         throw Error(Error::Kind::numerical, "The fit failed: " + last.message + ".");

@@ -51,9 +51,17 @@ void putInOrder(Model& model, const std::vector<std::string>& effects)
     model.covariance.resize(0, 0);
 }
 
-FitSummary settle(Model& model, const Record& record, const FitOptions& options, const Progress& progress)
+/// Fits everything; against the noise of the silent lines once the model follows what the periods drift.
+FitSummary settle(Model& model, Record& record, const FitOptions& options, const Progress& progress)
 {
-    return refine(model, record, options, progress);
+    if (warms(model))
+        useSilentNoise(record);
+    auto summary = refine(model, record, options, progress.part(0.0, 0.6));
+    if (summary.usable() && followsDrift(model, record)) {
+        useSilentNoise(record);
+        summary = refine(model, record, options, progress.part(0.6, 1.0));
+    }
+    return summary;
 }
 
 FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const Progress&)
@@ -61,6 +69,13 @@ FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const
     FitSummary summary;
     static_cast<SearchSummary&>(summary) = refineByResponse(model, responsesOf(spectra));
     return summary;
+}
+
+std::variant<Record, Spectra> dataOf(const PreparedTake& take)
+{
+    if (const auto* spectra = take.asResponses())
+        return *spectra;
+    return take.record();
 }
 
 }  // namespace
@@ -71,10 +86,8 @@ Improvement::Improvement(PreparedTake take, const ImproveOptions& options, const
     progress.at(0.0, "checking the take");
     const auto& report = take_.report();
     ladder_.problems = report.problems;
-    if (const auto* spectra = take_.asResponses()) {
-        data_ = *spectra;
-    } else if (report.fitForUse()) {
-        data_ = take_.record();
+    if (take_.asResponses() || report.fitForUse()) {
+        data_ = dataOf(take_);
     } else {
         ladder_.verdict = Verdict::badMeasurement;
         ladder_.sentence = report.verdict();
@@ -86,20 +99,22 @@ void Improvement::begin(const Progress& progress)
     if (!take_.report().fitForUse())
         throw Error(Error::Kind::data, "The take is not fit for use: " + take_.report().verdict());
     Rung rung;
-    auto data = data_;  // is adapted to the model; should the work be cancelled, nothing has happened
+    auto data = dataOf(take_);
     rung.model = std::visit([&](auto& d) { return first(d, options_, rung.fit, progress.part(0.0, 0.4)); }, data);
+    rung = judged(std::move(rung), data, progress.part(0.4, 1.0));
     data_ = std::move(data);
-    rung = judged(std::move(rung), progress.part(0.4, 1.0));
     ladder_.rungs.clear();
     keep(std::move(rung));
 }
 
 bool Improvement::addTogether(const Progress& progress)
 {
-    auto rungs = std::visit([&](auto& d) { return rungsTogether(d, progress.part(0.0, 0.8)); }, data_);
+    auto data = data_;
+    auto rungs = std::visit([&](auto& d) { return rungsTogether(d, progress.part(0.0, 0.8)); }, data);
     if (rungs.empty())
         return false;
-    rungs.back() = judged(std::move(rungs.back()), progress.part(0.8, 1.0));
+    rungs.back() = judged(std::move(rungs.back()), data, progress.part(0.8, 1.0));
+    use(std::move(data));
     ladder_.rungs.pop_back();  // comes again, with its diagnosis
     for (auto& rung : rungs)
         keep(std::move(rung));
@@ -108,7 +123,7 @@ bool Improvement::addTogether(const Progress& progress)
 
 /// The last rung, and those that follow from it together; the last of them is not diagnosed yet. None where nothing is
 /// to be added.
-std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progress& progress)
+std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progress& progress) const
 {
     const auto& options = options_.diagnose;
     const auto steps = stepsByResponse(ladder_.model(), spectra, options.fit.threads, progress.part(0.0, 0.7));
@@ -138,7 +153,7 @@ std::vector<Rung> Improvement::rungsTogether(const Spectra& spectra, const Progr
     return rungs;
 }
 
-std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& progress)
+std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& progress) const
 {
     auto base = ladder_.rungs.back();
     const auto backed = std::count_if(base.diagnosis.ranking.begin(), base.diagnosis.ranking.end(),
@@ -149,15 +164,13 @@ std::vector<Rung> Improvement::rungsTogether(Record& record, const Progress& pro
     const auto whole = fitWhole(base.model, record, options_.diagnose.fit, progress.part(0.0, 0.6));
     if (whole.votes.empty() || (whole.votes.size() < 2 && oneIsKnown))
         return {};
-    auto judge = record;
-    if (const auto reached = tryCompare(whole.model, record, {0, false}); reached && leavesLessThanNoise(*reached)) {
-        followDrift(judge);
-        base.comparison = compare(base.model, judge);
+    if (whole.silentNoise) {
+        useSilentNoise(record);
+        base.comparison = compare(base.model, record);
     }
-    auto rungs = rungsTo(whole, base, judge, options_.diagnose, progress.part(0.6, 1.0));
+    auto rungs = rungsTo(whole, base, record, options_.diagnose, progress.part(0.6, 1.0));
     if (rungs.empty() || !(rungs.back().comparison.chiSquaredPerValue < base.comparison.chiSquaredPerValue))
         return {};
-    record = std::move(judge);  // should the work be cancelled before, nothing has happened
     return rungs;
 }
 
@@ -169,6 +182,7 @@ void Improvement::add(const std::string& id, const Progress& progress)
         throw Error(Error::Kind::data, "The model already has the effect \"" + id + "\".");
     if (const auto why = whyUnseen(effect, std::visit([](const auto& d) { return seenIn(d); }, data_)); !why.empty())
         throw Error(Error::Kind::data, why);
+    auto data = data_;
     Rung rung;
     rung.added = id;
     rung.model = last.model;
@@ -180,23 +194,38 @@ void Improvement::add(const std::string& id, const Progress& progress)
     else
         std::visit(
             [&](const auto& d) { tryOne(rung.model, d, effect, options_.diagnose.fit, progress.part(0.0, 0.25)); },
-            data_);
+            data);
     rung.fit = std::visit(
-        [&](const auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data_);
-    keep(judged(std::move(rung), progress.part(0.5, 1.0)));
+        [&](auto& d) { return settle(rung.model, d, options_.diagnose.fit, progress.part(0.25, 0.5)); }, data);
+    rung = judged(std::move(rung), data, progress.part(0.5, 1.0));
+    use(std::move(data));
+    keep(std::move(rung));
+}
+
+/// Compares all rungs with other data; one that runs away there stays as it was.
+void Improvement::use(Data data)
+{
+    auto rungs = ladder_.rungs;  // should the work fail, nothing has happened
+    if (const auto* now = std::get_if<Record>(&data), *before = std::get_if<Record>(&data_);
+        now && before && hasSilentNoise(*now) != hasSilentNoise(*before))
+        for (auto& rung : rungs)
+            if (auto comparison = tryCompare(rung.model, *now))
+                rung.comparison = std::move(*comparison);
+    ladder_.rungs = std::move(rungs);
+    data_ = std::move(data);
 }
 
 /// Compares and diagnoses the rung's model.
-Rung Improvement::judged(Rung rung, const Progress& progress) const
+Rung Improvement::judged(Rung rung, const Data& data, const Progress& progress) const
 {
     const auto judge = [&](const Progress& part) {
-        rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data_);
+        rung.comparison = std::visit([&](const auto& d) { return compare(rung.model, d); }, data);
         rung.diagnosis = std::visit(
-            [&](const auto& d) { return diagnose(rung.model, d, rung.comparison, options_.diagnose, part); }, data_);
+            [&](const auto& d) { return diagnose(rung.model, d, rung.comparison, options_.diagnose, part); }, data);
     };
     judge(progress.part(0.0, 0.5));
     // Before something is called unknown the model is to be as good as it can be: fitted to what its simulation leaves.
-    if (const auto* record = std::get_if<Record>(&data_);
+    if (const auto* record = std::get_if<Record>(&data);
         record && rung.diagnosis.verdict == Verdict::unknownEffect && rung.fit.usable()
         && (rung.fit.substeps == 0 || (record->noiseKnown && rung.fit.chiSquaredPerValue < nearNoise))) {
         auto better = rung.model;

@@ -49,15 +49,18 @@ public:
     std::vector<Waveform> waveforms(int level) const;
 
 private:
-    std::vector<Rung> rungsTogether(const Spectra&, const Progress&);
-    std::vector<Rung> rungsTogether(Record&, const Progress&);
-    Rung judged(Rung, const Progress&) const;
+    using Data = std::variant<Record, Spectra>;
+
+    std::vector<Rung> rungsTogether(const Spectra&, const Progress&) const;
+    std::vector<Rung> rungsTogether(Record&, const Progress&) const;
+    Rung judged(Rung, const Data&, const Progress&) const;
+    void use(Data);
     void keep(Rung);
     void concludeFromLast();  ///< verdict and sentence from the last rung's diagnosis
 
     PreparedTake take_;
     ImproveOptions options_;
-    std::variant<Record, Spectra> data_;
+    Data data_;  ///< what the rungs are compared with
     Ladder ladder_;
 };
 

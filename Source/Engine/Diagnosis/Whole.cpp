@@ -152,12 +152,15 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
 /// The effects that the record shows beside those of a base, and what the last of them was fitted to.
 Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
 {
-    Whole whole {base, {}, {}};
+    Whole whole;
+    whole.model = base;
     grow(whole, base, record, search, progress.part(0.0, 0.7));
     if (search.exchangeStandIns(whole.model, progress.part(0.7, 0.8))) {  // beside the right ones others may show
         auto fitted = whole.model;
-        if (const auto summary = search.fit(fitted, progress.part(0.8, 0.82)); summary.usable())
-            whole = {std::move(fitted), summary, {}};
+        if (const auto summary = search.fit(fitted, progress.part(0.8, 0.82)); summary.usable()) {
+            whole.model = std::move(fitted);
+            whole.fit = summary;
+        }
         grow(whole, base, record, search, progress.part(0.82, 1.0));
     }
     return whole;
@@ -294,14 +297,20 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     auto found = best(base, record, search, options, progress.part(0.0, 0.7));
     if (!found.whole.fit.usable())
         return found.whole;
-    const auto reached = tryCompare(found.whole.model, record, {0, false});
-    if (!reached || !leavesLessThanNoise(*reached))
+    if (!followsDrift(found.whole.model, record))
         return completed(std::move(found), record, search, options, progress.part(0.7, 1.0));
-    auto steady = record;
-    followDrift(steady);
+    auto silent = record;
+    useSilentNoise(silent);
+    WholeSearch closer(base, silent, options);
     found.tried.clear();
-    WholeSearch closer(base, steady, options);
-    return completed(std::move(found), steady, closer, options, progress.part(0.7, 1.0));
+    auto closely = found.whole.model;
+    if (const auto run = refine(closely, silent, options, progress.part(0.7, 0.8)); run.usable()) {
+        found.whole.model = std::move(closely);
+        found.whole.fit = run;
+    }
+    auto whole = completed(std::move(found), silent, closer, options, progress.part(0.8, 1.0));
+    whole.silentNoise = true;
+    return whole;
 }
 
 }  // namespace excursion

@@ -14,6 +14,8 @@ namespace excursion {
 struct Whole {
     Model model;     ///< the base and the needed effects, refined
     FitSummary fit;  ///< not usable if nothing was found
+    /// the noise is that of the silent lines (useSilentNoise()): the model follows what the periods drift
+    bool silentNoise = false;
     /// of the model, on each effect that the base does not have; or of a fuller one that missed it by 6 dB or more
     std::map<std::string, Vote> votes;
 };
@@ -25,7 +27,8 @@ struct Whole {
 /// were raised as far as that pays. If this, refined, does not come near the noise, another search begins from the
 /// linear model of the loudest level; before the refinement if the rounds end far from the noise. If something is left
 /// that no effect explains, only effects that stand alone stay.
-/// A whole that follows what the periods drift (leavesLessThanNoise()) is completed against the noise without it.
+/// A whole that follows what the periods drift (followsDrift()) is completed against the noise
+/// without it.
 /// @param base  fitted; its effects stay
 Whole fitWhole(const Model& base, const Record&, const FitOptions&, const Progress& = {});
 

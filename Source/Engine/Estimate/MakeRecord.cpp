@@ -46,10 +46,11 @@ struct Tally {
             count[k + 1] = count[k] + (played[k] == kind ? 1.0 : 0.0);
         }
     }
-    /// The mean from k - reach to k + reach; nothing of fewer than `enough` lines.
+    /// The mean from k - reach to k + reach, without line 0 (an offset that drifts); nothing of fewer than `enough`
+    /// lines.
     std::optional<double> around(std::size_t k, std::size_t reach, double enough) const
     {
-        const std::size_t from = k > reach ? k - reach : 0, to = std::min(count.size() - 1, k + reach + 1);
+        const std::size_t from = k > reach ? k - reach : 1, to = std::min(count.size() - 1, k + reach + 1);
         const double lines = count[to] - count[from];
         return lines < enough ? std::nullopt : std::optional((total[to] - total[from]) / lines);
     }
@@ -74,8 +75,8 @@ std::vector<double> smoothVariance(const std::vector<double>& raw, const std::ve
     constexpr double enough = 12.0;  // lines that share
     const auto played = marked(excited, raw.size());
     const Tally silentOnes(raw, played, 0), playedOnes(raw, played, 1);
-    std::vector<double> result(raw.size());
-    for (std::size_t k = 0; k < raw.size(); ++k) {
+    auto result = raw;
+    for (std::size_t k = 1; k < raw.size(); ++k) {
         auto reach = reachAt(k);
         const auto& alike = played[k] ? playedOnes : silentOnes;
         std::optional<double> mean;
@@ -86,7 +87,8 @@ std::vector<double> smoothVariance(const std::vector<double>& raw, const std::ve
     return result;
 }
 
-/// The same with the noise of the silent lines around it on each played one, where there are some.
+/// The same with the noise of the silent lines around it on each played one, where there are some, and it is less: a
+/// drift only adds to the scatter.
 std::vector<double> withoutDrift(std::vector<double> smooth, const std::vector<double>& raw,
                                  const std::vector<int>& excited)
 {
@@ -95,7 +97,7 @@ std::vector<double> withoutDrift(std::vector<double> smooth, const std::vector<d
     const Tally silentOnes(raw, played, 0);
     for (std::size_t k = 0; k < raw.size(); ++k)
         if (played[k])
-            smooth[k] = silentOnes.around(k, reachAt(k), enough).value_or(smooth[k]);
+            smooth[k] = std::min(smooth[k], silentOnes.around(k, reachAt(k), enough).value_or(smooth[k]));
     return smooth;
 }
 
@@ -200,7 +202,7 @@ void thinOut(Section& section, std::size_t factor)
         for (auto& value : measured)
             value *= share;
     }
-    for (auto* deviations : {&section.deviation, &section.steadyDeviation})
+    for (auto* deviations : {&section.deviation, &section.silentDeviation})
         for (auto& deviation : *deviations) {
             deviation.resize(lines);
             for (auto& value : deviation)
@@ -265,7 +267,7 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
             for (std::size_t c = 0; c < record.channels.size(); ++c) {
                 section.measured.push_back(fft(averages.inTime(*take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
-                section.steadyDeviation.push_back(
+                section.silentDeviation.push_back(
                     deviations(section.measured.back(), steady[c], options.relativeFloor));
             }
             if (factor > 1)

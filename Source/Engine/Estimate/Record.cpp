@@ -43,11 +43,17 @@ std::vector<double> Record::drive(const Section& section, std::size_t atLeast) c
     return samples;
 }
 
-void followDrift(Record& record)
+void useSilentNoise(Record& record)
 {
     for (auto& section : record.sections)
-        if (!section.steadyDeviation.empty())
-            section.deviation = std::exchange(section.steadyDeviation, {});
+        if (!section.silentDeviation.empty())
+            section.deviation = std::exchange(section.silentDeviation, {});
+}
+
+bool hasSilentNoise(const Record& record)
+{
+    return std::any_of(record.sections.begin(), record.sections.end(),
+                       [](const Section& s) { return !s.silentDeviation.empty(); });
 }
 
 bool hasPeriods(const Record& record)

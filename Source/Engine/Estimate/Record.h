@@ -26,9 +26,9 @@ struct Section {
 
     std::vector<std::vector<std::complex<double>>> measured;  ///< [channel][line], unnormalized DFT of the window
     std::vector<std::vector<double>> deviation;               ///< [channel][line], sqrt(E|noise|^2) of `measured`
-    /// [channel][line], the same without what the played lines drift, as silent lines around them tell; empty where
-    /// none are near
-    std::vector<std::vector<double>> steadyDeviation;
+    /// [channel][line], the same with the noise of the silent lines around each played one, which does not drift with
+    /// what was played; `deviation` where none are near; empty without periods, and once it is in use
+    std::vector<std::vector<double>> silentDeviation;
     /// [line], E|noise|^2 of the input's DFT; empty when unknown
     std::vector<double> inputVariance;
     std::vector<int> excited;  ///< excited lines, if known
@@ -65,9 +65,13 @@ struct Record {
     }
 };
 
-/// Takes what the periods drift out of the noise, for models that follow it: a coil that warms scatters the played
-/// lines, and by far more than any sensor. Nothing happens where the take does not tell the two apart.
-void followDrift(Record&);
+/// Takes what the periods drift out of the noise (Section::silentDeviation), for models that follow it: a coil that
+/// warms scatters the played lines, and by far more than any sensor. Nothing happens where the take does not tell the
+/// two apart, or the second time.
+void useSilentNoise(Record&);
+
+/// Whether a record has another noise for models that follow the drift than the one in use.
+bool hasSilentNoise(const Record&);
 
 /// Whether the sections of a record are periods, compared as a whole.
 bool hasPeriods(const Record&);

@@ -148,6 +148,11 @@ private:
             result_.remarks.push_back(
                 done.witness
                 + " is more like what was played than the voltage: they may be exchanged, see 'excursion check'.");
+        if (witness->latency != 0.0) {  // the file's time was as late as its witness
+            auto& clock = done.alignment.clock;
+            clock.start -= witness->latency * plan_.sampleRate * clock.step;
+            countRealizations(done.alignment, plan_, witnesses.front().samples.size(), done.name);
+        }
         if (done.alignment.scatter > 0.05)
             result_.remarks.push_back("The clock of '" + done.name + "' wanders by "
                                       + figure(done.alignment.scatter, "%.2f")

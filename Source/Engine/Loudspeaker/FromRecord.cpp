@@ -89,7 +89,7 @@ void adapt(Record& record, const Model& model)
         const auto responses = respond(model, record.channels, frequency);
         for (std::size_t n = 0; n < played.size(); ++n) {
             const double input = std::sqrt(section.inputVariance[played[n]]);
-            for (auto* deviation : {&section.deviation, &section.steadyDeviation})
+            for (auto* deviation : {&section.deviation, &section.silentDeviation})
                 for (std::size_t c = 0; c < deviation->size(); ++c) {
                     auto& own = (*deviation)[c][played[n]];
                     own = std::hypot(own, std::abs(responses[c].value[n]) * input);
@@ -99,7 +99,7 @@ void adapt(Record& record, const Model& model)
     }
     record.leadIn = settlingTime(model, record);
     if (warms(model))
-        followDrift(record);
+        useSilentNoise(record);
 }
 
 OperatingRange visitedRange(const Model& model, const Record& record, int degree)

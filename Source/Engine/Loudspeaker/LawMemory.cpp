@@ -128,16 +128,7 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
             return there;
         };
         const double since = section.middle - section.begin - run[n];  // where the drive begins
-        constexpr double farBack = 3.0;                                // time constants; farther back, errors grow
-        if (section.periodic && run[n] * mean.fastest() < farBack) {
-            auto there = later(section.middle - section.begin);
-            const double window = static_cast<double>(section.window) / record.sampleRate;
-            const auto more = bulge(mean, there, averaged * averaged - window * window);
-            for (std::size_t k = 0; k < m.size(); ++k)
-                there[k] += more[k];
-            mean.advance(there, -run[n]);
-            starts[n] = there;
-        } else if (since >= 0.0) {
+        if (since >= 0.0) {
             starts[n] = later(since);
         } else {
             // The lead-in is longer than what was really played before: so much has to come on top of it.
@@ -145,6 +136,19 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
             const auto rate = mean.rate(m);
             for (std::size_t k = 0; k < m.size(); ++k)
                 starts[n][k] += since * rate[k];
+        }
+        // From the middle back, as far as errors do not grow too much; farther back, a start is forgotten anyway.
+        constexpr double near = 2.0, far = 3.0;  // time constants
+        const double share = section.periodic ? std::clamp(far - run[n] * mean.fastest(), 0.0, far - near) : 0.0;
+        if (share > 0.0) {
+            auto there = later(section.middle - section.begin);
+            const double window = static_cast<double>(section.window) / record.sampleRate;
+            const auto more = bulge(mean, there, averaged * averaged - window * window);
+            for (std::size_t k = 0; k < m.size(); ++k)
+                there[k] += more[k];
+            mean.advance(there, -run[n]);
+            for (std::size_t k = 0; k < m.size(); ++k)
+                starts[n][k] = starts[n][k] * (1.0 - share) + there[k] * share;
         }
         m = later(section.end - section.begin);
     }

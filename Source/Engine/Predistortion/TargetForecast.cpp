@@ -248,4 +248,13 @@ TargetForecast forecastTarget(const Model& model, const PredistortionControls& c
     return forecastTarget(subject, controls, volts);
 }
 
+TargetForecast withoutLengths(TargetForecast told)
+{
+    told.ownMoves.clear();
+    told.targetMoves.clear();
+    for (auto* peaks : {&told.ownPink, &told.targetPink, &told.ownSine, &told.targetSine})
+        peaks->displacement = 0.0;
+    return told;
+}
+
 }  // namespace excursion

@@ -65,4 +65,7 @@ struct TargetForecast {
 TargetForecast forecastTarget(const Model&, const PredistortionControls&, double volts);
 TargetForecast forecastTarget(const ForecastSubject&, const PredistortionControls&, double volts);
 
+/// A forecast that tells nothing in metres: of a model whose motion is a guess (ScaledModel::motionIsGuessed).
+TargetForecast withoutLengths(TargetForecast);
+
 }  // namespace excursion
