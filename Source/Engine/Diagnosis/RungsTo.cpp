@@ -23,21 +23,59 @@ Model partOf(const Whole& whole, const Model& model, const std::string& more)
     return part;
 }
 
+/// Of each parameter of a part's components, its place among those of the whole.
+std::vector<Eigen::Index> placesIn(const Model& whole, const Model& part)
+{
+    std::vector<Eigen::Index> places;
+    for (const auto& component : part.components) {
+        Eigen::Index place = 0;
+        for (const auto& one : whole.components) {
+            if (one.effect == component.effect)
+                break;
+            place += static_cast<Eigen::Index>(one.parameters.size());
+        }
+        for (std::size_t k = 0; k < component.parameters.size(); ++k)
+            places.push_back(place++);
+    }
+    return places;
+}
+
+/// Laws that a fit held have the errors of the whole, whose they are.
+void takeErrors(Model& part, const std::vector<bool>& held, const Model& whole)
+{
+    if (part.covariance.size() == 0 || whole.covariance.size() == 0)
+        return;
+    const auto places = placesIn(whole, part);
+    const auto all = parametersOf(part);
+    for (std::size_t k = 0; k < places.size(); ++k)
+        if (held[k]) {
+            const auto row = static_cast<Eigen::Index>(k);
+            for (std::size_t j = 0; j < places.size(); ++j)
+                if (held[j])
+                    part.covariance(row, static_cast<Eigen::Index>(j)) = whole.covariance(places[k], places[j]);
+            all[k]->standardError = std::sqrt(part.covariance(row, row));
+        }
+}
+
 /// Fits what is linear of a part, beside effects that stay as the whole has them: free ones would stand for what the
 /// part lacks, with shapes that no loudspeaker has.
-FitSummary fitLinear(Model& part, const Record& record, const FitOptions& options, const Progress& progress)
+FitSummary fitLinear(Model& part, const Model& whole, const Record& record, const FitOptions& options,
+                     const Progress& progress)
 {
-    std::vector<bool> free;
+    std::vector<bool> free, held;
     for (auto& component : part.components)
         for (auto& p : component.parameters) {
+            const bool law = &component != &part.components.front() && !component.effect->linear();
             free.push_back(p.free);
-            p.free = p.free && (&component == &part.components.front() || component.effect->linear());
+            held.push_back(p.free && law);
+            p.free = p.free && !law;
         }
     auto fit = fitFed(part, record, estimationSections(record), options, progress);
     auto was = free.begin();
     for (auto& component : part.components)
         for (auto& p : component.parameters)
             p.free = *was++;
+    takeErrors(part, held, whole);
     return fit;
 }
 
@@ -140,7 +178,7 @@ std::vector<Rung> rungsTo(const Whole& whole, Rung base, const Record& record, c
                 trial.fit = whole.fit;
                 trial.comparison = *reached;
             } else {
-                trial.fit = fitLinear(trial.model, record, brief, part.part(0.4, 0.9));
+                trial.fit = fitLinear(trial.model, whole.model, record, brief, part.part(0.4, 0.9));
                 auto comparison = tryCompare(trial.model, record);
                 if (!comparison)
                     continue;

@@ -42,6 +42,8 @@ public:
         if (options.gradient && options.gradientSubsteps != options.substeps)
             gradientDrive_.emplace(drive, record.sampleRate, options.gradientSubsteps);
         start_ = drive.size() - section.window;
+        if (record.channelIndex(Quantity::pressure))
+            ahead_ = aheadOf(model, record.sampleRate);
     }
 
     SectionFit run()
@@ -51,7 +53,7 @@ public:
         const auto columns = static_cast<Eigen::Index>(active_.size());
 
         Trajectory trajectory;
-        fit.finite = integrate(model_, *drive_, start_, trajectory, from_.value);
+        fit.finite = integrate(model_, *drive_, start_, trajectory, from_.value, ahead_);
         if (!fit.finite)
             return fit;
         std::vector<Eigen::VectorXd> residual;
@@ -94,7 +96,7 @@ private:
             const std::span parameters(active_.data() + block, std::min(together, active_.size() - block));
             std::vector<Eigen::MatrixXd> slopes;
             if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, traces, from_,
-                               slopes))
+                               slopes, ahead_))
                 return false;
             for (std::size_t c = 0; c < record_.channels.size(); ++c) {
                 const auto made = sensors.tracesOf(record_.channels[c]);
@@ -123,7 +125,7 @@ private:
     const OutputErrorOptions& options_;
     const StartState& from_;
     std::optional<Drive> drive_, gradientDrive_;
-    std::size_t start_ = 0;
+    std::size_t start_ = 0, ahead_ = 0;
 };
 
 }  // namespace

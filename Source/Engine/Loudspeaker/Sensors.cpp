@@ -43,6 +43,7 @@ Sensors::Sensors(const Model& model, const SmallSignal& linear, const Trajectory
       sampleRate_(sampleRate),
       gain_(radiationPerArea() / model.microphoneDistance),
       restLateness_(linear.lateness),
+      later_(linear.lateness - static_cast<double>(run.ahead) / sampleRate),
       spot_(linear.shiftsSpot()),
       arrival_(beyond(run[Trace::lateness], restLateness_), sampleRate)
 {
@@ -61,7 +62,7 @@ void Sensors::delay(Spectrum& spectrum) const
 {
     const double step = 2.0 * std::numbers::pi * sampleRate_ / static_cast<double>(run_[Trace::flow].size());
     for (std::size_t k = 0; k < spectrum.size(); ++k)
-        spectrum[k] *= std::polar(gain_, -step * static_cast<double>(k) * restLateness_);
+        spectrum[k] *= std::polar(gain_, -step * static_cast<double>(k) * later_);
 }
 
 void Sensors::addSpot(Spectrum& spectrum, std::span<const double> spot, int order) const
@@ -121,7 +122,7 @@ std::vector<double> Sensors::record(Quantity quantity) const
         return inverseFft(spectrum, length);
     };
     if (quantity == Quantity::pressure) {
-        if (restLateness_ == 0.0) {
+        if (later_ == 0.0) {
             auto samples = arrival_.heard(run_[Trace::flow]);
             std::transform(samples.begin(), samples.end(), samples.begin(),
                            [this](double flow) { return gain_ * flow; });
@@ -140,6 +141,11 @@ std::vector<double> Sensors::record(Quantity quantity) const
         std::transform(samples.begin(), samples.end(), ahead.begin(), samples.begin(), std::plus<> {});
     }
     return samples;
+}
+
+std::size_t aheadOf(const Model& model, double sampleRate)
+{
+    return static_cast<std::size_t>(std::round(std::max(0.0, smallSignal(model).lateness) * sampleRate));
 }
 
 }  // namespace excursion

@@ -16,7 +16,8 @@ namespace excursion {
 /// The channels of a take for a trajectory, as unnormalized DFTs of its window, which is treated as one period:
 ///     displacement  X = DFT{x + spot},   velocity, acceleration: of its derivatives,
 ///     pressure      P = rho/(2 pi d) exp(-j w tau_0) DFT{area acceleration, heard later by lateness - tau_0},
-/// tau_0 the lateness at rest (Emission, Arrival). The trajectory must outlive this.
+/// tau_0 the lateness at rest (Emission, Arrival). What drifts repeats in no period: it is heard as it was before the
+/// window if the trajectory's sound begins as much ahead (aheadOf()). The trajectory must outlive this.
 class Sensors {
 public:
     using Spectrum = std::vector<std::complex<double>>;
@@ -45,9 +46,13 @@ private:
 
     const Trajectory& run_;
     double sampleRate_, gain_, restLateness_;
+    double later_;  ///< s, of what is left of it beside Trajectory::ahead
     bool spot_;
     Arrival arrival_;                    ///< for the lateness minus that at rest
     std::vector<double> flowByLeaving_;  ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope needs it
 };
+
+/// Trajectory::ahead for what a microphone hears of a model: the whole samples of the lateness at rest.
+std::size_t aheadOf(const Model&, double sampleRate);
 
 }  // namespace excursion

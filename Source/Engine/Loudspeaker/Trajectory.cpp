@@ -23,7 +23,8 @@ const std::vector<double>& Trajectory::operator[](Trace trace) const
     return *all[static_cast<std::size_t>(trace)];
 }
 
-bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start)
+bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start,
+               std::size_t ahead)
 {
     ExponentialStep motion(model, drive.step());
     Radiator radiator(model);
@@ -36,6 +37,8 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
         trace->clear();
         trace->reserve(drive.length() - first);
     }
+    out.ahead = std::min(ahead, first);
+    const std::size_t left = first - out.ahead, allLeft = drive.length() - out.ahead;
     std::size_t half = 0;
     for (std::size_t n = 0; n < drive.length(); ++n) {
         const bool kept = n >= first;
@@ -43,17 +46,23 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
             out.current.push_back(motion.current());
             out.displacement.push_back(motion.displacement());
             out.velocity.push_back(motion.velocity());
-            motion.state(before);
         }
+        const bool radiated = n >= left && n < allLeft;
+        if (kept || radiated)
+            motion.state(before);
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
             const double acceleration = motion.step(drive.polynomial(half));
-            if (s > 0 || !kept)
+            if (s > 0 || !(kept || radiated))
                 continue;
             const auto sound = radiator.at(before.data(), acceleration);
-            out.acceleration.push_back(acceleration);
-            out.flow.push_back(sound.flow);
-            out.lateness.push_back(sound.lateness);
-            out.spot.push_back(sound.spot);
+            if (kept) {
+                out.acceleration.push_back(acceleration);
+                out.spot.push_back(sound.spot);
+            }
+            if (radiated) {
+                out.flow.push_back(sound.flow);
+                out.lateness.push_back(sound.lateness);
+            }
         }
         if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
             return false;
@@ -62,7 +71,8 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
 }
 
 bool differentiate(const Model& model, std::span<const Eigen::Index> active, const Drive& drive, std::size_t first,
-                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
+                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out,
+                   std::size_t ahead)
 {
     const auto count = static_cast<Eigen::Index>(active.size());
     SensitivityStep motion(model, drive.step(), active);
@@ -79,32 +89,36 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
     out.assign(observed.size(), Eigen::MatrixXd(count, static_cast<Eigen::Index>(drive.length() - first)));
     Eigen::MatrixXd before, emitted(count, 3);
     Eigen::VectorXd from;
+    const std::size_t left = first - std::min(ahead, first), allLeft = drive.length() - std::min(ahead, first);
     std::size_t half = 0;
     for (std::size_t n = 0; n < drive.length(); ++n) {
-        const auto column = static_cast<Eigen::Index>(n - first);
-        const bool kept = n >= first;
-        if (kept) {
+        const auto column = static_cast<Eigen::Index>(n - first), leaves = static_cast<Eigen::Index>(n - left);
+        const bool kept = n >= first, radiated = radiates && n >= left && n < allLeft;
+        if (kept)
             for (std::size_t q = 0; q < observed.size(); ++q)
                 if (observed[q] < Trace::acceleration)
                     out[q].col(column) = motion.slopes().col(static_cast<Eigen::Index>(observed[q]));
-            if (radiates) {
-                motion.slopesByState(before);
-                motion.state(from);
-            }
+        if (radiates && (kept || radiated)) {
+            motion.slopesByState(before);
+            motion.state(from);
         }
         for (int s = 0; s < drive.substeps(); ++s, half += 2) {
             motion.step(drive.polynomial(half));
-            if (s > 0 || !kept)
+            if (s > 0 || !(kept || radiated))
                 continue;
             if (radiates)
                 radiator.differentiate(from.data(), motion.acceleration(), before, motion.accelerationSlopes(),
                                        emitted);
-            for (std::size_t q = 0; q < observed.size(); ++q)
+            for (std::size_t q = 0; q < observed.size(); ++q) {
+                const bool heard = observed[q] == Trace::flow || observed[q] == Trace::lateness;
+                if (observed[q] < Trace::acceleration || !(heard ? radiated : kept))
+                    continue;
+                auto to = out[q].col(heard ? leaves : column);
                 if (observed[q] == Trace::acceleration)
-                    out[q].col(column) = motion.accelerationSlopes();
-                else if (observed[q] > Trace::acceleration)
-                    out[q].col(column) = emitted.col(static_cast<Eigen::Index>(observed[q])
-                                                     - static_cast<Eigen::Index>(Trace::flow));
+                    to = motion.accelerationSlopes();
+                else
+                    to = emitted.col(static_cast<Eigen::Index>(observed[q]) - static_cast<Eigen::Index>(Trace::flow));
+            }
         }
         if (!plausible.holds(motion.current(), motion.displacement(), motion.velocity()))
             return false;

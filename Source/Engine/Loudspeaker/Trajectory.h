@@ -21,6 +21,8 @@ inline constexpr std::size_t traceCount = 7;
 struct Trajectory {
     std::vector<double> current, displacement, velocity, acceleration;  ///< A, m, m/s, m/s^2
     std::vector<double> flow, lateness, spot;                           ///< m^3/s^2, s, m
+    /// samples by which flow and lateness begin and end before the rest: what the microphone hears has left before
+    std::size_t ahead = 0;
 
     const std::vector<double>& operator[](Trace) const;
 };
@@ -28,8 +30,10 @@ struct Trajectory {
 /// Integrates the model from rest, or from another state (ExponentialStep).
 /// @param first  the trajectory is kept from this sample on
 /// @param start  state z of Dynamics at the drive's first sample; empty: rest
+/// @param ahead  Trajectory::ahead, at most `first`
 /// @returns false if the state is no longer finite or in a plausible range; the trajectory is then invalid
-bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, const Eigen::VectorXd& start = {});
+bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, const Eigen::VectorXd& start = {},
+               std::size_t ahead = 0);
 
 /// Derivatives of the trajectory by parameters of the model (SensitivityStep).
 /// @param active    the parameters, in the order of parametersOf()
@@ -37,7 +41,8 @@ bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, c
 /// @param start     state at the drive's first sample and its derivatives by all parameters; empty: rest
 /// @param out       one matrix per observed trace, parameters x samples
 bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, std::size_t first,
-                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
+                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out,
+                   std::size_t ahead = 0);
 
 /// The smallest number of steps per sample, at most 64, for which both of the above are stable
 /// (ExponentialStep::isStable).
