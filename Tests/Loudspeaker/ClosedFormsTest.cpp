@@ -247,6 +247,19 @@ TEST_CASE("A slow memory starts each section where the sections before have left
         CHECK(later.value[k]
               == Approx(P * (1.0 - (1.0 - settled) * curved(0.5, tau[k]) / curved(0.1, tau[k]))).margin(1e-3 * P));
     }
+    // All power comes in the first half of each period: a drive that begins behind it is half of a period's heat ahead.
+    auto bursts = motions;
+    for (auto& burst : bursts)
+        for (std::size_t k = 0; k < 100; ++k)
+            burst.i[k] = k < 50 ? std::sqrt(2.0) * i : 0.0;
+    for (const double middle : {0.75, 0.70}) {  // the drive begins with a period, and in its middle
+        const auto ahead = historyOf(heat, record, bursts, {middle, middle, middle}, false),
+                   steady = historyOf(heat, record, motions, {middle, middle, middle}, false);
+        for (std::size_t n = 0; n < 3; ++n)
+            for (const int k : {0, 1})
+                CHECK(ahead[n].value[k] - steady[n].value[k]
+                      == Approx(middle == 0.75 ? 0.0 : P * 0.05 / tau[k]).margin(1e-6 * P));
+    }
     heat.parameters[0].value = 0.05;
     const auto with = historyOf(heat, record, motions, {0.75, 0.75, 0.25}, true);
     for (std::size_t p = 0; p < heat.parameters.size(); ++p) {

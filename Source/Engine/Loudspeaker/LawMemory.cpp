@@ -80,6 +80,25 @@ Affine<T> meanRate(const Component& component, const std::vector<T>& coefficient
     return result;
 }
 
+/// What the first samples of a period have brought a memory near `m` beyond as many of the mean: power comes in bursts.
+template <class T>
+std::vector<T> ripple(const Component& component, const std::vector<T>& coefficients, const PeriodicMotion& motion,
+                      std::size_t samples, double sampleRate, const Affine<T>& mean, const std::vector<T>& m)
+{
+    std::vector<T> sum(m.size(), T(0.0)), rate(m.size());
+    for (std::size_t n = 0; n < samples; ++n) {
+        Balance<T> unused;
+        component.effect->contribute(component.operatingRange, coefficients.data(),
+                                     {T(motion.i[n]), T(motion.x[n]), T(motion.v[n])}, m.data(), rate.data(), unused);
+        for (std::size_t k = 0; k < m.size(); ++k)
+            sum[k] += rate[k];
+    }
+    const auto meanThere = mean.rate(m);
+    for (std::size_t k = 0; k < m.size(); ++k)
+        sum[k] = (sum[k] - meanThere[k] * static_cast<double>(samples)) * (1.0 / sampleRate);
+    return sum;
+}
+
 PeriodicMotion louder(PeriodicMotion motion, double power)
 {
     for (double& i : motion.i)
@@ -149,6 +168,14 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
             mean.advance(there, -run[n]);
             for (std::size_t k = 0; k < m.size(); ++k)
                 starts[n][k] = starts[n][k] * (1.0 - share) + there[k] * share;
+        }
+        if (section.periodic && section.window > 0) {
+            const auto lead = std::llround(run[n] * record.sampleRate - 0.5 * static_cast<double>(section.window));
+            const auto N = static_cast<long long>(section.window);
+            const auto begun = static_cast<std::size_t>(((-lead) % N + N) % N);  // sample of the period
+            const auto more = ripple(component, coefficients, motions[n], begun, record.sampleRate, mean, starts[n]);
+            for (std::size_t k = 0; k < m.size(); ++k)
+                starts[n][k] += more[k];
         }
         m = later(section.end - section.begin);
     }

@@ -29,7 +29,8 @@ MemoryStart settledMemory(const Component&, const PeriodicMotion&, std::size_t b
 /// A slow memory, dm/dt = a + B m, with a and B the means of its rate over the motion of a section, follows the history
 /// of the take: the sections follow each other as they were played, and the driver is at rest in between where nothing
 /// is known; the settling periods have a current of their own (Section::settlingPower). Its value at the start of each
-/// section's drive is chosen so that over the window its mean is that over the averaged periods.
+/// section's drive is chosen so that over the window its mean is that over the averaged periods; where a drive begins
+/// within a period, power has come in bursts by then.
 /// @param motions  motions of all sections of the record
 /// @param run      s, from the start of a section's drive to the middle of its window
 std::vector<MemoryStart> historyOf(const Component&, const Record&, const std::vector<PeriodicMotion>& motions,
