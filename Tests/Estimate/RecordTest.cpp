@@ -101,11 +101,22 @@ TEST_CASE("A record knows how much less a loudspeaker takes while it settles", "
     for (std::size_t n = 0; n < current.size(); ++n)
         if (n % block < static_cast<std::size_t>(N * settle))
             current[n] *= 0.9;
-    for (const auto& section : makeRecord(settling).sections)
-        CHECK(section.settlingPower == Approx(0.81).epsilon(1e-6));
+    for (std::size_t p = 0; p < static_cast<std::size_t>(settle + periods); ++p)  // and less with every period
+        for (std::size_t n = 0; n < current.size(); ++n)
+            if (n / static_cast<std::size_t>(N) % static_cast<std::size_t>(settle + periods) == p)
+                current[n] *= 1.0 - 1e-3 * static_cast<double>(p);
+    double mean = 0.0;
+    for (int p = settle; p < settle + periods; ++p)
+        mean += std::pow(1.0 - 1e-3 * p, 2) / periods;
+    for (const auto& section : makeRecord(settling).sections) {
+        REQUIRE(section.power.size() == static_cast<std::size_t>(settle + periods));
+        for (int p = 0; p < settle + periods; ++p)
+            CHECK(section.power[static_cast<std::size_t>(p)]
+                  == Approx((p < settle ? 0.81 : 1.0) * std::pow(1.0 - 1e-3 * p, 2) / mean).epsilon(1e-6));
+    }
     settling.channels[1].quantity = Quantity::displacement;
     settling.channels[1].unit = "m";
-    CHECK(makeRecord(settling).sections.front().settlingPower == 1.0);
+    CHECK(makeRecord(settling).sections.front().power.empty());
 }
 
 TEST_CASE("Samples that no compared line needs are left out", "[record]")

@@ -129,7 +129,7 @@ TEST_CASE("Halving the step divides the error by sixteen", "[simulate]")
     const auto u = burst(sampleRate, 0.25, 6.0, 1300.0);
     std::vector<Trajectory> runs(3);
     for (std::size_t n = 0; n < 3; ++n)
-        REQUIRE(integrate(model, Drive(u, sampleRate, 1 << n), 0, runs[n]));
+        REQUIRE(integrate(model, Drive(u, sampleRate, 1 << n), {}, runs[n]));
     for (const auto channel : {&Trajectory::current, &Trajectory::velocity, &Trajectory::acceleration}) {
         const double first = largest(runs[0].*channel, runs[1].*channel),
                      second = largest(runs[1].*channel, runs[2].*channel);
@@ -147,7 +147,7 @@ TEST_CASE("The simulation is that of the classical Runge-Kutta method at a fine 
     const auto model = bent();
     const auto u = burst(sampleRate, 0.25, 6.0, 1300.0);
     Trajectory run;
-    REQUIRE(integrate(model, Drive(u, sampleRate, 2), 0, run));
+    REQUIRE(integrate(model, Drive(u, sampleRate, 2), {}, run));
 
     const Drive drive(u, sampleRate, 16);
     const Dynamics<double> dynamics(model, values(model));
@@ -180,7 +180,7 @@ TEST_CASE("A coil keeps an inductance where a law leaves it none", "[simulate]")
     model.components.back().parameters.front().value = -3.0 * model.baseParameter("Le").value;
     const auto u = burst(sampleRate, 0.1, 12.0);
     Trajectory run;
-    REQUIRE(integrate(model, Drive(u, sampleRate, 8), 0, run));
+    REQUIRE(integrate(model, Drive(u, sampleRate, 8), {}, run));
     const double x = *std::max_element(run.displacement.begin(), run.displacement.end());
     const double Le = model.baseParameter("Le").value;
     const auto& law = model.components.back();
@@ -198,7 +198,7 @@ TEST_CASE("Energy in is energy lost and energy stored, at any time", "[simulate]
     const auto model = bent();
     const auto u = burst(sampleRate, 0.3, 6.0);
     Trajectory run;
-    REQUIRE(integrate(model, Drive(u, sampleRate, 8), 0, run));
+    REQUIRE(integrate(model, Drive(u, sampleRate, 8), {}, run));
     const double Re = model.baseParameter("Re").value, m = model.baseParameter("m").value;
     const auto law = [&](const char* effect, const char* base, double q) {
         const auto& component = *model.find(effect);

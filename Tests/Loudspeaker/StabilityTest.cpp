@@ -82,8 +82,8 @@ TEST_CASE("Loops in the iron ask for no shorter steps, however fast they are", "
             REQUIRE(stableSubsteps(model, fs) <= steps);
             const auto u = tones(0.5, 8.0, 3);
             Trajectory coarse, fine;
-            REQUIRE(integrate(model, Drive(u, fs, steps), 0, coarse));
-            REQUIRE(integrate(model, Drive(u, fs, 32), 0, fine));
+            REQUIRE(integrate(model, Drive(u, fs, steps), {}, coarse));
+            REQUIRE(integrate(model, Drive(u, fs, 32), {}, fine));
             CHECK(farApart(coarse.current, fine.current) < 1e-4);
             CHECK(farApart(coarse.displacement, fine.displacement) < 1e-4);
         }
@@ -120,8 +120,8 @@ TEST_CASE("What is called stable stays near the fine solution, whatever the laws
         INFO(n << ": q " << q << ", Ks " << Ks << ", " << substeps << " steps");
         const auto u = tones(0.3, 8.0, static_cast<unsigned>(n));
         Trajectory coarse, fine;
-        REQUIRE(integrate(model, Drive(u, fs, substeps), 0, coarse));
-        REQUIRE(integrate(model, Drive(u, fs, 64), 0, fine));
+        REQUIRE(integrate(model, Drive(u, fs, substeps), {}, coarse));
+        REQUIRE(integrate(model, Drive(u, fs, 64), {}, fine));
         CHECK(farApart(coarse.current, fine.current) < 0.02);
         CHECK(farApart(coarse.velocity, fine.velocity) < 0.02);
     }

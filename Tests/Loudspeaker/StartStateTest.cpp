@@ -69,11 +69,11 @@ TEST_CASE("A linear section starts in the state that it would reach after a long
     const auto patient = someRecord(N / 4 + begin + 200 * N);
     Trajectory settled, started;
     const auto longDrive = patient.drive(patient.sections.front());
-    REQUIRE(integrate(model, Drive(longDrive, sampleRate, 4), longDrive.size() - N, settled));
-    REQUIRE(integrate(model, Drive(drive, sampleRate, 4), drive.size() - N, started, start[0].value));
+    REQUIRE(integrate(model, Drive(longDrive, sampleRate, 4), {longDrive.size() - N}, settled));
+    REQUIRE(integrate(model, Drive(drive, sampleRate, 4), {drive.size() - N}, started, start[0].value));
     double difference = 0.0, power = 0.0, fromRest = 0.0;
     Trajectory rested;
-    REQUIRE(integrate(model, Drive(drive, sampleRate, 4), drive.size() - N, rested));
+    REQUIRE(integrate(model, Drive(drive, sampleRate, 4), {drive.size() - N}, rested));
     for (std::size_t n = 0; n < N; ++n) {
         difference += std::pow(started.displacement[n] - settled.displacement[n], 2);
         fromRest += std::pow(rested.displacement[n] - settled.displacement[n], 2);

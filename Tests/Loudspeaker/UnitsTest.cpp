@@ -85,18 +85,18 @@ TEST_CASE("A driver moves alike in any unit, and one that runs away is told", "[
 {
     constexpr double rate = 8000.0;
     Trajectory plain, other;
-    REQUIRE(integrate(bentSpring(1.0, 1.0, 0.4), Drive(push(1.0, rate), rate, 2), 0, plain));
+    REQUIRE(integrate(bentSpring(1.0, 1.0, 0.4), Drive(push(1.0, rate), rate, 2), {}, plain));
     const double peak = *std::max_element(plain.displacement.begin(), plain.displacement.end());
     CHECK(peak > 2e-3);  // far enough to bend the spring
     for (const auto& [force, displacement] : units) {
         INFO(force << " " << displacement);
-        REQUIRE(integrate(bentSpring(force, displacement, 0.4), Drive(push(force, rate), rate, 2), 0, other));
+        REQUIRE(integrate(bentSpring(force, displacement, 0.4), Drive(push(force, rate), rate, 2), {}, other));
         double worst = 0.0;
         for (std::size_t n = 0; n < plain.displacement.size(); ++n)
             worst = std::max(worst, std::abs(other.displacement[n] / displacement - plain.displacement[n]));
         CHECK(worst < 1e-10 * peak);
         // pushes outward
-        CHECK_FALSE(integrate(bentSpring(force, displacement, -3.0), Drive(push(force, rate), rate, 2), 0, other));
+        CHECK_FALSE(integrate(bentSpring(force, displacement, -3.0), Drive(push(force, rate), rate, 2), {}, other));
         const auto linear = smallSignal(bentSpring(force, displacement, 0.4));
         CHECK(-linear.A(2, 1) == Approx(2e5).epsilon(1e-8));  // K/m at rest
     }

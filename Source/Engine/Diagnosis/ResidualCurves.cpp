@@ -143,8 +143,8 @@ std::vector<ResidualCurve> residualCurves(const Model& model, const Record& reco
         }
         Trajectory run;
         const auto drive = record.drive(section, leadIn);
-        if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run,
-                       from[n].value))
+        if (!integrate(model, Drive(drive, record.sampleRate, substeps),
+                       {drive.size() - section.window, 0, section.periodic}, run, from[n].value))
             return {};
         const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
             to.insert(to.end(), from.begin(), from.end());

@@ -213,19 +213,27 @@ void thinOut(Section& section, std::size_t factor)
         variance *= share * share;
 }
 
-/// Section::settlingPower: what heats the coil before the loudspeaker has settled.
-double settlingPower(const Measurement& take, int section)
+/// Section::power: what heats the coil before the loudspeaker has settled, and less once the coil is warm.
+std::vector<double> powerByPeriod(const Measurement& take, int section)
 {
     const auto& e = *take.excitation;
     const auto* current = take.find(Quantity::current);
     if (!current)
-        return 1.0;
-    const auto begin = static_cast<std::size_t>(e.samplesPerRealization()) * static_cast<std::size_t>(section),
-               settle = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(e.settlePeriods),
-               used = static_cast<std::size_t>(e.period) * static_cast<std::size_t>(e.periods);
+        return {};
+    const auto period = static_cast<std::size_t>(e.period),
+               begin = static_cast<std::size_t>(e.samplesPerRealization()) * static_cast<std::size_t>(section);
     const std::span<const double> all(current->samples);
-    const double before = rmsOf(all.subspan(begin, settle)), after = rmsOf(all.subspan(begin + settle, used));
-    return after > 0.0 ? before * before / (after * after) : 1.0;
+    std::vector<double> power;
+    double averaged = 0.0;
+    for (int p = 0; p < e.settlePeriods + e.periods; ++p) {
+        power.push_back(std::pow(rmsOf(all.subspan(begin + static_cast<std::size_t>(p) * period, period)), 2));
+        averaged += p < e.settlePeriods ? 0.0 : power.back() / e.periods;
+    }
+    if (!(averaged > 0.0))
+        return {};
+    for (auto& one : power)
+        one /= averaged;
+    return power;
 }
 
 void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& options, std::size_t factor,
@@ -257,7 +265,7 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
             section.begin = period * played * (level * e.realizations + realization);
             section.end = section.begin + period * played;
             section.middle = section.end - 0.5 * period * e.periods;
-            section.settlingPower = settlingPower(take, level * e.realizations + realization);
+            section.power = powerByPeriod(take, level * e.realizations + realization);
             section.input = averages.inTime(take.input(), level, realization);
             section.window = section.input.size();
             section.excited = e.lines;

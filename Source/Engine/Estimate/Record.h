@@ -21,8 +21,9 @@ struct Section {
     double begin = 0.0, end = 0.0;
     /// s, in the take: of the window, or of the averaged periods
     double middle = 0.0;
-    /// mean square of the current over the settling periods, over that of the averaged ones; 1 where it is not known
-    double settlingPower = 1.0;
+    /// mean square of the current in each period that was played, the settling ones first, over that of the averaged
+    /// period; empty where it is not known
+    std::vector<double> power;
 
     std::vector<std::vector<std::complex<double>>> measured;  ///< [channel][line], unnormalized DFT of the window
     std::vector<std::vector<double>> deviation;               ///< [channel][line], sqrt(E|noise|^2) of `measured`

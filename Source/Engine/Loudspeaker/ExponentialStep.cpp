@@ -58,7 +58,8 @@ ExponentialStep::ExponentialStep(const Model& model, double h)
             component.effect->contribute(component.operatingRange, coefficients.data(), {0.0, 0.0, 0.0}, memory.data(),
                                          unused.data(), atRest);
         } else if (isLaw(component)) {
-            laws_.push_back({&component, std::move(coefficients), static_cast<Eigen::Index>(places.size())});
+            laws_.push_back({&component, std::move(coefficients), static_cast<Eigen::Index>(places.size()),
+                             component.effect->slow() ? size : 0});
         }
         for (Eigen::Index k = 0; k < size; ++k)
             places.push_back(n++);
@@ -158,9 +159,12 @@ void ExponentialStep::state(Eigen::VectorXd& z) const
 void ExponentialStep::ask(double u, double* N)
 {
     Balance<double> sum;
-    for (const auto& law : laws_)
+    for (const auto& law : laws_) {
         law.component->effect->contribute(law.component->operatingRange, law.coefficients.data(), {y_[0], y_[1], y_[2]},
                                           y_.data() + motions + law.memory, N + rates + law.memory, sum);
+        if (slowStands_)
+            std::fill_n(N + rates + law.memory, law.slow, 0.0);
+    }
     // The linear part's drop is u - L A_i z - u, its force m A_v z; the whole drop and force act on the whole
     // inductance and mass.
     const double L = keptInductance(inductance_ + sum.inductance, inductance_);

@@ -41,6 +41,9 @@ public:
     /// Starts at state z; at first it is at rest.
     void begin(const Eigen::VectorXd& z);
 
+    /// While a drive leads in, what is slow (Effect::slow) can stand still.
+    void letSlowStand(bool stands) { slowStands_ = stands; }
+
     /// Advances by h, and returns dv/dt at the step's start, m/s^2.
     /// @param u  coefficients of the input on the step, u(s) = sum u_k s^k, 0 <= s <= 1, V (or N); at most `terms`
     double step(std::span<const double> u);
@@ -78,6 +81,7 @@ private:
         const Component* component;
         std::vector<double> coefficients;
         Eigen::Index memory;  ///< where its memory starts among the laws' memories
+        Eigen::Index slow;    ///< how many states of it are slow
     };
 
     /// Whether it is a law with an effect on the motion.
@@ -103,7 +107,7 @@ private:
 
     const Model model_;
     std::vector<Law> laws_;
-    bool electrical_;
+    bool electrical_, slowStands_ = false;
     double step_;                           ///< s
     double inductance_ = 0.0, mass_ = 0.0;  ///< of the linear part
     double byVoltage_ = 0.0;                ///< 1/inductance_

@@ -126,7 +126,7 @@ OperatingRange visitedRange(const Model& model, const Record& record, int degree
         for (const auto& section : record.sections) {
             Trajectory run;
             const auto drive = record.drive(section);
-            if (!integrate(model, Drive(drive, record.sampleRate, substeps), drive.size() - section.window, run))
+            if (!integrate(model, Drive(drive, record.sampleRate, substeps), {drive.size() - section.window}, run))
                 continue;
             simulatedX = std::max(simulatedX, peakOf(run.displacement));
             simulatedV = std::max(simulatedV, peakOf(run.velocity));

@@ -10,8 +10,8 @@
 namespace excursion {
 namespace {
 
-double rateOf(double value) { return std::abs(value); }
-double rateOf(const Jet& value) { return std::abs(value.a); }
+double sizeOf(double value) { return std::abs(value); }
+double sizeOf(const Jet& value) { return std::abs(value.a); }
 
 /// dm/dt = a + B m
 template <class T>
@@ -28,11 +28,12 @@ struct Affine {
         return result;
     }
 
-    double fastest() const
+    T fastest() const
     {
-        double most = 0.0;
+        T most(0.0);
         for (const auto& value : B)
-            most = std::max(most, rateOf(value));
+            if (sizeOf(value) > sizeOf(most))
+                most = value < 0.0 ? -value : value;
         return most;
     }
 
@@ -41,7 +42,8 @@ struct Affine {
     {
         if (time == 0.0)
             return;
-        const int steps = static_cast<int>(std::clamp(std::ceil(2.0 * fastest() * std::abs(time)), 1.0, 2000.0));
+        const int steps = static_cast<int>(
+            std::clamp(std::ceil(2.0 * sizeOf(fastest()) * std::abs(time)), 1.0, 2000.0));
         RungeKutta<T> method(size);
         for (int n = 0; n < steps; ++n)
             method.step(m, rate(m), time / steps,
@@ -80,30 +82,65 @@ Affine<T> meanRate(const Component& component, const std::vector<T>& coefficient
     return result;
 }
 
-/// What the first samples of a period have brought a memory near `m` beyond as many of the mean: power comes in bursts.
+/// Power comes in bursts: they swing a memory about the one that follows the mean rate.
 template <class T>
-std::vector<T> ripple(const Component& component, const std::vector<T>& coefficients, const PeriodicMotion& motion,
-                      std::size_t samples, double sampleRate, const Affine<T>& mean, const std::vector<T>& m)
+struct Swing {
+    std::vector<T> begin, drive;  ///< where the section and where its drive begins
+};
+
+/// The swing of a memory near `m` that repeats with the motion, each of its states by itself.
+/// @param begun  the sample of the period at which the drive begins
+template <class T>
+Swing<T> swingOf(const Component& component, const std::vector<T>& coefficients, const PeriodicMotion& motion,
+                 std::size_t begun, double sampleRate, const Affine<T>& mean, const std::vector<T>& m)
 {
-    std::vector<T> sum(m.size(), T(0.0)), rate(m.size());
-    for (std::size_t n = 0; n < samples; ++n) {
-        Balance<T> unused;
-        component.effect->contribute(component.operatingRange, coefficients.data(),
-                                     {T(motion.i[n]), T(motion.x[n]), T(motion.v[n])}, m.data(), rate.data(), unused);
-        for (std::size_t k = 0; k < m.size(); ++k)
-            sum[k] += rate[k];
-    }
-    const auto meanThere = mean.rate(m);
-    for (std::size_t k = 0; k < m.size(); ++k)
-        sum[k] = (sum[k] - meanThere[k] * static_cast<double>(samples)) * (1.0 / sampleRate);
-    return sum;
+    using std::exp;
+    const std::size_t size = m.size(), N = motion.i.size();
+    const auto meanRate = mean.rate(m);
+    std::vector<T> rate(size);
+    const auto swing = [&](std::vector<T> r, std::size_t samples) {
+        for (std::size_t n = 0; n < samples; ++n) {
+            Balance<T> unused;
+            component.effect->contribute(component.operatingRange, coefficients.data(),
+                                         {T(motion.i[n]), T(motion.x[n]), T(motion.v[n])}, m.data(), rate.data(),
+                                         unused);
+            for (std::size_t k = 0; k < size; ++k)
+                r[k] += (rate[k] - meanRate[k] + mean.B[k * size + k] * r[k]) * (1.0 / sampleRate);
+        }
+        return r;
+    };
+    Swing<T> result;
+    result.begin = swing(std::vector<T>(size, T(0.0)), N);
+    for (std::size_t k = 0; k < size; ++k)  // what a period brings is what it forgets
+        result.begin[k] = result.begin[k]
+                          / (T(1.0) - exp(mean.B[k * size + k] * (static_cast<double>(N) / sampleRate)));
+    result.drive = swing(result.begin, begun);
+    return result;
 }
 
-PeriodicMotion louder(PeriodicMotion motion, double power)
+template <class T>
+void add(std::vector<T>& sum, const std::vector<T>& more, double times)
 {
-    for (double& i : motion.i)
-        i *= std::sqrt(power);
+    for (std::size_t k = 0; k < sum.size(); ++k)
+        sum[k] += more[k] * times;
+}
+
+/// The motion without its power.
+PeriodicMotion silent(PeriodicMotion motion)
+{
+    std::fill(motion.i.begin(), motion.i.end(), 0.0);
     return motion;
+}
+
+/// The rate at a share of the power: what is slow is moved by that.
+template <class T>
+Affine<T> between(const Affine<T>& idle, const Affine<T>& whole, double power)
+{
+    auto result = whole;
+    for (const auto part : {&Affine<T>::a, &Affine<T>::B})
+        for (std::size_t k = 0; k < (result.*part).size(); ++k)
+            (result.*part)[k] = (idle.*part)[k] + ((whole.*part)[k] - (idle.*part)[k]) * power;
+    return result;
 }
 
 /// By how much the mean of a memory over some time exceeds its value in the middle, which it has at `m`: that bends as
@@ -132,52 +169,58 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
                      [&](std::size_t a, std::size_t b) { return record.sections[a].begin < record.sections[b].begin; });
     std::vector<std::vector<T>> starts(order.size());
     std::vector<T> m(static_cast<std::size_t>(component.effect->memorySize(component.operatingRange)), T(0.0));
+    const auto none = std::vector<T>(m.size(), T(0.0));
     for (const auto n : order) {
         const auto& section = record.sections[n];
         const auto mean = meanRate(component, coefficients, motions[n]);
-        const auto first = section.settlingPower == 1.0
-                               ? mean
-                               : meanRate(component, coefficients, louder(motions[n], section.settlingPower));
-        const double averaged = 2.0 * (section.end - section.middle),
+        const auto idle = section.power.empty() ? mean : meanRate(component, coefficients, silent(motions[n]));
+        const double window = static_cast<double>(section.window) / record.sampleRate,
+                     averaged = 2.0 * (section.end - section.middle),
                      settle = std::max(0.0, section.end - section.begin - averaged);
-        const auto later = [&](double time) {  // from the begin of the section
-            auto there = m;
-            first.advance(there, std::min(time, settle));
-            mean.advance(there, std::max(0.0, time - settle));
-            return there;
-        };
+        Swing<T> swing {none, none};
+        if (section.periodic) {
+            const auto N = static_cast<std::ptrdiff_t>(section.window);
+            const auto lead = static_cast<std::ptrdiff_t>(std::llround((run[n] - 0.5 * window) * record.sampleRate));
+            swing = swingOf(component, coefficients, motions[n], static_cast<std::size_t>(((-lead) % N + N) % N),
+                            record.sampleRate, mean, m);
+        }
+        add(m, swing.begin, -1.0);  // what is left follows the mean rate
+        // A part of the section after the other, each with its power.
+        const auto count = static_cast<std::size_t>(std::max(1.0, std::round(averaged / window)));
+        const auto settles = section.power.size() > count ? section.power.size() - count : 1;
         const double since = section.middle - section.begin - run[n];  // where the drive begins
-        if (since >= 0.0) {
-            starts[n] = later(since);
-        } else {
-            // The lead-in is longer than what was really played before: so much has to come on top of it.
-            starts[n] = m;
-            const auto rate = mean.rate(m);
-            for (std::size_t k = 0; k < m.size(); ++k)
-                starts[n][k] += since * rate[k];
+        // The lead-in may be longer than what was really played before: so much has to come on top of it.
+        starts[n] = m;
+        add(starts[n], mean.rate(m), std::min(since, 0.0));
+        auto sum = none;
+        double time = 0.0;
+        for (std::size_t p = 0; p < settles + count; ++p) {
+            const double length = p < settles ? settle / static_cast<double>(settles)
+                                              : averaged / static_cast<double>(count);
+            const auto rate = p < section.power.size() ? between(idle, mean, section.power[p]) : mean;
+            if (since >= time && since < time + length) {
+                starts[n] = m;
+                rate.advance(starts[n], since - time);
+            }
+            rate.advance(m, 0.5 * length);
+            if (p >= settles) {
+                add(sum, m, 1.0 / static_cast<double>(count));
+                add(sum, bulge(rate, m, length * length), 1.0 / static_cast<double>(count));
+            }
+            rate.advance(m, 0.5 * length);
+            time += length;
         }
-        // From the middle back, as far as errors do not grow too much; farther back, a start is forgotten anyway.
+        // From the mean back, as far as errors do not grow too much; farther back, a start is forgotten anyway.
         constexpr double near = 2.0, far = 3.0;  // time constants
-        const double share = section.periodic ? std::clamp(far - run[n] * mean.fastest(), 0.0, far - near) : 0.0;
-        if (share > 0.0) {
-            auto there = later(section.middle - section.begin);
-            const double window = static_cast<double>(section.window) / record.sampleRate;
-            const auto more = bulge(mean, there, averaged * averaged - window * window);
+        if (const T beyond = mean.fastest() * run[n] - near; section.periodic && beyond < far - near) {
+            const T share = beyond > 0.0 ? T(1.0) - beyond * (1.0 / (far - near)) : T(1.0);
+            add(sum, bulge(mean, sum, window * window), -1.0);
+            mean.advance(sum, -run[n]);
             for (std::size_t k = 0; k < m.size(); ++k)
-                there[k] += more[k];
-            mean.advance(there, -run[n]);
-            for (std::size_t k = 0; k < m.size(); ++k)
-                starts[n][k] = starts[n][k] * (1.0 - share) + there[k] * share;
+                starts[n][k] = starts[n][k] * (T(1.0) - share) + sum[k] * share;
         }
-        if (section.periodic && section.window > 0) {
-            const auto lead = std::llround(run[n] * record.sampleRate - 0.5 * static_cast<double>(section.window));
-            const auto N = static_cast<long long>(section.window);
-            const auto begun = static_cast<std::size_t>(((-lead) % N + N) % N);  // sample of the period
-            const auto more = ripple(component, coefficients, motions[n], begun, record.sampleRate, mean, starts[n]);
-            for (std::size_t k = 0; k < m.size(); ++k)
-                starts[n][k] += more[k];
-        }
-        m = later(section.end - section.begin);
+        add(starts[n], swing.drive, 1.0);
+        add(m, swing.begin, 1.0);
     }
     return starts;
 }

@@ -41,9 +41,10 @@ public:
         drive_.emplace(drive, record.sampleRate, options.substeps);
         if (options.gradient && options.gradientSubsteps != options.substeps)
             gradientDrive_.emplace(drive, record.sampleRate, options.gradientSubsteps);
-        start_ = drive.size() - section.window;
+        window_.begin = drive.size() - section.window;
+        window_.slowStands = section.periodic;
         if (record.channelIndex(Quantity::pressure))
-            ahead_ = aheadOf(model, record.sampleRate);
+            window_.ahead = aheadOf(model, record.sampleRate);
     }
 
     SectionFit run()
@@ -53,7 +54,7 @@ public:
         const auto columns = static_cast<Eigen::Index>(active_.size());
 
         Trajectory trajectory;
-        fit.finite = integrate(model_, *drive_, start_, trajectory, from_.value, ahead_);
+        fit.finite = integrate(model_, *drive_, window_, trajectory, from_.value);
         if (!fit.finite)
             return fit;
         std::vector<Eigen::VectorXd> residual;
@@ -95,8 +96,8 @@ private:
         for (std::size_t block = 0; block < active_.size(); block += together) {
             const std::span parameters(active_.data() + block, std::min(together, active_.size() - block));
             std::vector<Eigen::MatrixXd> slopes;
-            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, start_, traces, from_,
-                               slopes, ahead_))
+            if (!differentiate(model_, parameters, gradientDrive_ ? *gradientDrive_ : *drive_, window_, traces, from_,
+                               slopes))
                 return false;
             for (std::size_t c = 0; c < record_.channels.size(); ++c) {
                 const auto made = sensors.tracesOf(record_.channels[c]);
@@ -125,7 +126,7 @@ private:
     const OutputErrorOptions& options_;
     const StartState& from_;
     std::optional<Drive> drive_, gradientDrive_;
-    std::size_t start_ = 0, ahead_ = 0;
+    Window window_;
 };
 
 }  // namespace

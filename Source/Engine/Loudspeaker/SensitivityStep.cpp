@@ -237,7 +237,8 @@ void SensitivityStep::look(const double* z, const double* memory, double u, Inst
                 row[0] -= (chunk.sum.drop.v[k] + chunk.sum.fluxSlope.v[k] * v + fi * byLaw * chunk.sum.inductance.v[k])
                           / L;
             row[1] += (chunk.sum.force.v[k] - fv * chunk.sum.mass.v[k]) / m;
-            for (std::size_t j = 0; j < chunk.rate.size(); ++j)
+            const bool stands = motion_.slowStands_ && motion_.laws_[chunk.law].slow > 0;
+            for (std::size_t j = 0; j < chunk.rate.size() && !stands; ++j)
                 row[ExponentialStep::rates + motion_.laws_[chunk.law].memory + static_cast<Eigen::Index>(j)] +=
                     chunk.rate[j].v[k];
         }
@@ -272,6 +273,12 @@ void SensitivityStep::begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S)
     S_.topLeftCorner(count_, static_cast<Eigen::Index>(linear.size())) = S(Eigen::all, linear);
     S_.topRightCorner(count_, static_cast<Eigen::Index>(laws.size())) = S(Eigen::all, laws);
     fresh_ = true;
+}
+
+void SensitivityStep::letSlowStand(bool stands)
+{
+    motion_.letSlowStand(stands);
+    fresh_ = true;  // its slopes are others now
 }
 
 void SensitivityStep::slopesByState(Eigen::MatrixXd& out) const

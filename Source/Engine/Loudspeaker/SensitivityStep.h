@@ -23,6 +23,9 @@ public:
     /// Starts at state z with derivatives S (parameters x states).
     void begin(const Eigen::VectorXd& z, const Eigen::MatrixXd& S);
 
+    /// See ExponentialStep.
+    void letSlowStand(bool stands);
+
     /// One step; see ExponentialStep.
     void step(std::span<const double> u);
 

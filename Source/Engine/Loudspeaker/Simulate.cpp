@@ -51,9 +51,9 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
     SimulationSummary summary;
     summary.substeps = stableSubsteps(model, sampleRate);
     Trajectory coarse, fine;
-    bool have = integrate(model, Drive(part, sampleRate, summary.substeps), 0, coarse);
+    bool have = integrate(model, Drive(part, sampleRate, summary.substeps), {}, coarse);
     while (summary.substeps <= options.maximumSubsteps) {
-        const bool refined = integrate(model, Drive(part, sampleRate, 2 * summary.substeps), 0, fine);
+        const bool refined = integrate(model, Drive(part, sampleRate, 2 * summary.substeps), {}, fine);
         if (have && refined) {
             summary.accuracy = std::max(relativeChange(coarse.displacement, fine.displacement),
                                         relativeChange(coarse.acceleration, fine.acceleration));
@@ -83,7 +83,7 @@ Measurement simulate(const Model& model, std::span<const double> input, double s
         *summary = chosen;
     progress.at(0.2, "simulating");
     Trajectory run;
-    if (!integrate(model, Drive(input, sampleRate, chosen.substeps), 0, run))
+    if (!integrate(model, Drive(input, sampleRate, chosen.substeps), {}, run))
         throw Error(Error::Kind::numerical,
                     "The simulated driver ran away: at this level the model is driven far beyond the "
                     "range in which it was measured; lower --full-scale.");

@@ -72,10 +72,9 @@ void startMemories(const Model& model, const Record& record, const std::vector<s
             played(spectra[s][1]), played(spectra[s][2])};
         return true;
     });
-    std::vector<double> run;  // s, from the start of a drive to the middle of the window
+    std::vector<double> run;  // s, to the middle of the window from where what is slow begins to move
     for (const auto& section : record.sections)
-        run.push_back((static_cast<double>(section.periodic ? std::max(record.leadIn, leadIn)
-                                                            : section.input.size() - section.window)
+        run.push_back((static_cast<double>(section.periodic ? 0 : section.input.size() - section.window)
                        + 0.5 * static_cast<double>(section.window))
                       / record.sampleRate);
     Eigen::Index place = 3, parameter = 0;

@@ -21,7 +21,8 @@ struct StartState {
 /// (SmallSignal). The lead-in then only has to settle the nonlinear part. Otherwise, relaxations far slower than any
 /// lead-in, such as those of a creeping suspension, would drift through the window and look like a model error.
 /// Memories of laws start where that motion brings them within a period, slow ones where the preceding part of the take
-/// brings them (LawMemory.h). A section without periods starts at rest (an empty state), except for slow memories.
+/// brings them by the time of the window (LawMemory.h), as they are to stand still until then (Window::slowStands). A
+/// section without periods starts at rest (an empty state), except for slow memories.
 /// @param leadIn  as passed to Record::drive
 std::vector<StartState> startStates(const Model&, const Record&, const std::vector<std::size_t>& sections,
                                     std::size_t leadIn, bool withGradient, unsigned threads);

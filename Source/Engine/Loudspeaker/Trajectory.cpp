@@ -23,24 +23,28 @@ const std::vector<double>& Trajectory::operator[](Trace trace) const
     return *all[static_cast<std::size_t>(trace)];
 }
 
-bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajectory& out, const Eigen::VectorXd& start,
-               std::size_t ahead)
+bool integrate(const Model& model, const Drive& drive, const Window& window, Trajectory& out,
+               const Eigen::VectorXd& start)
 {
+    const auto first = window.begin;
     ExponentialStep motion(model, drive.step());
     Radiator radiator(model);
     const Plausible plausible(model);
     if (start.size() > 0)
         motion.begin(start);
+    motion.letSlowStand(window.slowStands && first > 0);
     Eigen::VectorXd before;
     for (auto* trace :
          {&out.current, &out.displacement, &out.velocity, &out.acceleration, &out.flow, &out.lateness, &out.spot}) {
         trace->clear();
         trace->reserve(drive.length() - first);
     }
-    out.ahead = std::min(ahead, first);
+    out.ahead = std::min(window.ahead, first);
     const std::size_t left = first - out.ahead, allLeft = drive.length() - out.ahead;
     std::size_t half = 0;
     for (std::size_t n = 0; n < drive.length(); ++n) {
+        if (window.slowStands && n == first)
+            motion.letSlowStand(false);
         const bool kept = n >= first;
         if (kept) {
             out.current.push_back(motion.current());
@@ -70,10 +74,10 @@ bool integrate(const Model& model, const Drive& drive, std::size_t first, Trajec
     return true;
 }
 
-bool differentiate(const Model& model, std::span<const Eigen::Index> active, const Drive& drive, std::size_t first,
-                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out,
-                   std::size_t ahead)
+bool differentiate(const Model& model, std::span<const Eigen::Index> active, const Drive& drive, const Window& window,
+                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out)
 {
+    const auto first = window.begin;
     const auto count = static_cast<Eigen::Index>(active.size());
     SensitivityStep motion(model, drive.step(), active);
     const bool radiates = std::any_of(observed.begin(), observed.end(),
@@ -86,12 +90,15 @@ bool differentiate(const Model& model, std::span<const Eigen::Index> active, con
             slopes.row(static_cast<Eigen::Index>(k)) = start.gradient.col(active[k]).transpose();
         motion.begin(start.value, slopes);
     }
+    motion.letSlowStand(window.slowStands && first > 0);
     out.assign(observed.size(), Eigen::MatrixXd(count, static_cast<Eigen::Index>(drive.length() - first)));
     Eigen::MatrixXd before, emitted(count, 3);
     Eigen::VectorXd from;
-    const std::size_t left = first - std::min(ahead, first), allLeft = drive.length() - std::min(ahead, first);
+    const std::size_t ahead = std::min(window.ahead, first), left = first - ahead, allLeft = drive.length() - ahead;
     std::size_t half = 0;
     for (std::size_t n = 0; n < drive.length(); ++n) {
+        if (window.slowStands && n == first)
+            motion.letSlowStand(false);
         const auto column = static_cast<Eigen::Index>(n - first), leaves = static_cast<Eigen::Index>(n - left);
         const bool kept = n >= first, radiated = radiates && n >= left && n < allLeft;
         if (kept)

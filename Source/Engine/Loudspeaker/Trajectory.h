@@ -27,22 +27,25 @@ struct Trajectory {
     const std::vector<double>& operator[](Trace) const;
 };
 
+/// What is kept of a run, and how it is led in.
+struct Window {
+    std::size_t begin = 0;    ///< the drive's sample from which on the trajectory is kept
+    std::size_t ahead = 0;    ///< Trajectory::ahead; no more than `begin` is taken
+    bool slowStands = false;  ///< what is slow stands still until then (ExponentialStep::letSlowStand)
+};
+
 /// Integrates the model from rest, or from another state (ExponentialStep).
-/// @param first  the trajectory is kept from this sample on
 /// @param start  state z of Dynamics at the drive's first sample; empty: rest
-/// @param ahead  Trajectory::ahead, at most `first`
 /// @returns false if the state is no longer finite or in a plausible range; the trajectory is then invalid
-bool integrate(const Model&, const Drive&, std::size_t first, Trajectory& out, const Eigen::VectorXd& start = {},
-               std::size_t ahead = 0);
+bool integrate(const Model&, const Drive&, const Window&, Trajectory& out, const Eigen::VectorXd& start = {});
 
 /// Derivatives of the trajectory by parameters of the model (SensitivityStep).
 /// @param active    the parameters, in the order of parametersOf()
 /// @param observed  the traces to differentiate
 /// @param start     state at the drive's first sample and its derivatives by all parameters; empty: rest
 /// @param out       one matrix per observed trace, parameters x samples
-bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, std::size_t first,
-                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out,
-                   std::size_t ahead = 0);
+bool differentiate(const Model&, std::span<const Eigen::Index> active, const Drive&, const Window&,
+                   const std::vector<Trace>& observed, const StartState& start, std::vector<Eigen::MatrixXd>& out);
 
 /// The smallest number of steps per sample, at most 64, for which both of the above are stable
 /// (ExponentialStep::isStable).
