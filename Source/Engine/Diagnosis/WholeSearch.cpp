@@ -26,6 +26,15 @@ std::set<std::string> implausible(const Model& model)
     return found;
 }
 
+/// Resonances that the cone feels can be whatever a box or a suspension in a wrong shape lacks, however much they are
+/// missed then.
+bool mayStandIn(const Model& model, const std::string& effect)
+{
+    const auto& component = *model.find(effect);
+    return component.effect->linear() && component.effect->felt()
+           && !component.effect->parts(component.operatingRange).empty();
+}
+
 }  // namespace
 
 WholeSearch::WholeSearch(const Model& base, const Record& record, const FitOptions& options)
@@ -156,14 +165,15 @@ Removal WholeSearch::without(const Model& model, const Asked& now, const std::st
     auto then = left(seen, false);
     // What is found at the noise is believed later on, so there a glance is not enough.
     const bool thoroughly = thorough || test_.played || now.chosen.isNoise();
-    const bool told = !(lost(then, now.fed) < (thoroughly ? sorelyMissed : barelyMissed));
+    const bool suspect = thorough && mayStandIn(model, effect);
+    const bool told = !suspect && !(lost(then, now.fed) < (thoroughly ? sorelyMissed : barelyMissed));
     if (told || left(seen).cost < left(leaner).cost)
         leaner = std::move(seen);
     if (!told) {
         if (!fit(leaner, brief).usable())
             return removal;
         then = left(leaner);
-        if (effectNamed(effect).linear() && lost(then, now.chosen) < barelyMissed) {
+        if (suspect || (effectNamed(effect).linear() && lost(then, now.chosen) < barelyMissed)) {
             if (!still)
                 still.emplace(withoutLaws(model, record_, options_.threads));
             if (reshape(leaner, then, now.chosen, *still))
@@ -194,7 +204,8 @@ WholeSearch::Removals WholeSearch::tryWithout(const Model& model, bool thorough,
         const auto known = before.find(effect);
         const bool plausible = !strange.contains(effect);
         auto& one = tried[effect];
-        one = vote.standsAlone() && plausible ? Removal {vote, {}}
+        one = thorough && mayStandIn(model, effect) ? without(model, now, effect, vote, thorough, still)
+              : vote.standsAlone() && plausible     ? Removal {vote, {}}
               : known != before.end() && known->second.vote.uniqueDb > barelyMissed
                   ? Removal {known->second.vote, {}}
                   : without(model, now, effect, vote, thorough, still);
