@@ -28,11 +28,11 @@ MemoryStart settledMemory(const Component&, const PeriodicMotion&, std::size_t b
 
 /// A slow memory, dm/dt = a + B m, with a and B the means of its rate over the motion of a section, follows the history
 /// of the take: the sections follow each other as they were played, and the driver is at rest in between where nothing
-/// is known; the settling periods have a current of their own (Section::settlingPower). Its value at the start of each
-/// section's drive is chosen so that over the window its mean is that over the averaged periods; where a drive begins
-/// within a period, power has come in bursts by then.
+/// is known; each period has the power that was measured (Section::power). Its value where it begins to move in each
+/// section is chosen so that over the window its mean is that over the averaged periods. About the mean rate it swings
+/// with the bursts of power within a period, which begin where that place lies in the period.
 /// @param motions  motions of all sections of the record
-/// @param run      s, from the start of a section's drive to the middle of its window
+/// @param run      s, from where the memory begins to move to the middle of the section's window
 std::vector<MemoryStart> historyOf(const Component&, const Record&, const std::vector<PeriodicMotion>& motions,
                                    const std::vector<double>& run, bool withGradient);
 
