@@ -46,13 +46,14 @@ Added addTo(const Model& model, const Effect& effect, const Spectra& spectra)
 Added addTo(const Model& model, const Effect& effect, Record record, const Progress& progress)
 {
     Added result;
+    result.before = compare(model, record, {0, false}, progress.part(0.0, 0.05));
     result.model = model;
-    const auto quickly = tryEffect(result.model, record, effect, {}, progress.part(0.0, 0.45));
-    if (followsDrift(result.model, record))
-        useSilentNoise(record);
-    result.before = compare(model, record, {0, false}, progress.part(0.45, 0.5));
+    const auto quickly = tryEffect(result.model, record, effect, {}, progress.part(0.05, 0.5));
     const auto quick = result.model;
-    result.fit = refine(result.model, record, {}, progress.part(0.5, 0.95));
+    const bool other = hasSilentNoise(record);
+    result.fit = refineByNoise(result.model, record, {}, progress.part(0.5, 0.95));
+    if (other && !hasSilentNoise(record))
+        result.before = compare(model, record, {0, false});
     const auto tried = quickly.usable() ? tryCompare(quick, record, {0, false}) : std::nullopt,
                refined = result.fit.usable() ? tryCompare(result.model, record, {0, false}) : std::nullopt;
     if (!tried && !refined)

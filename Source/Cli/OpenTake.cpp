@@ -2,6 +2,7 @@
 #include "Cli/OpenTake.h"
 
 #include "Cli/Terminal.h"
+#include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/DiagnosisFile.h"
 #include "Engine/Error.h"
 #include "Engine/Import/ReadTake.h"
@@ -25,6 +26,8 @@ Record recordFor(const Model& model, const OpenTake& open)
 {
     auto record = open.take.record();
     adapt(record, model);
+    if (followsDrift(model, record))
+        useSilentNoise(record);
     return record;
 }
 

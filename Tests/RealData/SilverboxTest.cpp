@@ -25,7 +25,7 @@ constexpr std::size_t initialWindow = 50;
 std::vector<double> run(const Model& model, std::span<const double> input, double rate)
 {
     Trajectory trajectory;
-    REQUIRE(integrate(model, Drive(input, rate, 8), 0, trajectory));
+    REQUIRE(integrate(model, Drive(input, rate, 8), {}, trajectory));
     return trajectory.displacement;
 }
 

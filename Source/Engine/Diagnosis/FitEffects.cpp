@@ -44,11 +44,8 @@ Model fitEffects(Record& record, const std::vector<std::string>& effects, const 
         tryEffect(model, record, effectNamed(id), options, progress.part(done, done + step));
         done += step;
     }
-    const bool drift = followsDrift(model, record);
-    if (drift)
-        useSilentNoise(record);
-    if (!effects.empty() || drift)
-        last = refine(model, record, options, progress.part(0.8, 1.0));
+    if (!effects.empty() || followsDrift(model, record))
+        last = refineByNoise(model, record, options, progress.part(0.8, 1.0));
     if (!last.usable())
         throw Error(Error::Kind::numerical, "The fit failed: " + last.message + ".");
     if (summary)

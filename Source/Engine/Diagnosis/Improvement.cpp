@@ -51,17 +51,9 @@ void putInOrder(Model& model, const std::vector<std::string>& effects)
     model.covariance.resize(0, 0);
 }
 
-/// Fits everything; against the noise of the silent lines once the model follows what the periods drift.
 FitSummary settle(Model& model, Record& record, const FitOptions& options, const Progress& progress)
 {
-    if (warms(model))
-        useSilentNoise(record);
-    auto summary = refine(model, record, options, progress.part(0.0, 0.6));
-    if (summary.usable() && followsDrift(model, record)) {
-        useSilentNoise(record);
-        summary = refine(model, record, options, progress.part(0.6, 1.0));
-    }
-    return summary;
+    return refineByNoise(model, record, options, progress);
 }
 
 FitSummary settle(Model& model, const Spectra& spectra, const FitOptions&, const Progress&)
@@ -202,15 +194,18 @@ void Improvement::add(const std::string& id, const Progress& progress)
     keep(std::move(rung));
 }
 
-/// Compares all rungs with other data; one that runs away there stays as it was.
+/// Compares and diagnoses all rungs anew where the noise is another; one that runs away there stays as it was.
 void Improvement::use(Data data)
 {
     auto rungs = ladder_.rungs;  // should the work fail, nothing has happened
     if (const auto* now = std::get_if<Record>(&data), *before = std::get_if<Record>(&data_);
         now && before && hasSilentNoise(*now) != hasSilentNoise(*before))
         for (auto& rung : rungs)
-            if (auto comparison = tryCompare(rung.model, *now))
+            if (auto comparison = tryCompare(rung.model, *now)) {
                 rung.comparison = std::move(*comparison);
+                rung.diagnosis = diagnose(rung.model, *now, rung.comparison, options_.diagnose);
+                rung.diagnosis.problems = take_.report().problems;
+            }
     ladder_.rungs = std::move(rungs);
     data_ = std::move(data);
 }

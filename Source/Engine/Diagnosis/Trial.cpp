@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/Trial.h"
 
+#include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/RaiseDegrees.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/OutputError.h"
@@ -370,6 +371,22 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
             return summary;
     }
     return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));
+}
+
+FitSummary refineByNoise(Model& model, Record& record, const FitOptions& options, const Progress& progress)
+{
+    if (warms(model))
+        useSilentNoise(record);
+    const auto summary = refine(model, record, options, progress.part(0.0, 0.6));
+    if (!summary.usable() || !followsDrift(model, record))
+        return summary;
+    useSilentNoise(record);
+    auto again = model;
+    auto next = refine(again, record, options, progress.part(0.6, 1.0));
+    if (!next.usable())
+        return summary;
+    model = std::move(again);
+    return next;
 }
 
 }  // namespace excursion

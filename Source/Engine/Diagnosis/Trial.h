@@ -24,6 +24,10 @@ FitSummary quickFit(Model&, const Record&, const std::vector<std::size_t>& secti
 /// A quick fit. If its result runs away in simulation, a fit by simulation replaces it.
 FitSummary fitFed(Model&, const Record&, const std::vector<std::size_t>& sections, FitOptions, const Progress& = {});
 
+/// refine(), against the noise of the silent lines once the model follows what the periods drift (followsDrift()): such
+/// a model is fitted again, or stays if that fails. The record may have another noise then.
+FitSummary refineByNoise(Model&, Record&, const FitOptions&, const Progress& = {});
+
 /// Makes trials on these sections use the residual of a simulation if it is smaller than that of fed laws. This is so
 /// near the noise, when the noise of the motion fed to the laws exceeds the model's error. FitOptions::substeps
 /// applies; 0 becomes the number that the model needs.

@@ -304,10 +304,11 @@ Whole fitWhole(const Model& base, const Record& record, const FitOptions& option
     WholeSearch closer(base, silent, options);
     found.tried.clear();
     auto closely = found.whole.model;
-    if (const auto run = refine(closely, silent, options, progress.part(0.7, 0.8)); run.usable()) {
-        found.whole.model = std::move(closely);
-        found.whole.fit = run;
-    }
+    const auto run = refine(closely, silent, options, progress.part(0.7, 0.8));
+    if (!run.usable())
+        return found.whole;
+    found.whole.model = std::move(closely);
+    found.whole.fit = run;
     auto whole = completed(std::move(found), silent, closer, options, progress.part(0.8, 1.0));
     whole.silentNoise = true;
     return whole;

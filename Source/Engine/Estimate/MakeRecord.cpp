@@ -275,8 +275,9 @@ void addPeriodicSections(const AveragedPeriods& averages, const RecordOptions& o
             for (std::size_t c = 0; c < record.channels.size(); ++c) {
                 section.measured.push_back(fft(averages.inTime(*take.find(record.channels[c]), level, realization)));
                 section.deviation.push_back(deviations(section.measured.back(), variance[c], options.relativeFloor));
-                section.silentDeviation.push_back(
-                    deviations(section.measured.back(), steady[c], options.relativeFloor));
+                if (steady != variance)
+                    section.silentDeviation.push_back(
+                        deviations(section.measured.back(), steady[c], options.relativeFloor));
             }
             if (factor > 1)
                 thinOut(section, factor);

@@ -81,7 +81,7 @@ private:
         const Component* component;
         std::vector<double> coefficients;
         Eigen::Index memory;  ///< where its memory starts among the laws' memories
-        Eigen::Index slow;    ///< how many states of it are slow
+        Eigen::Index slow;    ///< its size if it is slow (Effect::slow), else none
     };
 
     /// Whether it is a law with an effect on the motion.

@@ -32,6 +32,7 @@ std::vector<MemoryStart> startsOf(const Component& law, const Record& record, co
     std::vector<MemoryStart> starts(sections.size());
     // Sections that are not asked for have heated the coil all the same: as much as those of the same level, or of the
     // nearest.
+    const auto current = record.channelIndex(Quantity::current);
     std::vector<PeriodicMotion> all;
     std::vector<double> run;
     for (const auto& section : record.sections) {
@@ -43,6 +44,8 @@ std::vector<MemoryStart> startsOf(const Component& law, const Record& record, co
             return distance(a) < distance(b);
         });
         all.push_back(everySample(motions[static_cast<std::size_t>(nearest - sections.begin())]));
+        if (current && std::find(sections.begin(), sections.end(), all.size() - 1) == sections.end())
+            all.back().i = inverseFft(section.measured[*current], section.window);
         run.push_back(0.75 * static_cast<double>(section.window) / record.sampleRate);
     }
     const auto histories = historyOf(law, record, all, run, withGradient);

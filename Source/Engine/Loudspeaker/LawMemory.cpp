@@ -111,9 +111,12 @@ Swing<T> swingOf(const Component& component, const std::vector<T>& coefficients,
     };
     Swing<T> result;
     result.begin = swing(std::vector<T>(size, T(0.0)), N);
-    for (std::size_t k = 0; k < size; ++k)  // what a period brings is what it forgets
-        result.begin[k] = result.begin[k]
-                          / (T(1.0) - exp(mean.B[k * size + k] * (static_cast<double>(N) / sampleRate)));
+    for (std::size_t k = 0; k < size; ++k) {  // what a period brings is what it forgets
+        const T forgets = T(1.0) - exp(mean.B[k * size + k] * (static_cast<double>(N) / sampleRate));
+        if (!(forgets > 0.0))  // nothing: it runs away, and no swing repeats
+            return {std::vector<T>(size, T(0.0)), std::vector<T>(size, T(0.0))};
+        result.begin[k] = result.begin[k] / forgets;
+    }
     result.drive = swing(result.begin, begun);
     return result;
 }
@@ -178,7 +181,7 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
                      averaged = 2.0 * (section.end - section.middle),
                      settle = std::max(0.0, section.end - section.begin - averaged);
         Swing<T> swing {none, none};
-        if (section.periodic) {
+        if (section.periodic && section.window > 0) {
             const auto N = static_cast<std::ptrdiff_t>(section.window);
             const auto lead = static_cast<std::ptrdiff_t>(std::llround((run[n] - 0.5 * window) * record.sampleRate));
             swing = swingOf(component, coefficients, motions[n], static_cast<std::size_t>(((-lead) % N + N) % N),
@@ -186,7 +189,7 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
         }
         add(m, swing.begin, -1.0);  // what is left follows the mean rate
         // A part of the section after the other, each with its power.
-        const auto count = static_cast<std::size_t>(std::max(1.0, std::round(averaged / window)));
+        const auto count = window > 0.0 ? static_cast<std::size_t>(std::max(1.0, std::round(averaged / window))) : 1;
         const auto settles = section.power.size() > count ? section.power.size() - count : 1;
         const double since = section.middle - section.begin - run[n];  // where the drive begins
         // The lead-in may be longer than what was really played before: so much has to come on top of it.
