@@ -188,6 +188,11 @@ TEST_CASE("a limit in metres wants a motion that is known", "[cli][predistort]")
     CHECK(displacement(metres) < 0.6e-3);
     CHECK(displacement(metres) == displacement(millimetres));
     CHECK(with({"--mass", "0.0035875", "--limit-x", "5V"}).code == 2);
+    // What a target asks for is told in millimetres only where these are known.
+    const auto aimed = with({"--target-f0", "40", "--target-q", "0.7"}),
+               scaled = with({"--target-f0", "40", "--target-q", "0.7", "--mass", "0.0035875"});
+    CHECK_THAT(aimed.out, Catch::Contains("not told") && !Catch::Contains(" mm  "));
+    CHECK_THAT(scaled.out, Catch::Contains(" mm") && !Catch::Contains("not told"));
 }
 
 TEST_CASE("predistort plays a target, and tells what it costs first", "[cli][predistort]")

@@ -245,6 +245,17 @@ TEST_CASE("Four effects at once are all named", "[improve][slow]")
             UNSCOPED_INFO(rung.added << " " << name(channel.quantity) << " " << channel.total.db << " dB");
     for (const auto& channel : ladder.rungs.back().comparison.channels)
         CHECK(channel.total.db < -55.0);
+    // Laws are held while the lower rungs are made, but not known better there.
+    const auto known = laws(ladder.model());
+    for (const auto& rung : ladder.rungs)
+        for (const auto& law : laws(rung.model)) {
+            const auto same = std::find_if(known.begin(), known.end(),
+                                           [&](const LawCurve& l) { return l.effectId == law.effectId; });
+            REQUIRE(same != known.end());
+            INFO(law.effectId << " beside " << rung.model.effectIds().size() - 1);
+            const auto n = law.argument.size() / 4;
+            CHECK(law.halfWidth[n] > 0.5 * same->halfWidth[n]);
+        }
 }
 
 TEST_CASE("A faulty take is not improved", "[improve]")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/FitEffects.h"
 
+#include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"

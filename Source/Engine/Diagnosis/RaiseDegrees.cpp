@@ -4,6 +4,8 @@
 #include "Engine/Loudspeaker/Curve.h"
 #include "Engine/Numerics/LeastSquares.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 
 namespace excursion {
@@ -62,6 +64,37 @@ std::vector<std::string> raiseDegrees(Model& model, const Record& record, const 
     }
     model = std::move(result);
     return raised;
+}
+
+std::vector<std::size_t> tooHigh(const Model& model, int by)
+{
+    std::vector<std::size_t> result;
+    if (model.covariance.size() == 0)
+        return result;
+    Eigen::Index place = 0;
+    for (std::size_t k = 0; k < model.components.size(); ++k) {
+        const auto& component = model.components[k];
+        const auto first = place;
+        place += static_cast<Eigen::Index>(component.parameters.size());
+        const int degree = component.operatingRange.degree;
+        if (k == 0 || !component.effect->law() || degree - by < OperatingRange {}.degree)
+            continue;
+        const auto lower = withDegree(model, k, degree - by).components[k].parameters;
+        std::vector<Eigen::Index> highest;
+        for (std::size_t j = 0; j < component.parameters.size(); ++j)
+            if (component.parameters[j].free && std::none_of(lower.begin(), lower.end(), [&](const Parameter& p) {
+                    return p.name == component.parameters[j].name;
+                }))
+                highest.push_back(first + static_cast<Eigen::Index>(j));
+        if (highest.empty())
+            continue;
+        const Eigen::VectorXd theta = parameterVector(model)(highest);
+        const Eigen::MatrixXd C = model.covariance(highest, highest);
+        const double worth = theta.dot(C.ldlt().solve(theta));
+        if (worth <= priceOfCoefficient * static_cast<double>(highest.size()))
+            result.push_back(k);
+    }
+    return result;
 }
 
 }  // namespace excursion

@@ -19,4 +19,11 @@ inline constexpr double priceOfCoefficient = 2.4;
 /// @param share  of the cost by which each must also lower it
 std::vector<std::string> raiseDegrees(Model&, const Record&, const ScoreOptions&, double share = 0.0, int by = 4);
 
+/// The laws whose highest coefficients, as many as a raise brings, are worth less than their price at the model's last
+/// fit,
+///     theta^T C^-1 theta <= price * count   with their block C of the model's covariance,
+/// as those of a law can be that was raised while another effect was missing. Numbers of components; none of a law of
+/// the first degree, and none where the covariance is not known.
+std::vector<std::size_t> tooHigh(const Model&, int by = 4);
+
 }  // namespace excursion

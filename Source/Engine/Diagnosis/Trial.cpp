@@ -57,6 +57,23 @@ bool paysForItself(const Model& higher, const Model& model, const Record& record
     return now->cost - then->cost > priceOfCoefficient * unit * more;
 }
 
+/// Takes back what laws were raised by, where that no longer pays. The last fit, if there was one.
+std::optional<FitSummary> lowerAsItPays(Model& model, const Record& record, const std::vector<std::size_t>& sections,
+                                        const FitOptions& options, const Progress& progress)
+{
+    std::optional<FitSummary> last;
+    for (const auto k : tooHigh(model)) {
+        constexpr int by = 4;
+        auto lower = withDegree(model, k, model.components[k].operatingRange.degree - by);
+        const auto next = fitFed(lower, record, sections, options, progress);
+        if (!next.usable() || paysForItself(model, lower, record, sections, options))
+            continue;
+        model = std::move(lower);
+        last = next;
+    }
+    return last;
+}
+
 /// The strengths of the newest component times a factor.
 Model newestScaled(Model model, double factor)
 {
@@ -370,7 +387,13 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.chiSquaredPerValue > nearNoise && !quick.fedGradient)
             return summary;
     }
-    return fitBySimulation(model, record, chosen, false, progress.part(0.75, 1.0));
+    summary = fitBySimulation(model, record, chosen, false, progress.part(0.75, 0.95));
+    if (!tooHigh(model).empty()) {
+        chooseResiduals(quick, score, model, record, sections);
+        if (lowerAsItPays(model, record, sections, quick, progress.part(0.95, 0.97)))
+            summary = fitBySimulation(model, record, chosen, false, progress.part(0.97, 1.0));
+    }
+    return summary;
 }
 
 FitSummary refineByNoise(Model& model, Record& record, const FitOptions& options, const Progress& progress)
