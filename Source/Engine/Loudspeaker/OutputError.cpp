@@ -28,7 +28,7 @@ class SectionRun {
 public:
     SectionRun(const Model& model, const Record& record, const Section& section,
                const std::vector<Eigen::Index>& active, const OutputErrorOptions& options, std::size_t leadIn,
-               const StartState& from)
+               std::size_t ahead, const StartState& from)
         : model_(model),
           record_(record),
           section_(section),
@@ -43,8 +43,7 @@ public:
             gradientDrive_.emplace(drive, record.sampleRate, options.gradientSubsteps);
         window_.begin = drive.size() - section.window;
         window_.slowStands = section.periodic;
-        if (record.channelIndex(Quantity::pressure))
-            window_.ahead = aheadOf(model, record.sampleRate);
+        window_.ahead = ahead;
     }
 
     SectionFit run()
@@ -164,9 +163,11 @@ std::vector<SectionFit> outputError(const Model& model, const Record& record, co
     options.gradientSubsteps = std::min(options.substeps, std::max(wanted.gradientSubsteps, stable));
     const auto from = startStates(model, record, sections, leadIn, options.gradient && !active.empty(),
                                   options.threads);
+    const auto ahead = record.channelIndex(Quantity::pressure) ? aheadOf(model, record.sampleRate) : 0;
     std::vector<SectionFit> fits(sections.size());
     inParallel(sections.size(), options.threads, progress, [&](std::size_t n) {
-        fits[n] = SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, from[n]).run();
+        fits[n] =
+            SectionRun(model, record, record.sections[sections[n]], active, options, leadIn, ahead, from[n]).run();
         return fits[n].finite;
     });
     return fits;
