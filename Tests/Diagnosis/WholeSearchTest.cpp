@@ -23,3 +23,30 @@ TEST_CASE("What a fuller model missed clearly is not tried again", "[diagnosis]"
     CHECK(tried.vote.uniqueDb != 2.0);
     CHECK(tried.vote.uniqueDb > hardlyNeeded);
 }
+
+TEST_CASE("Linear effects that only make sense together are found together", "[diagnosis]")
+{
+    // Half of the suspension yields, so fast that beside a coil without its loops all damping would be creep's; and the
+    // loops alone bring nothing while the suspension is bent for what creeps.
+    bench::Loudspeaker truth;
+    bench::Creep creep;
+    creep.family = bench::Creep::Family::standard;
+    creep.amount = 0.56;
+    creep.low = 109.0;
+    truth.creep = creep;
+    truth.eddyCurrents = bench::EddyCurrents {2.4e-3, 0.6, {}, true};
+    truth.inductancePosition = bench::Curve {bench::Curve::Shape::arctanStep, 0.0, 1.7e-3, 0.4, 0.0};
+    truth.stiffness = bench::Curve {bench::Curve::Shape::coshSpring, 0.0, 3e-3, 0.0, 0.0};
+    auto setup = smallSetup();
+    setup.excitation.levels = {0.5, 2.0};
+    const auto record = makeRecord(bench::measure(truth, setup));
+    auto base = startModel(record);
+    auto adapted = record;
+    adapt(adapted, base);
+    REQUIRE(fit(base, adapted, estimationSections(adapted)).usable());
+    WholeSearch search(base, adapted, {});
+    search.chooseResiduals(base);
+    const auto found = search.withLinear({&effectNamed("creep"), &effectNamed("eddy-currents")}, base);
+    CHECK(found.has("creep"));
+    CHECK(found.has("eddy-currents"));
+}

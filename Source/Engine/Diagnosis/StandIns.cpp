@@ -6,6 +6,7 @@
 #include "Engine/Loudspeaker/Seen.h"
 #include "Engine/Numerics/Parallel.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -19,12 +20,18 @@ constexpr double clean = 1.05;    // mean squared residual that leaves another e
 constexpr double dearer = 1.0;    // dB that more parameters must bring
 constexpr double hopeless = 4.0;  // times what is left with the effect that may stand in: no fit would make that good
 
-/// Whether a search for the newest effect on responses comes to what can be this effect.
+/// A search for the newest effect on responses. Whether it came to something.
 bool findNewest(Model& model, const LinearResponses& still)
 {
-    return fitNewestByResponse(model, still.gridFor(model.components.back())).usable()
-           && isPlausible(model, model.components.size() - 1);
+    return fitNewestByResponse(model, still.gridFor(model.components.back())).usable();
 }
+
+std::size_t leastOf(const std::vector<double>& values)
+{
+    return static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
+}
+
+bool newestIsPlausible(const Model& model) { return isPlausible(model, model.components.size() - 1); }
 
 }  // namespace
 
@@ -34,6 +41,7 @@ Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model m
     const LinearResponses still(withoutLaws(model, record_, options_.threads));
     double now = left(model).chiSquaredPerValue;
     auto missing = effects;
+    std::optional<Model> sure;  // as it was before an effect came in on trust
     while (!missing.empty()) {
         std::vector<Model> with;
         for (const auto* effect : missing)
@@ -43,21 +51,29 @@ Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model m
             found[n] = findNewest(with[n], still);
             return true;
         });
-        std::vector<double> leaves;
-        for (std::size_t n = 0; n < with.size(); ++n)
+        std::vector<double> leaves, surely;  // the latter of those that are plausible as they are
+        for (std::size_t n = 0; n < with.size(); ++n) {
             leaves.push_back(found[n] ? left(with[n]).chiSquaredPerValue : std::numeric_limits<double>::infinity());
-        const auto best = static_cast<std::size_t>(std::min_element(leaves.begin(), leaves.end()) - leaves.begin());
-        if (!(leaves[best] < worthIt * now))
-            break;
+            surely.push_back(newestIsPlausible(with[n]) ? leaves[n] : std::numeric_limits<double>::infinity());
+        }
+        auto best = leastOf(surely);
+        if (!(surely[best] < worthIt * now)) {
+            // One that is bent by what another effect would explain comes right beside that one.
+            best = leastOf(leaves);
+            if (!(leaves[best] < worthIt * now))
+                break;
+            if (!sure)
+                sure = model;
+        }
         std::vector<const Effect*> others;  // that may still bring something
         for (std::size_t n = 0; n < with.size(); ++n)
-            if (n != best && leaves[n] < now)
+            if (n != best && (sure || leaves[n] < now))
                 others.push_back(missing[n]);
         model = std::move(with[best]);
         now = leaves[best];
         missing = std::move(others);
     }
-    return model;
+    return sure && !strangeIn(model).empty() ? *sure : model;
 }
 
 bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
@@ -78,7 +94,8 @@ bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)
     // dB that the model leaves more than the other, less what that has to bring
     const auto gainOf = [&](Model& other) {
         constexpr double none = 0.0;
-        if (!findNewest(other, still) || left(other).chiSquaredPerValue > hopeless * now.chiSquaredPerValue
+        if (!findNewest(other, still) || !newestIsPlausible(other)
+            || left(other).chiSquaredPerValue > hopeless * now.chiSquaredPerValue
             || !fit(other, onTrial, stoppable).usable() || !strangeIn(other).empty())
             return none;
         const auto then = left(other);

@@ -16,16 +16,18 @@ namespace {
 /// the same M, which goes with the root of the coil's inductance, M(x)/M(0) = k(x), k^2 = 1 + d c(x). So where the
 /// loops at rest are a low-pass G(s) of the current, they are k(x) G[k(x) i] in motion, of which G i belongs to the
 /// linear eddy currents. The rest is this effect's,
-///     flux    g_0 sum_n g_n (k h_n - j_n),   dh_n/dt = p_n (k i - h_n),   dj_n/dt = p_n (i - j_n),   g_n >= 0,
-///     force   g_0 k' i sum_n g_n h_n,
-/// with g_0 the base inductance when the effect was sized. A loop stores g_0 g_n h_n^2/2 and loses g_0 g_n
-/// (dh_n/dt)^2/p_n: terminals and cone get what is left, so nothing is made of nothing. Models that scale the loops'
+///     flux    sum_n g_n (k h_n - j_n),   dh_n/dt = p_n (k i - h_n),   dj_n/dt = p_n (i - j_n),
+///     force   k' i sum_n g_n h_n,
+/// with inductances g_n = s_n/d, s_n >= 0 and d = exp(depth)/Le: what loop n delays changes with x by s_n c(x), and d
+/// only tells how that bends. A loop stores g_n h_n^2/2 and loses g_n (dh_n/dt)^2/p_n: terminals and cone get what is
+/// left, so nothing is made of nothing. Models that scale the loops'
 /// inductances and resistances by a curve instead feed them with k^2 and hear them at 1: `way` w lets data tell,
 ///     1 + (1 + w)(k - 1) on the way in, 1 + (1 - w)(k - 1) on the way out,   -1 <= w <= 1, 0 for a mutual inductance.
 ///
-/// Without linear eddy currents there are no loops. The rates begin above the band, as what is slower than its end
-/// delays what is seen there; each next one is a fifth. A chain of loops that follows K s^0.4 is met to -82 dB of the
-/// current with four, to -75 with three.
+/// Without linear eddy currents there are no loops. The rates p_n lie beforehand from near the band's upper end
+/// downwards, as what is slower than that end delays what is seen there, each next one a sixth, and depart from there
+/// by a factor exp(r_n), as far as the data asks: like the nodes of a Gauss rule, four free rates picture what takes
+/// eight or more fixed ones.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
     InductancePosition()
@@ -46,7 +48,7 @@ public:
     {
         return curve::valueAt(e.degree, p, x, e.displacement);
     }
-    /// Im u/(w i) of the loops with the coil held at x: g_0 sum_n g_n (in out - 1) p_n^2/(p_n^2 + w^2).
+    /// Im u/(w i) of the loops with the coil held at x: sum_n g_n (in out - 1) p_n^2/(p_n^2 + w^2).
     double delayedLawAt(const OperatingRange& e, const double* p, double x, double frequency) const override
     {
         std::vector<double> c(static_cast<std::size_t>(coefficientCount(e)));
@@ -64,14 +66,21 @@ public:
     {
         auto result = curve::parameters(e, "H");
         for (int n = 1; n <= loops; ++n)
-            result.push_back({.name = "g" + std::to_string(n),
+            result.push_back({.name = "s" + std::to_string(n),
                               .unit = "1",
                               .lower = 0.0,
                               .upper = 1e3,
                               .relaxed = true,
-                              .prior = plausibleWeight});
+                              .prior = plausibleShare});
         result.push_back({.name = "depth", .unit = "1", .lower = -3.0, .upper = 3.0, .relaxed = true, .prior = 0.5});
         result.push_back({.name = "way", .unit = "1", .lower = -1.0, .upper = 1.0, .relaxed = true, .prior = 0.5});
+        for (int n = 1; n <= loops; ++n)
+            result.push_back({.name = "r" + std::to_string(n),
+                              .unit = "1",
+                              .lower = -farthest,
+                              .upper = farthest,
+                              .relaxed = true,
+                              .prior = plausibleShift});
         return result;
     }
     int memorySize(const OperatingRange& e) const override { return e.relaxed ? 2 * loops : 0; }
@@ -84,12 +93,13 @@ public:
         using std::exp;
         curve::prepare(e.degree, p, c);
         double rate = 2.0 * std::numbers::pi * e.highFrequency * fastest;
+        const T d = exp(p[e.degree + loops]) / e.scale;
         T* loop = c + e.degree + 1;
         for (int n = 0; n < loops; ++n, rate /= spacing) {
-            *loop++ = T(rate);
-            *loop++ = p[e.degree + n] * e.scale;
+            *loop++ = rate * exp(p[e.degree + loops + 2 + n]);
+            *loop++ = p[e.degree + n] / d;
         }
-        *loop++ = exp(p[e.degree + loops]) / e.scale;
+        *loop++ = d;
         *loop++ = p[e.degree + loops + 1];
     }
 
@@ -141,9 +151,10 @@ private:
     }
 
     static constexpr int loops = 4;
-    static constexpr double fastest = 1.2, spacing = 5.0;  // rates: over the band's upper end; from one to the next
+    static constexpr double fastest = 0.7, spacing = 6.0;  // rates: over the band's upper end; from one to the next
     // of the slowest loop beside a coil that is nothing but a semi-inductance
-    static constexpr double plausibleWeight = 30.0;
+    static constexpr double plausibleShare = 30.0;
+    static constexpr double plausibleShift = 0.8, farthest = 1.5;  // of a loop's ln rate
     static constexpr double leastCoupling = 0.2;
 };
 

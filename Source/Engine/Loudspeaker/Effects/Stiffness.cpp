@@ -14,8 +14,9 @@ namespace {
 /// sum_k w_k p_k/(s + p_k) is a picture within the band),
 ///     s = x - sum_k w_k h_k,   force -c(s) s + K sum_k w_k (h_k - q_k),
 ///     dh_k/dt = p_k (x + c(s) s/K - h_k),   dq_k/dt = p_k (x - q_k),   w_k >= 0,
-/// as 1/(1 + K Y) = 1 - W for a compliance Y in series with K. The rates are 11, 2 and a third of the band's lower end:
-/// around the resonance, where a bent spring makes its distortion. A suspension that hardens goes on hardening beyond
+/// as 1/(1 + K Y) = 1 - W for a compliance Y in series with K. The rates are beforehand 6 and two thirds of the band's
+/// lower end, around the resonance, where a bent spring makes its distortion, and depart from there by a factor
+/// exp(r_k), as far as the data asks. A suspension that hardens goes on hardening beyond
 /// the visited range.
 class Stiffness final : public EffectOf<Stiffness> {
 public:
@@ -44,6 +45,13 @@ public:
                               .upper = 1.0,
                               .relaxed = true,
                               .prior = plausibleYield});
+        for (int k = 1; k <= yields; ++k)
+            result.push_back({.name = "r" + std::to_string(k),
+                              .unit = "1",
+                              .lower = -farthest,
+                              .upper = farthest,
+                              .relaxed = true,
+                              .prior = plausibleShift});
         return result;
     }
     std::optional<LawInfo> law() const override { return LawInfo {"K(x)", "N/m", "x", "m", "K"}; }
@@ -59,13 +67,14 @@ public:
     template <class T>
     void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
+        using std::exp;
         curve::prepare(e.degree, p, c);
         c[e.degree + 1] = p[0];
         c[e.degree + 2] = e.degree > 1 ? p[1] : T(0.0);
         double rate = 2.0 * std::numbers::pi * e.lowFrequency * fastest;
         T* yield = c + e.degree + 3;
         for (int k = 0; k < yields; ++k, rate /= spacing) {
-            *yield++ = T(rate);
+            *yield++ = rate * exp(p[e.degree + yields + k]);
             *yield++ = p[e.degree + k];
         }
     }
@@ -94,10 +103,10 @@ public:
     }
 
 private:
-    static constexpr int yields = 3;
-    static constexpr double plausibleYield = 0.3;
-    static constexpr double fastest = 11.0;  // over the band's lower end
-    static constexpr double spacing = 6.0;   // from one rate to the next
+    static constexpr int yields = 2;
+    static constexpr double plausibleYield = 0.3, plausibleShift = 0.8, farthest = 1.5;  // of ln rate
+    static constexpr double fastest = 6.0;                                               // over the band's lower end
+    static constexpr double spacing = 9.0;                                               // from one rate to the next
 };
 
 }  // namespace
