@@ -89,14 +89,17 @@ TEST_CASE("Loops that the coil moves against take from terminals and cone what t
     Alone alone(effectNamed("inductance-position"));
     const auto names = alone.effect.parameters(alone.operatingRange);
     std::vector<std::size_t> loops;
+    double depth = 0.0;
     for (std::size_t p = 0; p < names.size(); ++p)
-        if (names[p].name.front() == 'g')
+        if (names[p].name.front() == 's')
             loops.push_back(p);
+        else if (names[p].name == "depth")
+            depth = alone.parameters[p];
     REQUIRE(loops.size() * 2 == alone.rest().size());
     std::vector<double> L, rate;
     for (std::size_t n = 0; n < loops.size(); ++n) {
         alone.parameters[loops[n]] = 0.2 + 0.3 * static_cast<double>(n);
-        L.push_back(alone.parameters[loops[n]] * alone.operatingRange.scale);
+        L.push_back(alone.parameters[loops[n]] * alone.operatingRange.scale / std::exp(depth));
         auto memory = alone.rest(), moved = alone.rest();
         memory[2 * n] = 1.0;
         alone.at(0.0, 0.0, 0.0, memory, &moved);
