@@ -26,8 +26,8 @@ TEST_CASE("What a fuller model missed clearly is not tried again", "[diagnosis]"
 
 TEST_CASE("Linear effects that only make sense together are found together", "[diagnosis]")
 {
-    // Half of the suspension yields, so fast that beside a coil without its loops all damping would be creep's; and the
-    // loops alone bring nothing while the suspension is bent for what creeps.
+    // Half of the suspension yields, and fast: without the loops of the coil, creep would take all of the damping,
+    // which is implausible. Without creep the loops bring nothing.
     bench::Loudspeaker truth;
     bench::Creep creep;
     creep.family = bench::Creep::Family::standard;

@@ -95,6 +95,9 @@ TEST_CASE("Loops that the coil moves against take from terminals and cone what t
             loops.push_back(p);
         else if (names[p].name == "depth")
             depth = alone.parameters[p];
+        else if (names[p].name.front() == 'r')
+            alone.parameters[p] = 0.2 * static_cast<double>(p % 3);
+    alone.prepare();
     REQUIRE(loops.size() * 2 == alone.rest().size());
     std::vector<double> L, rate;
     for (std::size_t n = 0; n < loops.size(); ++n) {

@@ -223,7 +223,7 @@ TEST_CASE("Loops whose rates are free follow a moving coil closer than any that 
     const auto operatingRange = visitedRange(model, record, 10);
     model = withEffect(withEffect(model, effectNamed("eddy-currents"), operatingRange, 1),
                        effectNamed("inductance-position"), operatingRange);
-    const auto fitTwice = [&] {  // shapes of what was not at work yet join a search at its next begin
+    const auto fitTwice = [&] {  // the rate of a loop without a share joins a search at its next begin
         fit(model, record, estimationSections(record));
         return fit(model, record, estimationSections(record)).chiSquaredPerValue;
     };

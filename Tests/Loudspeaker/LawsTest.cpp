@@ -130,6 +130,7 @@ TEST_CASE("Beside eddy currents Le(x) is the inductance of the blocked coil an o
     {
         parameterOf(model, 2, "s1").value = 0.4;
         parameterOf(model, 2, "s3").value = 1.5;
+        parameterOf(model, 2, "r3").value = 0.5;
         parameterOf(model, 2, "way").value = GENERATE(0.0, 0.4);
         const auto law = laws(model).front();
         const double w = 2.0 * std::numbers::pi * law.frequency,

@@ -67,13 +67,19 @@ Model WholeSearch::withLinear(const std::vector<const Effect*>& effects, Model m
         }
         std::vector<const Effect*> others;  // that may still bring something
         for (std::size_t n = 0; n < with.size(); ++n)
-            if (n != best && (sure || leaves[n] < now))
+            if (n != best && leaves[n] < now)
                 others.push_back(missing[n]);
+        if (sure) {  // also what brought nothing beside those before
+            others = effects;
+            std::erase_if(others, [&](const Effect* effect) { return with[best].has(effect->id()); });
+        }
         model = std::move(with[best]);
         now = leaves[best];
         missing = std::move(others);
+        if (sure && !hasBecomeStrange(model, *sure))
+            sure.reset();
     }
-    return sure && !strangeIn(model).empty() ? *sure : model;
+    return sure ? *sure : model;
 }
 
 bool WholeSearch::exchangeStandIns(Model& model, const Progress& progress)

@@ -192,6 +192,12 @@ struct Candidate {
     WholeSearch::Removals tried;
 };
 
+/// Whether another start could not lead much further.
+bool isNear(const Whole& whole, const Record& record)
+{
+    return whole.fit.usable() && record.noiseKnown && whole.fit.chiSquaredPerValue < nearNoise;
+}
+
 Candidate refined(Whole whole, const Record& record, WholeSearch& search, const FitOptions& options,
                   const Progress& progress)
 {
@@ -201,14 +207,10 @@ Candidate refined(Whole whole, const Record& record, WholeSearch& search, const 
     search.chooseResiduals(found.whole.model);
     if (search.left(found.whole.model).isNoise())  // what is not needed would only hold up the refinement
         search.takeOut(found.whole.model, false, isNeeded, found.tried);
+    if (isNear(found.whole, record) && warms(found.whole.model) && hasSilentNoise(record))
+        return found;  // what warms is refined by another noise (see fitWhole)
     found.whole.fit = refine(found.whole.model, record, options, progress);
     return found;
-}
-
-/// Whether another start could not lead much further.
-bool isNear(const Whole& whole, const Record& record)
-{
-    return whole.fit.usable() && record.noiseKnown && whole.fit.chiSquaredPerValue < nearNoise;
 }
 
 /// What the base leads to, or its loudest level, whichever leaves less. A start is refined as soon as it has grown,

@@ -315,6 +315,13 @@ std::set<std::string> WholeSearch::strangeIn(const Model& model) const
     return strange;
 }
 
+/// Whether an effect is strange that a model had not before.
+bool WholeSearch::hasBecomeStrange(const Model& model, const Model& before) const
+{
+    const auto strange = strangeIn(model);
+    return std::any_of(strange.begin(), strange.end(), [&](const std::string& effect) { return !before.has(effect); });
+}
+
 std::optional<WholeSearch::Leaner> WholeSearch::withoutOneOf(const std::set<std::string>& effects,
                                                              const Model& model) const
 {

@@ -96,8 +96,10 @@ public:
     /// missed is found anew there before it would go.
     std::set<std::string> takeOutImplausible(Model&) const;
 
-    /// The model with the linear effects among these that it needs, found on the responses: the one that leaves least
-    /// comes first, the others are tried beside it.
+    /// The model with the linear effects among these that it needs, found on the responses: of those that are
+    /// plausible as they are the one that leaves least comes first, the others are tried beside it. Where no plausible
+    /// one leaves less, one that is not comes in on trust, as another may have bent it; if something stays implausible
+    /// in the end, the model from before that is returned.
     Model withLinear(const std::vector<const Effect*>&, Model, const Progress& = {}) const;
 
     /// Exchanges linear effects, on trial, for those that the model does not have: one may have come in for another,
@@ -121,6 +123,7 @@ private:
     FitSummary glanceAt(Model&) const;
     Left left(const Model&, bool played) const;
     std::set<std::string> strangeIn(const Model&) const;
+    bool hasBecomeStrange(const Model&, const Model& before) const;
     std::set<std::string> takeOutOneByOne(Model&) const;
     std::optional<Leaner> withoutOneOf(const std::set<std::string>& effects, const Model&) const;
     bool bringBack(Model&, const std::string& effect, const Left& without) const;

@@ -18,16 +18,15 @@ namespace {
 /// linear eddy currents. The rest is this effect's,
 ///     flux    sum_n g_n (k h_n - j_n),   dh_n/dt = p_n (k i - h_n),   dj_n/dt = p_n (i - j_n),
 ///     force   k' i sum_n g_n h_n,
-/// with inductances g_n = s_n/d, s_n >= 0 and d = exp(depth)/Le: what loop n delays changes with x by s_n c(x), and d
-/// only tells how that bends. A loop stores g_n h_n^2/2 and loses g_n (dh_n/dt)^2/p_n: terminals and cone get what is
-/// left, so nothing is made of nothing. Models that scale the loops'
-/// inductances and resistances by a curve instead feed them with k^2 and hear them at 1: `way` w lets data tell,
+/// with inductances g_n = s_n/d, s_n >= 0 and d = exp(depth)/Le, where Le is as it was when the effect was sized: what
+/// loop n delays changes with x by s_n c(x), and d only tells how that bends. A loop stores g_n h_n^2/2 and loses
+/// g_n (dh_n/dt)^2/p_n: terminals and cone get what is left, so nothing is made of nothing. Models that scale the
+/// loops' inductances and resistances by a curve instead feed them with k^2 and hear them at 1: `way` w lets data tell,
 ///     1 + (1 + w)(k - 1) on the way in, 1 + (1 - w)(k - 1) on the way out,   -1 <= w <= 1, 0 for a mutual inductance.
 ///
-/// Without linear eddy currents there are no loops. The rates p_n lie beforehand from near the band's upper end
-/// downwards, as what is slower than that end delays what is seen there, each next one a sixth, and depart from there
-/// by a factor exp(r_n), as far as the data asks: like the nodes of a Gauss rule, four free rates picture what takes
-/// eight or more fixed ones.
+/// Without linear eddy currents there are no loops. Beforehand the fastest rate is 0.7 times the band's upper end, as
+/// faster loops delay nothing within the band, and each next one a sixth of the one before. The data moves each by a
+/// factor exp(r_n): like the nodes of a Gauss rule, four free rates do what takes eight or more fixed ones.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
     InductancePosition()
@@ -78,7 +77,7 @@ public:
             result.push_back({.name = "r" + std::to_string(n),
                               .unit = "1",
                               .lower = -farthest,
-                              .upper = farthest,
+                              .upper = fastestShift,
                               .relaxed = true,
                               .prior = plausibleShift});
         return result;
@@ -86,7 +85,7 @@ public:
     int memorySize(const OperatingRange& e) const override { return e.relaxed ? 2 * loops : 0; }
     int coefficientCount(const OperatingRange& e) const override { return e.degree + 1 + 2 * loops + 2; }
 
-    /// The curve's, then each loop's rate and inductance, d = exp(depth)/g_0 and w.
+    /// The curve's, then each loop's rate and inductance, d = exp(depth)/Le and w.
     template <class T>
     void prepareFor(const OperatingRange& e, const T* p, T* c) const
     {
@@ -152,9 +151,9 @@ private:
 
     static constexpr int loops = 4;
     static constexpr double fastest = 0.7, spacing = 6.0;  // rates: over the band's upper end; from one to the next
-    // of the slowest loop beside a coil that is nothing but a semi-inductance
-    static constexpr double plausibleShare = 30.0;
-    static constexpr double plausibleShift = 0.8, farthest = 1.5;  // of a loop's ln rate
+    static constexpr double plausibleShare = 30.0;  // where the coil is little but a semi-inductance, of slow loops
+    // Of a loop's ln rate. A faster loop would ask for shorter steps.
+    static constexpr double plausibleShift = 0.8, farthest = 1.5, fastestShift = 1.0;
     static constexpr double leastCoupling = 0.2;
 };
 

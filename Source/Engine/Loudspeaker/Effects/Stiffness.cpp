@@ -16,8 +16,7 @@ namespace {
 ///     dh_k/dt = p_k (x + c(s) s/K - h_k),   dq_k/dt = p_k (x - q_k),   w_k >= 0,
 /// as 1/(1 + K Y) = 1 - W for a compliance Y in series with K. The rates are beforehand 6 and two thirds of the band's
 /// lower end, around the resonance, where a bent spring makes its distortion, and depart from there by a factor
-/// exp(r_k), as far as the data asks. A suspension that hardens goes on hardening beyond
-/// the visited range.
+/// exp(r_k), as far as the data asks. A suspension that hardens goes on hardening beyond the visited range.
 class Stiffness final : public EffectOf<Stiffness> {
 public:
     Stiffness()
@@ -104,9 +103,10 @@ public:
 
 private:
     static constexpr int yields = 2;
-    static constexpr double plausibleYield = 0.3, plausibleShift = 0.8, farthest = 1.5;  // of ln rate
-    static constexpr double fastest = 6.0;                                               // over the band's lower end
-    static constexpr double spacing = 9.0;                                               // from one rate to the next
+    static constexpr double plausibleYield = 0.3;
+    static constexpr double plausibleShift = 0.8, farthest = 1.5;  // of a yield's ln rate
+    static constexpr double fastest = 6.0;                         // over the band's lower end
+    static constexpr double spacing = 9.0;                         // from one rate to the next
 };
 
 }  // namespace
