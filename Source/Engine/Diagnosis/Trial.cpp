@@ -387,12 +387,17 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.chiSquaredPerValue > nearNoise && !quick.fedGradient)
             return summary;
     }
-    summary = fitBySimulation(model, record, chosen, false, progress.part(0.75, 0.95));
-    if (!tooHigh(model).empty()) {
+    const auto lowered = [&](const Progress& part) {
+        if (tooHigh(model).empty())
+            return false;
         chooseResiduals(quick, score, model, record, sections);
-        if (lowerAsItPays(model, record, sections, quick, progress.part(0.95, 0.97)))
-            summary = fitBySimulation(model, record, chosen, false, progress.part(0.97, 1.0));
-    }
+        return lowerAsItPays(model, record, sections, quick, part).has_value();
+    };
+    if (summary.onlyNoise && summary.chiSquaredPerValue < atNoise)  // before a simulation is spent on it
+        lowered(progress.part(0.75, 0.77));
+    summary = fitBySimulation(model, record, chosen, false, progress.part(0.77, 0.95));
+    if (lowered(progress.part(0.95, 0.97)))
+        summary = fitBySimulation(model, record, chosen, false, progress.part(0.97, 1.0));
     return summary;
 }
 

@@ -25,8 +25,9 @@ namespace {
 ///     1 + (1 + w)(k - 1) on the way in, 1 + (1 - w)(k - 1) on the way out,   -1 <= w <= 1, 0 for a mutual inductance.
 ///
 /// Without linear eddy currents there are no loops. Beforehand the fastest rate is 0.7 times the band's upper end, as
-/// faster loops delay nothing within the band, and each next one a sixth of the one before. The data moves each by a
-/// factor exp(r_n): like the nodes of a Gauss rule, four free rates do what takes eight or more fixed ones.
+/// faster loops delay nothing within the band; the slowest is a quarter of its lower end, as the product of motion and
+/// current reaches down to no frequency, and others are spread evenly between. The data moves each by a factor
+/// exp(r_n): like the nodes of a Gauss rule, five free rates do what takes ten or more fixed ones.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
     InductancePosition()
@@ -94,6 +95,7 @@ public:
         double rate = 2.0 * std::numbers::pi * e.highFrequency * fastest;
         const T d = exp(p[e.degree + loops]) / e.scale;
         T* loop = c + e.degree + 1;
+        const double spacing = std::pow(fastest * e.highFrequency / (slowest * e.lowFrequency), 1.0 / (loops - 1));
         for (int n = 0; n < loops; ++n, rate /= spacing) {
             *loop++ = rate * exp(p[e.degree + loops + 2 + n]);
             *loop++ = p[e.degree + n] / d;
@@ -149,8 +151,8 @@ private:
         return {1.0 + (1.0 + way) * (k - 1.0), 1.0 + (1.0 - way) * (k - 1.0), (1.0 - way) * kSlope, kSlope};
     }
 
-    static constexpr int loops = 4;
-    static constexpr double fastest = 0.7, spacing = 6.0;  // rates: over the band's upper end; from one to the next
+    static constexpr int loops = 5;
+    static constexpr double fastest = 0.7, slowest = 0.25;  // rates: over the band's upper end; over its lower end
     static constexpr double plausibleShare = 30.0;  // where the coil is little but a semi-inductance, of slow loops
     // Of a loop's ln rate. A faster loop would ask for shorter steps.
     static constexpr double plausibleShift = 0.8, farthest = 1.5, fastestShift = 1.0;
