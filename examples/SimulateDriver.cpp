@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A woofer whose suspension hardens plays a tone of 20 Hz: how far its cone goes, and the harmonics that the motion gets.
+// A woofer whose suspension hardens plays a tone of 20 Hz: how far its cone goes, and the harmonics of its motion.
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Signal/Fft.h"

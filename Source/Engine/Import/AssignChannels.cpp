@@ -53,9 +53,10 @@ std::vector<ChannelMapping> mappingsOf(const RecordingOptions& options)
     std::vector<ChannelMapping> mappings;
     if (options.calibration)
         for (const auto& c : options.calibration->channels)
-            if (c.quantity)
-                mappings.push_back(
-                    {"", c.channel, c.quantity, {}, {}, std::to_string(c.channel) + "=" + std::string(name(*c.quantity))});
+            if (c.quantity) {
+                const auto text = std::to_string(c.channel) + "=" + std::string(name(*c.quantity));
+                mappings.push_back({"", c.channel, c.quantity, {}, {}, text});
+            }
     if (mappings.empty())
         throw Error(Error::Kind::usage, "A recording does not say what its channels hold; give --map, for example "
                                         "--map 1=voltage:32 --map 2=current:4.");

@@ -17,7 +17,7 @@ struct ChannelMapping {
     /// quantity at a sample of 1.0, in its SI unit; negative: the channel is inverted
     std::optional<double> fullScale;
     std::optional<double> latency;  ///< s, by which the sensor is late
-    std::string text;  ///< as it was written, for sentences
+    std::string text;               ///< as it was written, for sentences
 };
 
 /// Reads one mapping of a command line, [FILE:]CHANNEL=QUANTITY[:FULLSCALE[UNIT]][@LATENCY] or

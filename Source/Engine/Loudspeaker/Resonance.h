@@ -13,8 +13,8 @@ struct Resonance {
     double quality = 0.0;    ///< Q
 };
 
-/// Parameters of the base as the cone meets them at a frequency in Hz: K and Rms with what a suspension that creeps adds
-/// there, Re F/x and Im F/(w x). It may have taken over any share of the stiffness at rest.
+/// Parameters of the base as the cone meets them at a frequency in Hz: K and Rms with what a suspension that creeps
+/// adds there, Re F/x and Im F/(w x). It may have taken over any share of the stiffness at rest.
 std::vector<Parameter> baseAt(const Model&, double frequency);
 
 /// Hz, at which the cone resonates on what the suspension is there, 2 pi f = sqrt(K(f)/m). That of the base where
