@@ -131,9 +131,12 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
         auto then = search.left(fuller);
         if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes before the refinement
             search.findPartsAnew(fuller);
-            WholeSearch::Removals tried;
-            search.takeOut(fuller, false, isNeeded, tried);
             then = search.left(fuller);
+            if (search.lost(now, then) > worthARound) {  // else nothing that goes would make it so
+                WholeSearch::Removals tried;
+                search.takeOut(fuller, false, isNeeded, tried);
+                then = search.left(fuller);
+            }
         }
         if (!(search.lost(now, then) > worthARound)) {
             if (strange.empty() && before.empty() && !trial.empty() && trial.front()->vote.standsAlone())
