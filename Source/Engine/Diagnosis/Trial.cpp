@@ -387,16 +387,17 @@ FitSummary refine(Model& model, const Record& record, const FitOptions& options,
         if (record.noiseKnown && summary.chiSquaredPerValue > nearNoise && !quick.fedGradient)
             return summary;
     }
-    const auto lowered = [&](const Progress& part) {
-        if (tooHigh(model).empty())
-            return false;
+    const auto lower = [&](const Progress& part) {
         chooseResiduals(quick, score, model, record, sections);
         return lowerAsItPays(model, record, sections, quick, part).has_value();
     };
-    if (summary.onlyNoise && summary.chiSquaredPerValue < atNoise)  // before a simulation is spent on it
-        lowered(progress.part(0.75, 0.77));
+    // The last fit is dear, so it should have the coefficients that stay. A lower law is compared with one that was
+    // fitted as long.
+    if (summary.onlyNoise && summary.chiSquaredPerValue < atNoise && !tooHigh(model).empty()
+        && fitFed(model, record, sections, quick, progress.part(0.75, 0.76)).usable())
+        lower(progress.part(0.76, 0.77));
     summary = fitBySimulation(model, record, chosen, false, progress.part(0.77, 0.95));
-    if (lowered(progress.part(0.95, 0.97)))
+    if (!tooHigh(model).empty() && lower(progress.part(0.95, 0.97)))
         summary = fitBySimulation(model, record, chosen, false, progress.part(0.97, 1.0));
     return summary;
 }

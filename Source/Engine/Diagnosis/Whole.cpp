@@ -132,7 +132,8 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
         if (!then.isNoise()) {  // else there is nothing more to find, and what is not needed goes before the refinement
             search.findPartsAnew(fuller);
             then = search.left(fuller);
-            if (search.lost(now, then) > worthARound) {  // else nothing that goes would make it so
+            // What goes hardly makes it leave less, unless it is what makes it run away.
+            if (then.channels.empty() || search.lost(now, then) > worthARound) {
                 WholeSearch::Removals tried;
                 search.takeOut(fuller, false, isNeeded, tried);
                 then = search.left(fuller);

@@ -26,8 +26,8 @@ namespace {
 ///
 /// Without linear eddy currents there are no loops. Beforehand the fastest rate is 0.7 times the band's upper end, as
 /// faster loops delay nothing within the band; the slowest is a quarter of its lower end, as the product of motion and
-/// current reaches down to no frequency, and others are spread evenly between. The data moves each by a factor
-/// exp(r_n): like the nodes of a Gauss rule, five free rates do what takes ten or more fixed ones.
+/// current reaches down to 0 Hz; the others are spread evenly between them on a logarithmic scale. The data moves each
+/// by a factor exp(r_n): like the nodes of a Gauss rule, free rates do what takes about twice as many fixed ones.
 class InductancePosition final : public EffectOf<InductancePosition> {
 public:
     InductancePosition()
@@ -152,7 +152,7 @@ private:
     }
 
     static constexpr int loops = 5;
-    static constexpr double fastest = 0.7, slowest = 0.25;  // rates: over the band's upper end; over its lower end
+    static constexpr double fastest = 0.7, slowest = 0.25;  // rates at first, of the band's ends
     static constexpr double plausibleShare = 30.0;  // where the coil is little but a semi-inductance, of slow loops
     // Of a loop's ln rate. A faster loop would ask for shorter steps.
     static constexpr double plausibleShift = 0.8, farthest = 1.5, fastestShift = 1.0;
