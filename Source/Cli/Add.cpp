@@ -7,6 +7,7 @@
 
 #include "Engine/Diagnosis/ComparisonFile.h"
 #include "Engine/Diagnosis/FitEffects.h"
+#include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"

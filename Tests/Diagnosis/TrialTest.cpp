@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Diagnosis/CreepingTake.h"
-
 #include "Bench/Draw.h"
 #include "Engine/Diagnosis/Compare.h"
 #include "Engine/Diagnosis/Trial.h"
@@ -25,21 +23,4 @@ TEST_CASE("A law that is tried while others are missing leaves the coil an induc
     REQUIRE(fit(model, record, estimationSections(record)).usable());
     tryEffect(model, record, effectNamed("inductance-current"), {});
     CHECK(tryCompare(model, record, {0, false}));
-}
-
-TEST_CASE("Creep that has shrunk to a single relaxation becomes the chain that it is", "[diagnosis]")
-{
-    const CreepingTake creeping;
-    const auto& record = creeping.record;
-    auto model = creeping.base;
-    const auto sections = estimationSections(record);
-    model = withEffect(model, effectNamed("creep"), visitedRange(model, record), 1);
-    auto& own = model.components.back().parameters;
-    REQUIRE(own[2].name == "width");
-    own[0].value = 0.05 * model.baseParameter("K").value;
-    own[2].value = 0.0;
-    const double single = fit(model, record, sections).chiSquaredPerValue;
-    REQUIRE(single > 2.0);  // where it stays
-    CHECK(findPartsAnew(model, record, sections, {}));
-    CHECK(fit(model, record, sections).chiSquaredPerValue < 0.6 * single);
 }

@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/Reason.h"
 #include "Engine/Diagnosis/Separate.h"
 #include "Engine/Diagnosis/StepsByResponse.h"
+#include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FitResponse.h"

@@ -2,6 +2,7 @@
 #include "Engine/Diagnosis/FitEffects.h"
 
 #include "Engine/Diagnosis/Compare.h"
+#include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Catalogue.h"

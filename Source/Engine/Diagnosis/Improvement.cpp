@@ -4,6 +4,7 @@
 #include "Engine/Diagnosis/FitEffects.h"
 #include "Engine/Diagnosis/RungsTo.h"
 #include "Engine/Diagnosis/StepsByResponse.h"
+#include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/Trial.h"
 #include "Engine/Diagnosis/Whole.h"
 #include "Engine/Error.h"

@@ -3,7 +3,7 @@
 
 #include "Engine/Diagnosis/Reason.h"
 #include "Engine/Diagnosis/Score.h"
-#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 
 #include <algorithm>

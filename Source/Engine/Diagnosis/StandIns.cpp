@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/WholeSearch.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"

@@ -2,7 +2,8 @@
 #include "Engine/Diagnosis/Whole.h"
 
 #include "Engine/Diagnosis/Compare.h"
-#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Diagnosis/QuickFit.h"
+#include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/WholeSearch.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 

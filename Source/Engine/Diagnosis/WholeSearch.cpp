@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Diagnosis/WholeSearch.h"
 
-#include "Engine/Diagnosis/Trial.h"
+#include "Engine/Diagnosis/FindAnew.h"
+#include "Engine/Diagnosis/LawDegrees.h"
+#include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Loudspeaker/Catalogue.h"
 #include "Engine/Loudspeaker/FeedbackError.h"
 

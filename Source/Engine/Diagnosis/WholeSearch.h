@@ -69,7 +69,7 @@ public:
     double lost(const Left& more, const Left& less) const;
 
     FitSummary fit(Model&, const Progress& = {}) const;
-    void findPartsAnew(Model&) const;  ///< see Trial.h
+    void findPartsAnew(Model&) const;  ///< see FindAnew.h
     void raiseDegrees(Model&) const;   ///< of laws, as far as it pays
 
     using Removals = std::map<std::string, Removal>;
