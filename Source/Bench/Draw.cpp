@@ -2,6 +2,7 @@
 #include "Bench/Draw.h"
 
 #include "Bench/Random.h"
+#include "Bench/Relaxation.h"
 #include "Bench/Run.h"
 #include "Bench/Stimulus.h"
 #include "Engine/Error.h"
@@ -39,6 +40,21 @@ void scaleLevels(BenchSetup& setup, double factor)
 {
     for (auto& level : setup.excitation.levels)
         level *= factor;
+}
+
+/// Loops in the iron move with the coil. The product of motion and current then drives them down to 0 Hz, where K s^a
+/// would keep its flux for ever. Iron does not: in a pole of radius a the slowest loop has the rate j01^2/(mu sigma
+/// a^2), some Hz. So the loops that draw K s^a become a chain of their own, with an end well below the band.
+void setMoving(Loudspeaker& speaker, const Excitation& plan)
+{
+    constexpr double turn = 2.0 * std::numbers::pi;
+    auto& eddy = *speaker.eddyCurrents;
+    eddy.moves = true;
+    if (!eddy.cells.empty())
+        return;
+    const auto loops = fractionalIntegral(1.0 - eddy.exponent, turn * plan.bandLow / 30.0, turn * plan.bandHigh * 10.0);
+    for (std::size_t n = 0; n < loops.rate.size(); ++n)
+        eddy.cells.push_back({eddy.coefficient * loops.weight[n], loops.rate[n]});
 }
 
 void requirePressure(BenchSetup& setup)
@@ -117,8 +133,8 @@ Draw draw(std::uint64_t seed, const DrawOptions& options)
         if (effect.id == "doppler" || effect.id == "cone-breakup")
             requirePressure(result.setup);
     }
-    if (result.speaker.eddyCurrents && result.speaker.inductancePosition)
-        result.speaker.eddyCurrents->moves = Random(seed, 19).chance(0.7);
+    if (result.speaker.eddyCurrents && result.speaker.inductancePosition && Random(seed, 19).chance(0.7))
+        setMoving(result.speaker, result.setup.excitation);
 
     if (!options.oddity.empty()) {
         Random course(seed, 18);
