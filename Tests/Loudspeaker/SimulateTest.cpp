@@ -255,6 +255,26 @@ TEST_CASE("The steps a sample are enough, and no more than allowed", "[simulate]
     CHECK_THROWS_AS(simulate(model, u, sampleRate, options), Error);
 }
 
+TEST_CASE("Only traces that somebody looks at ask for smaller steps", "[simulate]")
+{
+    // A cone with friction turns sharply: in its acceleration at once, in the current less.
+    constexpr double sampleRate = 12000.0;
+    auto model = withEffect(makeModel("electrodynamic"), effectNamed("friction"), someOperatingRange(1.0));
+    model.components.back().parameters[0].value = 0.5;
+    const auto u = burst(sampleRate, 0.4, 4.0);
+    SimulationOptions options;
+    const auto stepsFor = [&](Trace trace, double tolerance) {
+        options.tolerances = {{trace, tolerance}};
+        const auto chosen = chooseSubsteps(model, u, sampleRate, options);
+        CHECK(chosen.converged);
+        return chosen.substeps;
+    };
+    CHECK(stepsFor(Trace::current, 1e-6) < stepsFor(Trace::acceleration, 1e-6));
+    CHECK(stepsFor(Trace::acceleration, 1e-3) < stepsFor(Trace::acceleration, 1e-5));
+    options.tolerances = {{Trace::current, 0.0}};
+    CHECK(!options.isValid(nullptr));
+}
+
 TEST_CASE("A model that runs away is told, not simulated", "[simulate]")
 {
     auto model = withEffect(makeModel("electrodynamic"), effectNamed("stiffness"), someOperatingRange(1.0));

@@ -3,9 +3,9 @@
 #include "Engine/Loudspeaker/Fit.h"
 
 #include "Engine/Loudspeaker/OutputError.h"
+#include "Engine/Loudspeaker/Sensors.h"
 #include "Engine/Loudspeaker/Simulate.h"
 #include "Engine/Loudspeaker/SmallSignal.h"
-#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Signal/Fft.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Take/Motion.h"
@@ -46,21 +46,25 @@ int substepsFor(const Model& model, const Record& record, double tolerance)
             peak = p;
             loudest = &section;
         }
-    if (tolerance <= 0.0) {
-        tolerance = 1e-4;
-        for (std::size_t c = 0; c < record.channels.size() && record.noiseKnown; ++c) {
+    // What nobody measured may be off: the turns of a cone with friction are sharp in its acceleration alone.
+    constexpr double finest = 1e-6, coarsest = 1e-4, ofNoise = 0.15;
+    SimulationOptions options;
+    options.maximumSubsteps = 16;
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+        double asked = tolerance > 0.0 ? tolerance : coarsest;
+        if (tolerance <= 0.0 && record.noiseKnown) {
             double noise = 0.0, signal = 0.0;
             for (std::size_t k = 1; k < loudest->measured[c].size(); ++k) {
                 noise += loudest->deviation[c][k] * loudest->deviation[c][k];
                 signal += std::norm(loudest->measured[c][k]);
             }
-            tolerance = std::min(tolerance, 0.15 * std::sqrt(noise / signal));
+            if (signal > 0.0)
+                asked = std::clamp(ofNoise * std::sqrt(noise / signal), finest, coarsest);
         }
-        tolerance = std::max(tolerance, 1e-6);
+        const auto [place, isNew] = options.tolerances.try_emplace(mainTraceOf(record.channels[c]), asked);
+        if (!isNew)
+            place->second = std::min(place->second, asked);
     }
-    SimulationOptions options;
-    options.tolerance = tolerance;
-    options.maximumSubsteps = 16;
     return chooseSubsteps(model, loudest->input, record.sampleRate, options).substeps;
 }
 

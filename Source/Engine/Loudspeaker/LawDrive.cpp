@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/LawDrive.h"
 
+#include "Engine/Loudspeaker/LawPace.h"
+#include "Engine/Loudspeaker/SteadyMemory.h"
 #include "Engine/Numerics/RungeKutta.h"
 #include "Engine/Signal/Fft.h"
 
@@ -12,6 +14,8 @@ namespace {
 
 // a law is asked once a sample, and its memory in between; a record's rate leaves room for products
 constexpr std::size_t fine = ShownMotion::fine;
+
+MotionView viewOf(const ShownMotion& motion) { return {motion.i, motion.x, motion.v}; }
 
 /// What a law answers along a motion: one value a sample.
 template <class T>
@@ -25,7 +29,7 @@ template <class T>
 class Along {
 public:
     Along(const Component& law, const std::vector<T>& parameters, const ShownMotion& motion)
-        : law_(law), coefficients_(coefficientsOf(law, parameters)), motion_(motion)
+        : law_(law), coefficients_(coefficientsOf(law, parameters)), motion_(motion), view_(viewOf(motion))
     {
     }
 
@@ -51,138 +55,29 @@ public:
     }
 
 private:
-    Motion<T> at(double place) const
-    {
-        const auto whole = static_cast<std::size_t>(place);
-        const double share = place - static_cast<double>(whole);
-        const std::size_t length = motion_.i.size(), here = whole % length, next = (here + 1) % length;
-        const auto between = [&](const std::vector<double>& q) { return T(q[here] + share * (q[next] - q[here])); };
-        return {between(motion_.i), between(motion_.x), between(motion_.v)};
-    }
+    Motion<T> at(double place) const { return view_.at<T>(place); }
 
     const Component& law_;
     std::vector<T> coefficients_;
     const ShownMotion& motion_;
-};
-
-/// How a law's memory goes along the motion.
-struct Pace {
-    int steps = 1;  ///< a sample, in which the memory can be followed: its fastest rate times one stays below one
-    bool quarterForgets = true;  ///< nothing of what was is left of its slowest part after a quarter of the period
-    bool steady = true;          ///< each state forgets at a rate of its own that nothing changes, dm/dt = a - r m
-};
-
-Pace paceOf(const Component& law, const ShownMotion& motion, double sampleRate)
-{
-    const auto size = static_cast<std::size_t>(law.effect->memorySize(law.operatingRange));
-    if (size == 0)
-        return {};
-    const auto coefficients = coefficientsOf(law, valuesOf(law));
-    std::vector<double> memory(size, 0.0), rest(size), moved(size), sum(size, 0.0), first;
-    double fastest = 0.0, asked = 0.0;
-    bool steady = true;
-    constexpr std::size_t apart = 8 * fine;
-    constexpr double same = 1e-9;
-    for (std::size_t n = 0; n < motion.i.size(); n += apart, asked += 1.0) {
-        const auto rates = [&](std::vector<double>& out) {
-            Balance<double> unused;
-            law.effect->contribute(law.operatingRange, coefficients.data(), {motion.i[n], motion.x[n], motion.v[n]},
-                                   memory.data(), out.data(), unused);
-        };
-        rates(rest);
-        for (std::size_t k = 0; k < size; ++k) {
-            const double held = n % (2 * apart) == 0 ? 1.0 : 2.0;  // a rate that is not affine tells them apart
-            memory[k] = held;
-            rates(moved);
-            memory[k] = 0.0;
-            const double rate = std::abs(moved[k] - rest[k]) / held;
-            fastest = std::max(fastest, rate);
-            sum[k] += rate;
-            if (first.size() < size)
-                first.push_back(rate);
-            steady = steady && moved[k] < rest[k] && std::abs(rate - first[k]) <= same * first[k];
-            for (std::size_t other = 0; other < size && steady; ++other)
-                steady = other == k || std::abs(moved[other] - rest[other]) <= same * std::abs(rest[other]);
-        }
-    }
-    constexpr double most = 32.0, forgotten = 7.0;  // exp(-7): a thousandth
-    const double quarter = static_cast<double>(motion.i.size()) / (fine * 4.0 * sampleRate);
-    return {static_cast<int>(std::clamp(std::ceil(fastest / sampleRate), 1.0, most)),
-            *std::min_element(sum.begin(), sum.end()) / asked * quarter > forgotten, steady};
-}
-
-/// A state that forgets at a steady rate r, dm/dt = a - r m, over one step: a goes along the parabola through its
-/// values at the step's begin, middle and end, and the state exactly with it.
-template <class T>
-class Relaxation {
-public:
-    Relaxation(const T& rate, double step)
-    {
-        using std::exp;
-        const T z = rate * step;
-        decay_ = exp(-z);
-        // integrals of exp(-z (1 - s)) s^j over the step
-        T I0, I1, I2;
-        if (z < T(0.1)) {
-            const auto series = [&](double factor, int j) {
-                T term = T(factor), total = term;
-                for (int k = 1; k < 8; ++k) {
-                    term *= -z / static_cast<double>(j + k + 1);
-                    total += term;
-                }
-                return total;
-            };
-            I0 = series(1.0, 0);
-            I1 = series(1.0 / 2.0, 1);
-            I2 = series(1.0 / 3.0, 2);
-        } else {
-            I0 = (1.0 - decay_) / z;
-            I1 = (1.0 - I0) / z;
-            I2 = (1.0 - 2.0 * I1) / z;
-        }
-        begin_ = step * (I0 - 3.0 * I1 + 2.0 * I2);
-        middle_ = step * 4.0 * (I1 - I2);
-        end_ = step * (2.0 * I2 - I1);
-    }
-
-    T after(const T& m, const T& begin, const T& middle, const T& end) const
-    {
-        return decay_ * m + begin_ * begin + middle_ * middle + end_ * end;
-    }
-
-private:
-    T decay_, begin_, middle_, end_;
+    MotionView view_;
 };
 
 /// follow() of a memory that is steady.
 template <class T, class See>
-void followSteady(const Along<T>& law, std::vector<T> memory, std::size_t length, std::size_t leadIn, double sampleRate,
+void followSteady(const Along<T>& law, std::vector<T> start, std::size_t length, std::size_t leadIn, double sampleRate,
                   const See& see)
 {
-    const std::size_t size = memory.size();
-    const std::vector<T> none(size, T(0.0));
-    std::vector<T> begin(size), middle(size), end(size), rate(size);
-    std::vector<Relaxation<T>> states;
-    law.ask(0.0, none.data(), begin.data());
-    for (std::size_t k = 0; k < size; ++k) {
-        auto one = none;
-        one[k] = T(1.0);
-        law.ask(0.0, one.data(), rate.data());
-        states.emplace_back(begin[k] - rate[k], 1.0 / sampleRate);
-    }
-    law.ask(static_cast<double>(length - leadIn), none.data(), begin.data());
+    SteadyMemory<T> on([&](double place, const T* memory, T* rate) { law.ask(place, memory, rate); }, std::move(start),
+                       length - leadIn, fine, sampleRate);
+    std::vector<T> rate(on.memory.size());
     for (std::size_t step = 0; step < leadIn + length; step += fine) {
         const std::size_t n = (length - leadIn + step) % length;
-        const auto place = static_cast<double>(n);
         if (step >= leadIn) {
-            const auto sum = law.ask(place, memory.data(), rate.data());
-            see(n, sum, memory, rate);
+            const auto sum = law.ask(static_cast<double>(n), on.memory.data(), rate.data());
+            see(n, sum, on.memory, rate);
         }
-        law.ask(place + 0.5 * fine, none.data(), middle.data());
-        law.ask(place + fine, none.data(), end.data());
-        for (std::size_t k = 0; k < size; ++k)
-            memory[k] = states[k].after(memory[k], begin[k], middle[k], end[k]);
-        std::swap(begin, end);
+        on.advance(n);
     }
 }
 
@@ -282,7 +177,7 @@ std::vector<double> slopesAt(const Component& law, const std::vector<Jet>& param
 
 bool forgetsInAQuarter(const Component& law, const ShownMotion& motion, double sampleRate)
 {
-    return paceOf(law, motion, sampleRate).quarterForgets;
+    return paceOf(law, viewOf(motion), fine, sampleRate).quarterForgets;
 }
 
 bool hasConstantSlopes(const Component& law)
@@ -310,7 +205,7 @@ LawDrive driveOf(const Component& law, const ShownMotion& motion, const MemorySt
 {
     const auto count = law.parameters.size();
     const auto size = static_cast<std::size_t>(start.value.size());
-    const auto pace = paceOf(law, motion, sampleRate);
+    const auto pace = paceOf(law, viewOf(motion), fine, sampleRate);
     const std::size_t length = motion.i.size(), quarter = length / fine / 4 * fine;
     LawDrive drive;
     const auto plain = ask<double>(law, valuesOf(law), motion, {start.value.begin(), start.value.end()}, quarter, pace,

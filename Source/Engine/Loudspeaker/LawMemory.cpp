@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "Engine/Loudspeaker/LawMemory.h"
 
+#include "Engine/Loudspeaker/LawPace.h"
+#include "Engine/Loudspeaker/SteadyMemory.h"
 #include "Engine/Numerics/RungeKutta.h"
 
 #include <algorithm>
@@ -228,34 +230,38 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
     return starts;
 }
 
-}  // namespace
+using Rate = SteadyMemory<double>::Rate;
 
-MemoryStart settledMemory(const Component& component, const PeriodicMotion& motion, std::size_t begin,
-                          double sampleRate)
+/// The steady memory that repeats with a motion of N samples: a period from rest brings 1 - exp(-r T) of it.
+std::vector<double> settledSteady(const Rate& rate, std::size_t size, std::size_t N, std::size_t begin,
+                                  double sampleRate)
 {
-    const auto size = static_cast<std::size_t>(component.effect->memorySize(component.operatingRange));
-    const auto coefficients = coefficientsOf(component, valuesOf(component));
+    SteadyMemory<double> on(rate, std::vector<double>(size, 0.0), begin, 1, sampleRate);
+    for (std::size_t n = 0; n < N; ++n)
+        on.advance((begin + n) % N);
+    auto m = on.memory;
+    for (std::size_t k = 0; k < size; ++k)
+        m[k] /= -std::expm1(-on.rates[k] * static_cast<double>(N) / sampleRate);
+    return m;
+}
+
+/// Any memory that repeats: two periods from rest, and then on as each state has come from the first to the second.
+std::vector<double> settledAnyhow(const Rate& rate, std::size_t size, std::size_t N, std::size_t begin,
+                                  double sampleRate)
+{
     constexpr int parts = 2;  // steps a sample
     const double h = 1.0 / (parts * sampleRate);
-    const std::size_t N = motion.i.size();
     std::vector<double> m(size, 0.0), k1(size);
     RungeKutta<double> method(size);
-    const auto rate = [&](std::size_t n, double s, const std::vector<double>& memory, std::vector<double>& out) {
-        const std::size_t from = (begin + n) % N, to = (from + 1) % N;
-        const auto at = [&](const std::vector<double>& q) { return q[from] + s * (q[to] - q[from]); };
-        Balance<double> unused;
-        component.effect->contribute(component.operatingRange, coefficients.data(),
-                                     {at(motion.i), at(motion.x), at(motion.v)}, memory.data(), out.data(), unused);
-    };
     std::vector<double> once;  // after the first period
     for (std::size_t n = 0; n < 2 * N; ++n) {
         if (n == N)
             once = m;
         for (int part = 0; part < parts; ++part) {
-            const double begun = static_cast<double>(part) / parts;
-            rate(n, begun, m, k1);
+            const double from = static_cast<double>((begin + n) % N) + static_cast<double>(part) / parts;
+            rate(from, m.data(), k1.data());
             method.step(m, k1, h, [&](double share, const std::vector<double>& memory, std::vector<double>& out) {
-                rate(n, begun + share / parts, memory, out);
+                rate(from + share / parts, memory.data(), out.data());
             });
         }
     }
@@ -263,6 +269,25 @@ MemoryStart settledMemory(const Component& component, const PeriodicMotion& moti
     for (std::size_t k = 0; k < size; ++k)
         if (const double q = (m[k] - once[k]) / once[k]; q >= 0.0 && q < 1.0)
             m[k] = once[k] / (1.0 - q);
+    return m;
+}
+
+}  // namespace
+
+MemoryStart settledMemory(const Component& component, const PeriodicMotion& motion, std::size_t begin,
+                          double sampleRate)
+{
+    const auto size = static_cast<std::size_t>(component.effect->memorySize(component.operatingRange));
+    const auto coefficients = coefficientsOf(component, valuesOf(component));
+    const MotionView view {motion.i, motion.x, motion.v};
+    const auto rate = [&](double place, const double* memory, double* out) {
+        Balance<double> unused;
+        component.effect->contribute(component.operatingRange, coefficients.data(), view.at<double>(place), memory, out,
+                                     unused);
+    };
+    const auto m = paceOf(component, view, 1, sampleRate).steady
+                       ? settledSteady(rate, size, motion.i.size(), begin, sampleRate)
+                       : settledAnyhow(rate, size, motion.i.size(), begin, sampleRate);
     MemoryStart result;
     result.value = Eigen::Map<const Eigen::VectorXd>(m.data(), static_cast<Eigen::Index>(size));
     if (!result.value.allFinite())

@@ -21,8 +21,9 @@ struct MemoryStart {
     Eigen::MatrixXd gradient;  ///< memory x parameters; zero if not asked for
 };
 
-/// A memory at sample `begin` of a motion in its periodic steady state (two periods from rest by the fourth-order
-/// Runge-Kutta method, then each state's geometric series). This is the state of hysteresis once the cone has been
+/// A memory at sample `begin` of a motion in its periodic steady state. What forgets at a steady rate (Pace::steady)
+/// follows exactly; anything else goes two periods from rest by the fourth-order Runge-Kutta method, and then along
+/// each state's geometric series. This is the state of hysteresis once the cone has been
 /// everywhere. Its gradient is zero, as the influence of a parameter is forgotten in the lead-in.
 MemoryStart settledMemory(const Component&, const PeriodicMotion&, std::size_t begin, double sampleRate);
 

@@ -51,11 +51,10 @@ Sensors::Sensors(const Model& model, const SmallSignal& linear, const Trajectory
 
 std::vector<Trace> Sensors::tracesOf(Quantity quantity) const
 {
+    const auto first = mainTraceOf(quantity);
     if (quantity == Quantity::pressure)
-        return {Trace::flow, Trace::lateness};
-    if (const auto motion = motionOf(quantity))
-        return spot_ ? std::vector {motion->trace, Trace::spot} : std::vector {motion->trace};
-    return {Trace::current};
+        return {first, Trace::lateness};
+    return spot_ && motionOf(quantity) ? std::vector {first, Trace::spot} : std::vector {first};
 }
 
 void Sensors::delay(Spectrum& spectrum) const
@@ -141,6 +140,14 @@ std::vector<double> Sensors::record(Quantity quantity) const
         std::transform(samples.begin(), samples.end(), ahead.begin(), samples.begin(), std::plus<> {});
     }
     return samples;
+}
+
+Trace mainTraceOf(Quantity quantity)
+{
+    if (quantity == Quantity::pressure)
+        return Trace::flow;
+    const auto motion = motionOf(quantity);
+    return motion ? motion->trace : Trace::current;
 }
 
 std::size_t aheadOf(const Model& model, double sampleRate)

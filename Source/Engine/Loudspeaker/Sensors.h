@@ -52,6 +52,9 @@ private:
     std::vector<double> flowByLeaving_;  ///< d(flow)/dt over 1 + d(lateness)/dt; empty until a slope needs it
 };
 
+/// The trace that a channel mostly consists of.
+Trace mainTraceOf(Quantity);
+
 /// Trajectory::ahead for what a microphone hears of a model: the whole samples of the lateness at rest.
 std::size_t aheadOf(const Model&, double sampleRate);
 

@@ -3,7 +3,6 @@
 
 #include "Engine/Error.h"
 #include "Engine/Loudspeaker/Sensors.h"
-#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Signal/Level.h"
 #include "Engine/Validity.h"
 
@@ -15,7 +14,9 @@ namespace excursion {
 
 bool SimulationOptions::isValid(std::string* reason) const
 {
-    if (!(tolerance > 1e-12 && tolerance < 1.0))
+    const auto possible = [](double one) { return one > 1e-12 && one < 1.0; };
+    if (!possible(tolerance)
+        || !std::all_of(tolerances.begin(), tolerances.end(), [&](const auto& one) { return possible(one.second); }))
         return refuse(reason, "the tolerance of a simulation must lie between 1e-12 and 1");
     if (maximumSubsteps < 1)
         return refuse(reason, "a simulation needs at least one step a sample");
@@ -35,6 +36,16 @@ double relativeChange(const std::vector<double>& coarse, const std::vector<doubl
     return power > 0.0 ? std::sqrt(difference / power) : 0.0;
 }
 
+std::map<Trace, double> tolerancesOf(const Model& model, const SimulationOptions& options)
+{
+    if (!options.tolerances.empty())
+        return options.tolerances;
+    std::map<Trace, double> result {{Trace::displacement, options.tolerance}, {Trace::acceleration, options.tolerance}};
+    if (model.electrical())
+        result[Trace::current] = options.tolerance;
+    return result;
+}
+
 }  // namespace
 
 SimulationSummary chooseSubsteps(const Model& model, std::span<const double> input, double sampleRate,
@@ -48,6 +59,7 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
     const auto begin = std::min(centre > stretch / 2 ? centre - stretch / 2 : 0, input.size() - stretch);
     const auto part = input.subspan(begin, stretch);
 
+    const auto tolerances = tolerancesOf(model, options);
     SimulationSummary summary;
     summary.substeps = stableSubsteps(model, sampleRate);
     Trajectory coarse, fine;
@@ -55,11 +67,13 @@ SimulationSummary chooseSubsteps(const Model& model, std::span<const double> inp
     while (summary.substeps <= options.maximumSubsteps) {
         const bool refined = integrate(model, Drive(part, sampleRate, 2 * summary.substeps), {}, fine);
         if (have && refined) {
-            summary.accuracy = std::max(relativeChange(coarse.displacement, fine.displacement),
-                                        relativeChange(coarse.acceleration, fine.acceleration));
-            if (model.electrical())
-                summary.accuracy = std::max(summary.accuracy, relativeChange(coarse.current, fine.current));
-            summary.converged = summary.accuracy <= options.tolerance;
+            summary.accuracy = 0.0;
+            summary.converged = true;
+            for (const auto& [trace, tolerance] : tolerances) {
+                const double change = relativeChange(coarse[trace], fine[trace]);
+                summary.accuracy = std::max(summary.accuracy, change);
+                summary.converged = summary.converged && change <= tolerance;
+            }
             if (summary.converged)
                 break;
         }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "Engine/Loudspeaker/Model.h"
+#include "Engine/Loudspeaker/Trajectory.h"
 #include "Engine/Progress.h"
 #include "Engine/Take/Measurement.h"
 
+#include <map>
 #include <span>
 #include <string>
 
@@ -13,13 +15,15 @@ namespace excursion {
 struct SimulationOptions {
     double tolerance = 1e-5;  ///< largest relative rms change of any channel if the step is halved
     int maximumSubsteps = 64;
+    /// The tolerance of each trace that somebody looks at, where they differ: the others need none then.
+    std::map<Trace, double> tolerances {};
     bool isValid(std::string* reason) const;
 };
 
 struct SimulationSummary {
     int substeps = 0;
-    double accuracy = 1.0;   ///< relative rms change against a run with half the step, worst channel
-    bool converged = false;  ///< accuracy is within the tolerance
+    double accuracy = 1.0;   ///< relative rms change against a run with half the step, of the worst trace
+    bool converged = false;  ///< every change is within its tolerance
 };
 
 /// The number of steps per sample that reaches the tolerance on (a part of) this input.
