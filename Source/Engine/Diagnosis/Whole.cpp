@@ -93,8 +93,28 @@ Model withoutThoseAtRest(Model model, const Model& base)
 
 bool isNeeded(const Removal& removal) { return removal.vote.uniqueDb > hardlyNeeded; }
 
-/// Puts effects into a whole by rounds of voting.
-void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
+/// Where a round of a search has ended.
+struct Waypoint {
+    std::vector<std::string> effects;
+    double chiSquaredPerValue = 0.0;
+};
+using Path = std::vector<Waypoint>;
+
+/// Whether a search has been there: what follows would be the same.
+bool leadsBy(const Path& path, const Waypoint& place)
+{
+    constexpr double same = 1e-3;
+    return std::any_of(path.begin(), path.end(), [&](const Waypoint& one) {
+        return one.effects == place.effects
+               && std::abs(one.chiSquaredPerValue - place.chiSquaredPerValue) < same * place.chiSquaredPerValue;
+    });
+}
+
+/// Puts effects into a whole by rounds of voting. Whether it came to where no other search has been.
+/// @param path   of this search, to which it adds
+/// @param known  of another search
+bool grow(Whole& whole, const Model& base, const Record& record, WholeSearch& search, Path& path, const Path& known,
+          const Progress& progress)
 {
     constexpr int rounds = 12;
     constexpr double worthARound = 1.0;  // dB
@@ -151,24 +171,39 @@ void grow(Whole& whole, const Model& base, const Record& record, WholeSearch& se
         whole.model = std::move(fuller);
         whole.fit = summary;
         scores.clear();
+        path.push_back({whole.model.effectIds(), now.chiSquaredPerValue});
+        if (leadsBy(known, path.back()))
+            return false;
     }
+    return true;
 }
 
-/// The effects that the record shows beside those of a base, and what the last of them was fitted to.
-Whole grown(const Model& base, const Record& record, WholeSearch& search, const Progress& progress)
-{
+/// A model that has grown, and how.
+struct Grown {
     Whole whole;
+    Path path;
+};
+
+/// The effects that the record shows beside those of a base, and what the last of them was fitted to. None where it
+/// comes to where another search has been.
+std::optional<Grown> grown(const Model& base, const Record& record, WholeSearch& search, const Path& known,
+                           const Progress& progress)
+{
+    Grown result;
+    auto& [whole, path] = result;
     whole.model = base;
-    grow(whole, base, record, search, progress.part(0.0, 0.7));
+    if (!grow(whole, base, record, search, path, known, progress.part(0.0, 0.7)))
+        return std::nullopt;
     if (search.exchangeStandIns(whole.model, progress.part(0.7, 0.8))) {  // beside the right ones others may show
         auto fitted = whole.model;
         if (const auto summary = search.fit(fitted, progress.part(0.8, 0.82)); summary.usable()) {
             whole.model = std::move(fitted);
             whole.fit = summary;
         }
-        grow(whole, base, record, search, progress.part(0.82, 1.0));
+        if (!grow(whole, base, record, search, path, known, progress.part(0.82, 1.0)))
+            return std::nullopt;
     }
-    return whole;
+    return result;
 }
 
 /// A model without laws as the loudest level alone makes it: where friction holds the cone of a quiet one, the common
@@ -225,11 +260,15 @@ Candidate best(const Model& base, const Record& record, WholeSearch& search, con
                const Progress& progress)
 {
     constexpr double far = 100.0;
-    auto first = grown(base, record, search, progress.part(0.0, 0.4));
+    const auto begun = grown(base, record, search, {}, progress.part(0.0, 0.4));
+    auto first = begun->whole;  // nobody has been anywhere before
     std::optional<Whole> second;
-    const auto growSecond = [&] {
-        if (const auto loud = fittedToLoudest(base, record, options))
-            second = grown(*loud, record, search, progress.part(0.4, 0.6));
+    auto growSecond = [&, done = false]() mutable {
+        const auto loud = done ? std::nullopt : fittedToLoudest(base, record, options);
+        done = true;
+        if (loud)
+            if (auto other = grown(*loud, record, search, begun->path, progress.part(0.4, 0.6)))
+                second = std::move(other->whole);
     };
     const auto leaves = [&](const Whole& one) {
         return one.fit.usable() ? search.left(one.model).chiSquaredPerValue : std::numeric_limits<double>::infinity();
@@ -261,7 +300,7 @@ Whole completed(Candidate found, const Record& record, WholeSearch& search, cons
     auto& [whole, tried] = found;
     search.chooseResiduals(whole.model);
     if (!search.left(whole.model).isNoise()) {  // laws of a higher degree may have laid bare what is small
-        auto more = grown(whole.model, record, search, progress.part(0.0, 0.2));
+        auto more = grown(whole.model, record, search, {}, progress.part(0.0, 0.2))->whole;
         if (more.fit.usable()) {
             more.fit = refine(more.model, record, options, progress.part(0.2, 0.4));
             whole = std::move(more);

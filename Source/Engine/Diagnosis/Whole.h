@@ -25,8 +25,8 @@ struct Whole {
 /// what each leaves on the responses, and at the end exchanged, on trial, for those that are missing. Everything is
 /// fitted quickly, and effects that the others can replace are removed. A later round may add them again, after laws
 /// were raised as far as that pays. If this, refined, does not come near the noise, another search begins from the
-/// linear model of the loudest level; before the refinement if the rounds end far from the noise. If something is left
-/// that no effect explains, only effects that stand alone stay.
+/// linear model of the loudest level, which ends where it comes to a place of the first one; before the refinement if
+/// the rounds end far from the noise. If something is left that no effect explains, only effects that stand alone stay.
 /// A whole that follows what the periods drift (followsDrift()) is completed against the noise
 /// without it.
 /// @param base  fitted; its effects stay
