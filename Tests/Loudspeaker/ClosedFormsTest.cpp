@@ -300,3 +300,39 @@ TEST_CASE("Hysteresis starts where a motion that has always gone on has brought 
             CHECK(start.value[k] == Approx(std::tanh(X / (reach * size))).epsilon(2e-3));
     }
 }
+
+TEST_CASE("Loops in the iron start where a current that has always gone on has brought them", "[effects]")
+{
+    // dj/dt = r (i - j) with i = cos wt: j = r^2/(r^2 + w^2) at its crest. The slowest loop takes several periods.
+    const double sampleRate = 48000.0, w = 2.0 * std::numbers::pi * sampleRate / 480.0;
+    PeriodicMotion motion;
+    for (int n = 0; n < 480; ++n) {
+        motion.i.push_back(std::cos(w * n / sampleRate));
+        motion.x.push_back(0.0);
+        motion.v.push_back(0.0);
+    }
+    auto operatingRange = someOperatingRange(1e-3);
+    operatingRange.relaxed = true;
+    operatingRange.lowFrequency = 20.0;
+    operatingRange.highFrequency = 5000.0;
+    const auto coil = component("inductance-position", operatingRange, {});
+    const auto size = static_cast<std::size_t>(coil.effect->memorySize(operatingRange));
+    const auto coefficients = coefficientsOf(coil, valuesOf(coil));
+    const auto rateAt = [&](std::size_t k, double held) {
+        std::vector<double> memory(size, 0.0), rate(size);
+        memory[k] = held;
+        Balance<double> unused;
+        coil.effect->contribute(operatingRange, coefficients.data(), {0.0, 0.0, 0.0}, memory.data(), rate.data(),
+                                unused);
+        return rate[k];
+    };
+    const auto start = settledMemory(coil, motion, 0, sampleRate);
+    REQUIRE(start.value.size() == static_cast<Eigen::Index>(size));
+    double slowest = w;
+    for (std::size_t k = 0; k < size; ++k) {
+        const double r = -rateAt(k, 1.0);
+        slowest = std::min(slowest, r);
+        CHECK(start.value[static_cast<Eigen::Index>(k)] == Approx(r * r / (r * r + w * w)).epsilon(1e-3).margin(1e-6));
+    }
+    CHECK(slowest < 0.4 * w / (2.0 * std::numbers::pi));
+}
