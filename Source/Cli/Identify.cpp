@@ -7,11 +7,9 @@
 #include "Cli/Verbs.h"
 
 #include "Engine/Document/JsonText.h"
-#include "Engine/Fractional/FractionalIdentify.h"
-#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Fractional/FractionalIdentificationFile.h"
 #include "Engine/GreyBox/MixedImpedance.h"
-#include "Engine/Linear/OrderSweep.h"
-#include "Engine/Linear/StateSpaceFile.h"
+#include "Engine/Linear/IdentificationFile.h"
 #include "Engine/Signal/Level.h"
 
 #include <nlohmann/json.hpp>
@@ -48,28 +46,6 @@ std::vector<int> ordersFrom(std::vector<int> orders)
     return orders;
 }
 
-Json json(const std::vector<std::complex<double>>& roots)
-{
-    Json list = Json::array();
-    for (const auto& root : roots)
-        list.push_back(Json::array({root.real(), root.imag()}));
-    return list;
-}
-
-Json json(const OrderSweepEntry& entry)
-{
-    Json object {{"order", entry.order},
-                 {"errorDb", entry.found.errorDb},
-                 {"weightedErrorDb", decibelsOf(entry.found.cost)},
-                 {"chiSquared", numberOrNull(entry.found.chiSquared)},
-                 {"mdl", entry.mdl},
-                 {"validationDb", numberOrNull(entry.validationDb.value_or(std::numeric_limits<double>::quiet_NaN()))},
-                 {"stable", entry.found.stable},
-                 {"start", entry.found.start},
-                 {"stopped", entry.found.refinement.message}};
-    return object;
-}
-
 void print(const OrderSweep& sweep, Terminal& terminal)
 {
     std::vector<std::vector<std::string>> rows;
@@ -94,35 +70,20 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
     const auto sweep = sweepFractional(data, ordersFrom(options.orders), fractional, terminal.progress());
     const auto& chosen = sweep.entries[sweep.chosen];
     const auto& found = chosen.found;
-    const NamedFractionalStateSpace named {
-        std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, found.model};
+    const IdentifiedFractionalModel identified {
+        options.response.path,
+        data.lines(),
+        sweep,
+        {std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, found.model}};
     if (!options.out.empty())
-        writeJson(toJson(named), options.out);
+        writeJson(toJson(identified.model), options.out);
 
     terminal.say(open.output + " / " + open.input + ", " + std::to_string(data.lines()) + " lines, in s^alpha");
     std::vector<std::vector<std::string>> rows;
-    Json orders = Json::array();
-    for (const auto& e : sweep.entries) {
+    for (const auto& e : sweep.entries)
         rows.push_back({std::to_string(e.order), withError(e.found.model.alpha, e.found.alphaStandardError),
                         fixed(e.found.errorDb, 1), fixed(decibelsOf(e.found.cost), 1), significant(e.mdl, 6),
                         fixed(e.found.sectorMargin, 3), e.found.start});
-        Json curve = Json::array();
-        for (const auto& point : e.found.curve)
-            curve.push_back(Json::array({point.alpha, point.chiSquared}));
-        orders.push_back({{"order", e.order},
-                          {"alpha", e.found.model.alpha},
-                          {"alphaStandardError", numberOrNull(e.found.alphaStandardError)},
-                          {"errorDb", e.found.errorDb},
-                          {"weightedErrorDb", decibelsOf(e.found.cost)},
-                          {"chiSquared", numberOrNull(e.found.chiSquared)},
-                          {"mdl", e.mdl},
-                          {"sectorMargin", numberOrNull(e.found.sectorMargin)},
-                          {"stable", e.found.stable},
-                          {"start", e.found.start},
-                          {"stopped", e.found.refinement.message},
-                          {"warning", e.found.warning},
-                          {"curve", std::move(curve)}});
-    }
     terminal.table({"order", "alpha", "error dB", "weighted dB", "MDL", "margin rad", "from"}, rows);
     if (sweep.entries.size() > 1)
         terminal.say(wrapped(sweep.sentence));
@@ -131,17 +92,7 @@ void runFractional(const IdentifyArguments& options, const OpenResponse& open, c
             terminal.say(wrapped(warning));
     if (!options.out.empty())
         terminal.say("Wrote " + options.out + ".");
-
-    Json document {
-        {"format", "excursion-fractional-identification"}, {"version", 1}, {"source", options.response.path}};
-    document["lines"] = data.lines();
-    document["orders"] = std::move(orders);
-    document["chosen"] = chosen.order;
-    document["sentence"] = sweep.sentence;
-    document["warning"] = sweep.warning;
-    document["eigenvalues"] = json(poles(found.model.form));
-    document["model"] = toJson(named);
-    terminal.document(document);
+    terminal.document(toJson(identified));
     if (!found.stable)
         terminal.answer = 1;
 }
@@ -244,10 +195,15 @@ void run(const IdentifyArguments& options, Terminal& terminal)
     sweeping.identify.refinement.stable = !options.unstable;
     const auto sweep = sweepOrders(data, sweeping, validation ? &*validation : nullptr, terminal.progress());
     const auto& chosen = sweep.entries[sweep.chosen];
-    NamedStateSpace named {
-        std::filesystem::path(options.response.path).stem().string(), {open.input}, {open.output}, chosen.found.model};
+    const IdentifiedModel identified {options.response.path,
+                                      data.lines(),
+                                      sweep,
+                                      {std::filesystem::path(options.response.path).stem().string(),
+                                       {open.input},
+                                       {open.output},
+                                       chosen.found.model}};
     if (!options.out.empty())
-        writeJson(toJson(named), options.out);
+        writeJson(toJson(identified.model), options.out);
 
     terminal.say(open.output + " / " + open.input + ", " + std::to_string(data.lines()) + " lines, "
                  + (options.discrete ? "discrete time at " + significant(open.sampleRate, 6) + " Hz"
@@ -260,17 +216,7 @@ void run(const IdentifyArguments& options, Terminal& terminal)
     if (!options.out.empty())
         terminal.say("Wrote " + options.out + ".");
 
-    Json document {{"format", "excursion-identification"}, {"version", 1}, {"source", options.response.path}};
-    document["lines"] = data.lines();
-    document["orders"] = Json::array();
-    for (const auto& entry : sweep.entries)
-        document["orders"].push_back(json(entry));
-    document["chosen"] = chosen.order;
-    document["sentence"] = sweep.sentence;
-    document["poles"] = json(poles(named.model));
-    document["zeros"] = json(zeros(named.model));
-    document["model"] = toJson(named);
-    terminal.document(document);
+    terminal.document(toJson(identified));
     if (!chosen.found.stable)
         terminal.answer = 1;
 }

@@ -6,7 +6,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Estimate/PhysicalDelay.h"
 #include "Engine/GreyBox/MotorCone.h"
-#include "Engine/Linear/StateSpaceFile.h"
+#include "Engine/GreyBox/MotorConeFile.h"
 #include "Engine/Take/Air.h"
 
 #include <nlohmann/json.hpp>
@@ -33,23 +33,22 @@ void identifyMotorAndCone(const MotorConeArguments& arguments, Terminal& termina
                                          terminal.progress());
 
     const auto name = std::filesystem::path(arguments.response.path).stem().string();
-    nlohmann::ordered_json document {
-        {"format", "excursion-motor-cone"}, {"version", 1}, {"source", arguments.response.path}, {"name", name}};
-    document["delay"] = options.delay;
-    document["motorErrorDb"] = found.motorErrorDb;
-    document["coneErrorDb"] = found.coneErrorDb;
-    document["errorDb"] = found.errorDb;
-    document["motorChiSquared"] = numberOrNull(found.motorChiSquared);
-    document["chiSquared"] = numberOrNull(found.chiSquared);
-    document["refined"] = found.refined;
-    document["toldUpTo"] = found.toldUpTo;
-    document["sentence"] = found.sentence;
-    document["stable"] = found.stable;
-    document["motor"] = toJson(
-        NamedStateSpace {name, {displacement.input}, {"displacement", "velocity", "acceleration"}, found.motor});
-    document["cone"] = toJson(NamedStateSpace {name, {"acceleration"}, {"pressure"}, found.cone});
-    document["cascade"] = toJson(
-        NamedStateSpace {name, {displacement.input}, {"pressure"}, found.cascade, -options.delay});
+    const NamedMotorCone named {arguments.response.path,
+                                name,
+                                options.delay,
+                                found.motorErrorDb,
+                                found.coneErrorDb,
+                                found.errorDb,
+                                found.motorChiSquared,
+                                found.chiSquared,
+                                found.refined,
+                                found.toldUpTo,
+                                found.sentence,
+                                found.stable,
+                                {name, {displacement.input}, {"displacement", "velocity", "acceleration"}, found.motor},
+                                {name, {"acceleration"}, {"pressure"}, found.cone},
+                                {name, {displacement.input}, {"pressure"}, found.cascade, -options.delay}};
+    const auto document = toJson(named);
     if (!arguments.out.empty())
         writeJson(document, arguments.out);
 

@@ -14,6 +14,7 @@
 #include "Engine/Polynomial/Pnlss/ResidualTest.h"
 #include "Engine/Polynomial/Volterra/VolterraSeriesFile.h"
 #include "Engine/Ranking/Agreement.h"
+#include "Engine/Ranking/PolynomialFitFile.h"
 #include "Engine/Take/TakeFile.h"
 
 #include <algorithm>
@@ -24,8 +25,6 @@
 
 namespace excursion::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const Channel& channelNamed(const Measurement& take, const std::string& quantity)
 {
@@ -168,24 +167,24 @@ void run(PnlssArguments options, Terminal& terminal)
                      + " dB of what the model plays, with them " + errorText(found->leftDb) + " dB.");
     }
 
-    Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", options.response.path}};
-    document["estimationDb"] = outcome.estimationDb;
-    document["validationDb"] = validated ? numberOrNull(outcome.validationDb) : Json();
-    document["noiseDb"] = arrival.noiseDb ? Json(*arrival.noiseDb) : Json();
-    document["noiseFrom"] = arrival.noiseDb ? Json(arrival.noiseFrom) : Json();
-    document["arrived"] = arrival.arrived ? Json(*arrival.arrived) : Json();
-    document["advice"] = arrival.advice.empty() ? Json() : Json(arrival.advice);
-    document["iterations"] = outcome.search.iterations;
-    document["stopped"] = options.model.empty() ? outcome.search.message : "a model that was kept";
-    document["stable"] = outcome.stable;
-    document["history"] = numbersOrNulls(outcome.history);
-    document["laws"] = found ? Json {{"effects", found->effects},
-                                     {"baseDb", found->baseDb},
-                                     {"leftDb", found->leftDb},
-                                     {"sentence", found->sentence}}
-                             : Json();
-    document["model"] = outcome.model;
-    terminal.document(document);
+    PolynomialFit fit;
+    fit.take = options.response.path;
+    fit.estimationDb = outcome.estimationDb;
+    if (validated)
+        fit.validationDb = outcome.validationDb;
+    fit.noiseDb = arrival.noiseDb;
+    if (arrival.noiseDb)
+        fit.noiseFrom = arrival.noiseFrom;
+    fit.arrived = arrival.arrived;
+    fit.advice = arrival.advice;
+    fit.iterations = outcome.search.iterations;
+    fit.stopped = options.model.empty() ? outcome.search.message : "a model that was kept";
+    fit.stable = outcome.stable;
+    fit.history = outcome.history;
+    if (found)
+        fit.laws = {found->effects, found->baseDb, found->leftDb, found->sentence};
+    fit.model = outcome.model;
+    terminal.document(toJson(fit));
     if (!outcome.stable)
         terminal.answer = 1;
 }

@@ -7,7 +7,7 @@
 #include "Engine/Document/JsonText.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
-#include "Engine/Ranking/Rank.h"
+#include "Engine/Ranking/RankingFile.h"
 
 #include <nlohmann/json.hpp>
 
@@ -18,58 +18,24 @@
 namespace excursion::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct RankArguments {
     std::string take, output, keep;
     RankOptions options;
 };
 
-Json json(const RankedPredistortion& told)
-{
-    if (!told.trouble.empty())
-        return {{"trouble", told.trouble}};
-    return {{"beforeDb", numberOrNull(told.beforeDb)},
-            {"modelDb", numberOrNull(told.modelDb)},
-            {"leftDb", numberOrNull(told.leftDb)},
-            {"load", told.load},
-            {"latency", told.latency}};
-}
-
-Json json(const RankedModel& model)
-{
-    Json object {{"class", model.name}};
-    if (!model.trouble.empty()) {
-        object["trouble"] = model.trouble;
-        return object;
-    }
-    object["description"] = model.description;
-    object["parameters"] = model.parameters;
-    object["estimationDb"] = numberOrNull(model.estimationDb);
-    object["validationDb"] = numberOrNull(model.validationDb);
-    object["load"] = model.load;
-    object["fitSeconds"] = model.fitSeconds;
-    object["stable"] = model.stable;
-    object["linearization"] = json(model.predistortion);
-    return object;
-}
-
-/// One document a class, DIR/<class>.json, and the best one's name.
-void keep(const Ranking& ranking, const std::string& folder, Json& document, Terminal& terminal)
+/// One document a class, DIR/<class>.json.
+void keep(Ranking& ranking, const std::string& folder, Terminal& terminal)
 {
     std::vector<std::string> kept;
     std::filesystem::create_directories(folder);
-    for (std::size_t i = 0; i < ranking.models.size(); ++i) {
-        const auto& model = ranking.models[i];
+    for (auto& model : ranking.models) {
         if (model.document.is_null())
             continue;
         const auto path = std::filesystem::path(folder) / (model.name + ".json");
         writeJson(model.document, path);
-        document["models"][i]["kept"] = path.string();
+        model.kept = path.string();
         kept.push_back(path.filename().string());
     }
-    if (!ranking.best.empty())
-        document["best"] = ranking.best;
     terminal.say("Kept in " + folder + ": " + (kept.empty() ? "nothing" : joined(kept)) + ".");
 }
 
@@ -106,7 +72,8 @@ void run(const RankArguments& arguments, Terminal& terminal)
     }
     if (!arguments.keep.empty())
         requireFolderPlace(arguments.keep);
-    const auto ranking = rank(readMeasurement(arguments.take), options, terminal.progress());
+    auto ranking = rank(readMeasurement(arguments.take), options, terminal.progress());
+    ranking.take = arguments.take;
     terminal.say(std::string(name(ranking.output)) + " explained by " + std::string(name(ranking.input))
                  + ", errors of simulations"
                  + (ranking.noiseDb ? "; noise " + fixed(*ranking.noiseDb, 1) + " dB" : ""));
@@ -123,21 +90,9 @@ void run(const RankArguments& arguments, Terminal& terminal)
             terminal.say(m.name + ": " + m.trouble);
     terminal.say(ranking.sentence);
     sayPredistortion(ranking, terminal);
-    Json document {{"format", "excursion-ranking"},
-                   {"version", 1},
-                   {"take", arguments.take},
-                   {"input", name(ranking.input)},
-                   {"output", name(ranking.output)}};
-    document["noiseDb"] = ranking.noiseDb ? Json(*ranking.noiseDb) : Json();
-    document["sentence"] = ranking.sentence;
-    document["linearizesBest"] = ranking.straightest.empty() ? Json() : Json(ranking.straightest);
-    document["linearizationSentence"] = ranking.straightSentence;
-    document["models"] = Json::array();
-    for (const auto& m : ranking.models)
-        document["models"].push_back(json(m));
     if (!arguments.keep.empty())
-        keep(ranking, arguments.keep, document, terminal);
-    terminal.document(document);
+        keep(ranking, arguments.keep, terminal);
+    terminal.document(toJson(ranking));
 }
 
 }  // namespace

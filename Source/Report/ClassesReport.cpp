@@ -3,8 +3,6 @@
 
 #include "Engine/Document/Engineering.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,34 +12,33 @@
 namespace excursion {
 namespace {
 
-/// What it is worth to invert the classes; nothing where the document does not say.
-void addLinearizations(Page& page, const JsonField& document)
+/// What it is worth to invert the classes; nothing where the ranking does not say.
+void addLinearizations(Page& page, const Ranking& ranking)
 {
-    if (!document.has("linearizationSentence"))
+    if (ranking.straightSentence.empty())
         return;
     page.section("Turned around");
-    page.paragraph(document.at("linearizationSentence").text());
-    std::vector<std::pair<double, std::vector<Page::Cell>>> rows;
+    page.paragraph(ranking.straightSentence);
+    std::vector<const RankedModel*> inverted;
     std::vector<std::string> troubles;
-    for (const auto& model : document.at("models").items()) {
-        if (!model.has("linearization"))
+    for (const auto& model : ranking.models) {
+        if (!model.trouble.empty())
             continue;
-        const auto told = model.at("linearization");
-        const auto name = model.at("class").text();
-        if (told.has("trouble")) {
-            troubles.push_back(name + ": " + told.at("trouble").text());
-            continue;
-        }
-        rows.push_back({told.at("leftDb").number(),
-                        {name, Page::figure(decibelsIn(told, "beforeDb")), Page::figure(decibelsIn(told, "modelDb")),
-                         Page::figure(decibelsIn(told, "leftDb")),
-                         Page::figure(fixedText(100.0 * told.at("load").number(), 2) + " %"),
-                         Page::figure(fixedText(1e3 * told.at("latency").number(), 1) + " ms")}});
+        if (model.predistortion.trouble.empty())
+            inverted.push_back(&model);
+        else
+            troubles.push_back(model.name + ": " + model.predistortion.trouble);
     }
-    std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(inverted.begin(), inverted.end(),
+                     [](const auto* a, const auto* b) { return a->predistortion.leftDb < b->predistortion.leftDb; });
     std::vector<std::vector<Page::Cell>> cells;
-    for (auto& row : rows)
-        cells.push_back(std::move(row.second));
+    for (const auto* model : inverted) {
+        const auto& told = model->predistortion;
+        cells.push_back({model->name, Page::figure(decibelsCell(told.beforeDb)),
+                         Page::figure(decibelsCell(told.modelDb)), Page::figure(decibelsCell(told.leftDb)),
+                         Page::figure(fixedText(100.0 * told.load, 2) + " %"),
+                         Page::figure(fixedText(1e3 * told.latency, 1) + " ms")});
+    }
     if (!cells.empty())
         page.table({"class", "distortion dB", "left on the model dB", "left on the take dB", "load", "latency"}, cells);
     for (const auto& trouble : troubles)
@@ -53,17 +50,13 @@ void addLinearizations(Page& page, const JsonField& document)
 
 }  // namespace
 
-std::string decibelsIn(const JsonField& object, const char* key)
-{
-    const double value = object.has(key) ? object.at(key).numberOrNaN() : std::numeric_limits<double>::quiet_NaN();
-    return std::isfinite(value) ? fixedText(value, 1) : "\u2013";
-}
+std::string decibelsCell(double value) { return std::isfinite(value) ? fixedText(value, 1) : "\u2013"; }
 
-void addRankingOfClasses(Page& page, const JsonField& document)
+void addRankingOfClasses(Page& page, const Ranking& ranking)
 {
-    page.headline(document.at("sentence").text(), "good");
-    page.paragraph(document.at("output").text() + " explained by " + document.at("input").text()
-                   + (document.has("noiseDb") ? "; noise at " + decibelsIn(document, "noiseDb") + " dB" : ""));
+    page.headline(ranking.sentence, "good");
+    page.paragraph(std::string(name(ranking.output)) + " explained by " + std::string(name(ranking.input))
+                   + (ranking.noiseDb ? "; noise at " + decibelsCell(*ranking.noiseDb) + " dB" : ""));
     Plot plot;
     plot.title = "Error on records not seen against parameters";
     plot.x = {"parameters", "", true, 0.0, 0.0, {}};
@@ -72,30 +65,35 @@ void addRankingOfClasses(Page& page, const JsonField& document)
     double fewest = std::numeric_limits<double>::infinity(), most = 0.0;
     std::vector<std::vector<Page::Cell>> rows;
     std::vector<std::string> troubles;
-    for (const auto& model : document.at("models").items()) {
-        const auto name = model.at("class").text();
-        if (model.has("trouble")) {
-            troubles.push_back(name + ": " + model.at("trouble").text());
+    for (const auto& model : ranking.models) {
+        if (!model.trouble.empty()) {
+            troubles.push_back(model.name + ": " + model.trouble);
             continue;
         }
-        const double judged = model.has("validationDb") ? model.at("validationDb").number()
-                                                        : model.at("estimationDb").numberOrNaN();
-        const double parameters = model.at("parameters").number();
+        const double judged = std::isfinite(model.validationDb)   ? model.validationDb
+                              : std::isfinite(model.estimationDb) ? model.estimationDb
+                                                                  : std::numeric_limits<double>::quiet_NaN();
+        const double parameters = model.parameters;
         classes.x.insert(classes.x.end(), {parameters, std::numeric_limits<double>::quiet_NaN()});
         classes.y.insert(classes.y.end(), {judged, std::numeric_limits<double>::quiet_NaN()});
-        classes.names.insert(classes.names.end(), {name, ""});
+        classes.names.insert(classes.names.end(), {model.name, ""});
         fewest = std::min(fewest, parameters);
         most = std::max(most, parameters);
-        rows.push_back({name, Page::figure(fixedText(parameters, 0)), Page::figure(decibelsIn(model, "estimationDb")),
-                        Page::figure(decibelsIn(model, "validationDb")),
-                        Page::figure(fixedText(100.0 * model.at("load").number(), 2) + " %"),
-                        model.at("stable").flag() ? "yes" : "no", model.at("description").text()});
+        rows.push_back({model.name, Page::figure(fixedText(parameters, 0)),
+                        Page::figure(decibelsCell(model.estimationDb)), Page::figure(decibelsCell(model.validationDb)),
+                        Page::figure(fixedText(100.0 * model.load, 2) + " %"), model.stable ? "yes" : "no",
+                        model.description});
     }
     plot.series.push_back(std::move(classes));
-    if (document.has("noiseDb") && !rows.empty()) {
-        const double noise = document.at("noiseDb").number();
-        plot.series.push_back({"noise", Role::noise, {fewest, most}, {noise, noise}, {}, {}, Series::Shape::line, 0});
-    }
+    if (ranking.noiseDb && !rows.empty())
+        plot.series.push_back({"noise",
+                               Role::noise,
+                               {fewest, most},
+                               {*ranking.noiseDb, *ranking.noiseDb},
+                               {},
+                               {},
+                               Series::Shape::line,
+                               0});
     page.section("Side by side");
     page.table({"class", "parameters", "estimation dB", "validation dB", "load", "stable", "what it is"}, rows);
     for (const auto& trouble : troubles)
@@ -104,7 +102,7 @@ void addRankingOfClasses(Page& page, const JsonField& document)
         page.figures({plot}, 1,
                      "Errors are those of simulations, relative to the output. The load is the time that one core "
                      "simulates for.");
-    addLinearizations(page, document);
+    addLinearizations(page, ranking);
 }
 
 }  // namespace excursion

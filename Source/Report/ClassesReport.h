@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Document/JsonField.h"
+#include "Engine/Ranking/Rank.h"
 #include "Report/Page.h"
 
 #include <string>
 
 namespace excursion {
 
-/// "-61.0" typeset, of a field that may be absent or null: an en dash.
-std::string decibelsIn(const JsonField& object, const char* key);
+/// "-61.0" typeset; an en dash where it is not known, or not finite.
+std::string decibelsCell(double);
 
-/// The classes of models of a ranking side by side, and what it is worth to invert them. Throws Error (input).
-void addRankingOfClasses(Page&, const JsonField& document);
+/// The classes of models of a ranking side by side, and what it is worth to invert them.
+void addRankingOfClasses(Page&, const Ranking&);
 
 }  // namespace excursion

@@ -3,7 +3,12 @@
 
 #include "Engine/Document/DraftFile.h"
 #include "Engine/Document/Engineering.h"
-#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Fractional/FractionalIdentificationFile.h"
+#include "Engine/GreyBox/MotorConeFile.h"
+#include "Engine/Linear/IdentificationFile.h"
+#include "Engine/Ranking/PolynomialFitFile.h"
+#include "Engine/Ranking/RankingFile.h"
+#include "Engine/Signal/Level.h"
 #include "Plots/HarmonicPlots.h"
 #include "Plots/ModelPlots.h"
 #include "Plots/VolterraPlots.h"
@@ -14,6 +19,8 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
 
 namespace excursion {
 namespace {
@@ -47,45 +54,53 @@ void addFractionalStateSpace(Page& page, const JsonField& document)
     addRoots(page, named.model.form, named.model.alpha);
 }
 
-/// The sweep of an identification, of whole or fractional orders.
-void addSweep(Page& page, const JsonField& document)
+/// One order of an identification, of whole or fractional order.
+struct TriedOrder {
+    int order = 0;
+    double errorDb = 0.0, weightedDb = 0.0;
+    std::optional<double> validationDb;
+    bool stable = false;
+    std::vector<AlphaChiSquared> curve;
+};
+
+Plot curvePlot(const TriedOrder& tried)
+{
+    Plot plot;
+    plot.title = "\u03c7\u00b2 against \u03b1, order " + std::to_string(tried.order);
+    plot.x = {"\u03b1", "", false, 0.0, 0.0, {}};
+    plot.y = {"\u03c7\u00b2 over its least", "", true, 0.0, 0.0, {}};
+    Series series {"\u03c7\u00b2", Role::model, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& point : tried.curve)
+        least = std::min(least, point.chiSquared);
+    for (const auto& point : tried.curve) {
+        series.x.push_back(point.alpha);
+        series.y.push_back(point.chiSquared / least);
+    }
+    plot.series.push_back(std::move(series));
+    return plot;
+}
+
+void addSweep(Page& page, const std::vector<TriedOrder>& orders, int chosen, const std::string& sentence)
 {
     ErrorsByOrder errors;
     std::vector<std::vector<Page::Cell>> rows;
     std::vector<Plot> plots;
-    for (const auto& entry : document.at("orders").items()) {
-        errors.order.push_back(entry.at("order").number());
-        errors.error.push_back(entry.at("errorDb").numberOrNaN());
-        errors.weighted.push_back(entry.at("weightedErrorDb").numberOrNaN());
-        errors.validation.push_back(entry.has("validationDb") ? entry.at("validationDb").number()
-                                                              : std::numeric_limits<double>::quiet_NaN());
-        rows.push_back({Page::figure(fixedText(errors.order.back(), 0)), Page::figure(decibelsIn(entry, "errorDb")),
-                        Page::figure(decibelsIn(entry, "weightedErrorDb")),
-                        Page::figure(decibelsIn(entry, "validationDb")), entry.at("stable").flag() ? "yes" : "no"});
-        if (!entry.has("curve") || entry.at("curve").items().size() < 2)
-            continue;
-        Plot curve;
-        curve.title = "\u03c7\u00b2 against \u03b1, order " + fixedText(errors.order.back(), 0);
-        curve.x = {"\u03b1", "", false, 0.0, 0.0, {}};
-        curve.y = {"\u03c7\u00b2 over its least", "", true, 0.0, 0.0, {}};
-        Series series {"\u03c7\u00b2", Role::model, {}, {}, {}, {}, Series::Shape::pointsAndLine, 0};
-        double least = std::numeric_limits<double>::infinity();
-        for (const auto& point : entry.at("curve").items()) {
-            const auto pair = point.numbers();
-            if (pair.size() != 2)
-                point.refuse("alpha and chi squared");
-            series.x.push_back(pair[0]);
-            series.y.push_back(pair[1]);
-            least = std::min(least, pair[1]);
-        }
-        for (auto& value : series.y)
-            value /= least;
-        curve.series.push_back(std::move(series));
-        plots.push_back(std::move(curve));
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& tried : orders) {
+        errors.order.push_back(tried.order);
+        errors.error.push_back(tried.errorDb);
+        errors.weighted.push_back(tried.weightedDb);
+        errors.validation.push_back(tried.validationDb.value_or(unknown));
+        rows.push_back({Page::figure(std::to_string(tried.order)), Page::figure(decibelsCell(tried.errorDb)),
+                        Page::figure(decibelsCell(tried.weightedDb)),
+                        Page::figure(decibelsCell(tried.validationDb.value_or(unknown))), tried.stable ? "yes" : "no"});
+        if (tried.curve.size() > 1)
+            plots.push_back(curvePlot(tried));
     }
-    page.headline("Order " + fixedText(document.at("chosen").number(), 0), "good");
-    if (!document.at("sentence").text().empty())
-        page.paragraph(document.at("sentence").text());
+    page.headline("Order " + std::to_string(chosen), "good");
+    if (!sentence.empty())
+        page.paragraph(sentence);
     if (errors.order.size() > 1)
         plots.insert(plots.begin(), orderPlot(errors));
     page.section("The error against the order");
@@ -97,37 +112,46 @@ void addSweep(Page& page, const JsonField& document)
 
 void addIdentification(Page& page, const JsonField& document)
 {
-    addSweep(page, document);
-    addRoots(page, stateSpaceFromJson(document.at("model")).model, 1.0);
+    const auto identified = identificationFromJson(document);
+    const auto& entries = identified.sweep.entries;
+    std::vector<TriedOrder> orders;
+    for (const auto& e : entries)
+        orders.push_back({e.order, e.found.errorDb, decibelsOf(e.found.cost), e.validationDb, e.found.stable, {}});
+    addSweep(page, orders, entries[identified.sweep.chosen].order, identified.sweep.sentence);
+    addRoots(page, identified.model.model, 1.0);
 }
 
 void addFractionalIdentification(Page& page, const JsonField& document)
 {
-    addSweep(page, document);
-    const auto named = fractionalStateSpaceFromJson(document.at("model"));
-    addRoots(page, named.model.form, named.model.alpha);
+    const auto identified = fractionalIdentificationFromJson(document);
+    const auto& entries = identified.sweep.entries;
+    std::vector<TriedOrder> orders;
+    for (const auto& e : entries)
+        orders.push_back(
+            {e.order, e.found.errorDb, decibelsOf(e.found.cost), std::nullopt, e.found.stable, e.found.curve});
+    addSweep(page, orders, entries[identified.sweep.chosen].order, identified.sweep.sentence);
+    addRoots(page, identified.model.model.form, identified.model.model.alpha);
 }
 
 void addMotorCone(Page& page, const JsonField& document)
 {
-    const bool stable = document.at("stable").flag();
-    page.headline("Motor and cone: together " + decibelsIn(document, "errorDb") + " dB from the pressure"
-                      + (stable ? "" : "; not both stable"),
-                  stable ? "good" : "bad");
-    page.paragraph(document.at("sentence").text());
+    const auto found = motorConeFromJson(document);
+    page.headline("Motor and cone: together " + decibelsCell(found.errorDb) + " dB from the pressure"
+                      + (found.stable ? "" : "; not both stable"),
+                  found.stable ? "good" : "bad");
+    page.paragraph(found.sentence);
     std::vector<std::vector<Page::Cell>> rows;
     std::vector<Plot> plots;
-    for (const auto& [key, title, error] :
-         {std::tuple {"motor", "Motor", "motorErrorDb"}, {"cone", "Cone", "coneErrorDb"}}) {
-        const auto named = stateSpaceFromJson(document.at(key));
-        rows.push_back({title, named.inputs.front(), named.outputs.front(),
-                        Page::figure(std::to_string(named.model.order())), Page::figure(decibelsIn(document, error))});
-        if (named.model.order() == 0)
+    for (const auto& [half, title, error] :
+         {std::tuple {&found.motor, "Motor", found.motorErrorDb}, {&found.cone, "Cone", found.coneErrorDb}}) {
+        rows.push_back({title, half->inputs.front(), half->outputs.front(),
+                        Page::figure(std::to_string(half->model.order())), Page::figure(decibelsCell(error))});
+        if (half->model.order() == 0)
             continue;
         // Of the motor the displacement: its other outputs are derivatives of that.
-        auto first = named.model;
-        first.C = named.model.C.topRows(1).eval();
-        first.D = named.model.D.topRows(1).eval();
+        auto first = half->model;
+        first.C = half->model.C.topRows(1).eval();
+        first.D = half->model.D.topRows(1).eval();
         plots.push_back(rootsPlot(first, 1.0));
         plots.back().title = title + std::string(": ") + plots.back().title;
     }
@@ -141,32 +165,34 @@ void addMotorCone(Page& page, const JsonField& document)
 
 void addPnlssFit(Page& page, const JsonField& document)
 {
-    const bool stable = document.at("stable").flag();
-    const bool validated = document.has("validationDb") && std::isfinite(document.at("validationDb").numberOrNaN());
-    page.headline("Polynomial state space: " + decibelsIn(document, "estimationDb") + " dB on what it was fitted to"
-                      + (validated ? ", " + decibelsIn(document, "validationDb") + " dB on what it had not seen" : "")
-                      + (stable ? "" : "; its linear part is not stable"),
-                  stable ? "good" : "bad");
-    if (document.has("laws"))
-        page.paragraph(document.at("laws").at("sentence").text());
-    Plot fall;
-    fall.title = "How the error fell";
-    fall.x = {"step", "", false, 0.0, 0.0, {}};
-    fall.y = {"error", "dB", false, 0.0, 0.0, {}};
-    Series series {"", Role::error, {}, document.at("history").numbers(), {}, {}, Series::Shape::pointsAndLine, 0};
-    for (std::size_t k = 0; k < series.y.size(); ++k)
-        series.x.push_back(static_cast<double>(k));
-    fall.series.push_back(std::move(series));
-    fall.key = false;
-    if (document.at("history").items().size() > 1) {
+    const auto fit = polynomialFitFromJson(document);
+    const bool validated = std::isfinite(fit.validationDb);
+    page.headline("Polynomial state space: " + decibelsCell(fit.estimationDb) + " dB on what it was fitted to"
+                      + (validated ? ", " + decibelsCell(fit.validationDb) + " dB on what it had not seen" : "")
+                      + (fit.stable ? "" : "; its linear part is not stable"),
+                  fit.stable ? "good" : "bad");
+    if (fit.laws)
+        page.paragraph(fit.laws->sentence);
+    if (fit.history.size() > 1) {
+        Plot fall;
+        fall.title = "How the error fell";
+        fall.x = {"step", "", false, 0.0, 0.0, {}};
+        fall.y = {"error", "dB", false, 0.0, 0.0, {}};
+        Series series {"", Role::error, {}, fit.history, {}, {}, Series::Shape::pointsAndLine, 0};
+        for (std::size_t k = 0; k < series.y.size(); ++k)
+            series.x.push_back(static_cast<double>(k));
+        fall.series.push_back(std::move(series));
+        fall.key = false;
         page.section("The fit");
         page.figures({fall}, 1,
                      "On the records that it was fitted to, after each step that was taken; it stopped because "
-                         + document.at("stopped").text() + ".");
+                         + fit.stopped + ".");
     }
-    if (document.at("model").at("format").text() == "excursion-pnlss")
-        addRoots(page, stateSpaceFromJson(document.at("model").at("linear")).model, 1.0);
+    if (const auto model = document.at("model"); model.at("format").text() == "excursion-pnlss")
+        addRoots(page, stateSpaceFromJson(model.at("linear")).model, 1.0);
 }
+
+void addRanking(Page& page, const JsonField& document) { addRankingOfClasses(page, rankingFromJson(document)); }
 
 void addHarmonicCurves(Page& page, const JsonField& document)
 {
@@ -267,7 +293,7 @@ constexpr PageOf pagesOf[] {
     {"excursion-pnlss-fit", "Polynomial model", addPnlssFit},
     {"excursion-harmonics", "Harmonic distortion", addHarmonicCurves},
     {"excursion-volterra-series", "Volterra series", addVolterraSeries},
-    {"excursion-ranking", "Classes of models", addRankingOfClasses}};
+    {"excursion-ranking", "Classes of models", addRanking}};
 
 }  // namespace
 

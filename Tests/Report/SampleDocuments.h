@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "Engine/Fractional/FractionalStateSpaceFile.h"
+#include "Engine/Fractional/FractionalIdentificationFile.h"
+#include "Engine/GreyBox/MotorConeFile.h"
+#include "Engine/Linear/IdentificationFile.h"
+#include "Engine/Ranking/PolynomialFitFile.h"
+#include "Engine/Ranking/RankingFile.h"
 
 #include <nlohmann/json.hpp>
 
@@ -47,52 +51,66 @@ inline SampleDocuments sampleDocuments()
         toJson(NamedStateSpace {"driver", {"voltage"}, {"current"}, resonance(80.0, 0.25), 0.0}));
     const auto fractional = nlohmann::json(
         toJson(NamedFractionalStateSpace {"coil", {"current"}, {"voltage"}, {0.5, resonance(80.0, 0.25)}}));
-    nlohmann::json entry {
-        {"order", 2}, {"errorDb", -20.0}, {"weightedErrorDb", -22.0}, {"validationDb", nullptr}, {"stable", true}};
-    nlohmann::json sweep {{"format", "excursion-identification"},
-                          {"version", 1},
-                          {"sentence", "order 2 <it> is"},
-                          {"chosen", 2},
-                          {"model", linear}};
-    sweep["orders"] = {entry, entry};
-    auto fractionalSweep = sweep;
-    fractionalSweep["format"] = "excursion-fractional-identification";
-    fractionalSweep["model"] = fractional;
-    fractionalSweep["orders"][0]["curve"] = {{0.4, 30.0}, {0.5, 10.0}, {0.6, 20.0}};
-    const nlohmann::json fit {{"format", "excursion-pnlss-fit"},
-                              {"version", 1},
-                              {"estimationDb", -40.0},
-                              {"validationDb", nullptr},
-                              {"stable", true},
-                              {"stopped", "the error no longer falls"},
-                              {"history", {-20.0, -35.0, -40.0}},
-                              {"model", {{"format", "excursion-pnlss"}, {"linear", linear}}}};
-    const nlohmann::json good {{"class", "linear"},     {"description", "order 3"},
-                               {"parameters", 7},       {"estimationDb", -30.0},
-                               {"validationDb", -29.0}, {"load", 0.001},
-                               {"stable", true},        {"linearization", {{"trouble", "nothing <to> correct"}}}};
-    auto bent = good;
-    bent["class"] = "pnlss";
-    bent["linearization"] = {
-        {"beforeDb", -25.0}, {"modelDb", -66.0}, {"leftDb", -47.5}, {"load", 0.011}, {"latency", 0.0017}};
-    const nlohmann::json ranking {{"format", "excursion-ranking"},
-                                  {"version", 1},
-                                  {"sentence", "s"},
-                                  {"input", "voltage"},
-                                  {"output", "current"},
-                                  {"noiseDb", -70.0},
-                                  {"linearizesBest", "pnlss"},
-                                  {"linearizationSentence", "pnlss & co"},
-                                  {"models", {good, bent, {{"class", "narx"}, {"trouble", "ran & away"}}}}};
-    const nlohmann::json halves {{"format", "excursion-motor-cone"},
-                                 {"version", 1},
-                                 {"sentence", "told <it> all"},
-                                 {"motorErrorDb", -50.0},
-                                 {"coneErrorDb", -40.0},
-                                 {"errorDb", -39.0},
-                                 {"stable", true},
-                                 {"motor", linear},
-                                 {"cone", linear}};
+    const NamedStateSpace driver {"driver", {"voltage"}, {"current"}, resonance(80.0, 0.25), 0.0};
+    OrderSweepEntry entry;
+    entry.order = 2;
+    entry.found.errorDb = -20.0;
+    entry.found.cost = 0.0063;
+    entry.found.stable = true;
+    const auto sweep = nlohmann::json(
+        toJson(IdentifiedModel {"take", 40, {{entry, entry}, 1, "order 2 <it> is"}, driver}));
+    FractionalSweep::Entry bent;
+    bent.order = 2;
+    bent.found.model.alpha = 0.5;
+    bent.found.errorDb = -20.0;
+    bent.found.cost = 0.0063;
+    bent.found.stable = true;
+    bent.found.curve = {{0.4, 30.0}, {0.5, 10.0}, {0.6, 20.0}};
+    const auto fractionalSweep = nlohmann::json(
+        toJson(IdentifiedFractionalModel {"take",
+                                          40,
+                                          {{bent}, 0, "order 2 <it> is", ""},
+                                          {"coil", {"current"}, {"voltage"}, {0.5, resonance(80.0, 0.25)}}}));
+    PolynomialFit polynomial;
+    polynomial.take = "take";
+    polynomial.estimationDb = -40.0;
+    polynomial.stable = true;
+    polynomial.stopped = "the error no longer falls";
+    polynomial.history = {-20.0, -35.0, -40.0};
+    polynomial.model = {{"format", "excursion-pnlss"}, {"linear", linear}};
+    const auto fit = nlohmann::json(toJson(polynomial));
+    RankedModel straight;
+    straight.name = "linear";
+    straight.description = "order 3";
+    straight.parameters = 7;
+    straight.estimationDb = -30.0;
+    straight.validationDb = -29.0;
+    straight.load = 0.001;
+    straight.stable = true;
+    straight.predistortion.trouble = "nothing <to> correct";
+    auto curved = straight;
+    curved.name = "pnlss";
+    curved.predistortion = {-25.0, -66.0, -47.5, 0.011, 0.0017, ""};
+    RankedModel lost;
+    lost.name = "narx";
+    lost.trouble = "ran & away";
+    Ranking classes;
+    classes.take = "take";
+    classes.noiseDb = -70.0;
+    classes.models = {straight, curved, lost};
+    classes.sentence = "s";
+    classes.straightest = "pnlss";
+    classes.straightSentence = "pnlss & co";
+    const auto ranking = nlohmann::json(toJson(classes));
+    NamedMotorCone both;
+    both.source = both.name = "take";
+    both.motorErrorDb = -50.0;
+    both.coneErrorDb = -40.0;
+    both.errorDb = -39.0;
+    both.sentence = "told <it> all";
+    both.stable = true;
+    both.motor = both.cone = both.cascade = driver;
+    const auto halves = nlohmann::json(toJson(both));
     const nlohmann::json curve {
         {"channel", "pressure"},
         {"unit", "Pa"},

@@ -79,6 +79,8 @@ std::string JsonField::text(const std::string& expected) const
     return value_.get<std::string>();
 }
 
+std::string JsonField::textIn(const char* key) const { return has(key) ? at(key).text() : std::string(); }
+
 bool JsonField::flag() const
 {
     if (!value_.is_boolean())

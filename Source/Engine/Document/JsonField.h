@@ -33,6 +33,7 @@ public:
     const nlohmann::json& value() const { return value_; }
 
     std::string text(const std::string& expected = "a text") const;
+    std::string textIn(const char* key) const;  ///< of a field that may be absent or null: empty
     bool flag() const;
     double number() const;                         ///< finite
     double numberOrNaN() const;                    ///< null is NaN: a number that is not known

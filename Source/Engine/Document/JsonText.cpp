@@ -61,6 +61,11 @@ Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Js
 
 Json optionalNumber(const std::optional<double>& value) { return value ? numberOrNull(*value) : Json(nullptr); }
 
+nlohmann::ordered_json textOrNull(const std::string& text)
+{
+    return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+}
+
 Json numbersOrNulls(const std::vector<double>& values)
 {
     auto list = Json::array();

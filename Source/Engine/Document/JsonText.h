@@ -21,6 +21,7 @@ void writeJson(const nlohmann::ordered_json&, const std::filesystem::path&);
 /// The number, or null when it is not finite.
 nlohmann::ordered_json numberOrNull(double);
 nlohmann::ordered_json optionalNumber(const std::optional<double>&);  ///< null where there is none, too
+nlohmann::ordered_json textOrNull(const std::string&);                ///< null where it is empty
 nlohmann::ordered_json numbersOrNulls(const std::vector<double>&);
 
 /// The same for curves that are only drawn: seven significant digits keep a document of many curves small.

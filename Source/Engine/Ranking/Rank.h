@@ -24,6 +24,7 @@ struct RankOptions {
 };
 
 struct Ranking {
+    std::string take;  ///< its path; empty where nobody has told
     Quantity input = Quantity::voltage, output = Quantity::current;
     /// noise of the judged records relative to the output, where periods tell it: the floor of every error
     std::optional<double> noiseDb;

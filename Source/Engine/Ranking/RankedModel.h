@@ -33,6 +33,7 @@ struct RankedModel {
     bool stable = false;  ///< around rest, and no record made it run away
     /// of the model, with the stimulus of its fit, as `predistort` plays it; null of the linear fractional class
     nlohmann::ordered_json document = nullptr;
+    std::string kept;  ///< path of the file that holds it; empty where it was not kept
     /// a sentence where the class could not be fitted; the figures then mean nothing
     std::string trouble;
     RankedPredistortion predistortion;

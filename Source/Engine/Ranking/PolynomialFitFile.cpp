@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "Engine/Ranking/PolynomialFitFile.h"
+
+#include "Engine/Document/JsonText.h"
+
+namespace excursion {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json(const AgreedLaws& laws)
+{
+    return {{"effects", laws.effects}, {"baseDb", laws.baseDb}, {"leftDb", laws.leftDb}, {"sentence", laws.sentence}};
+}
+
+AgreedLaws lawsIn(const JsonField& object)
+{
+    AgreedLaws laws;
+    for (const auto& effect : object.at("effects").items())
+        laws.effects.push_back(effect.text());
+    laws.baseDb = object.at("baseDb").number();
+    laws.leftDb = object.at("leftDb").number();
+    laws.sentence = object.at("sentence").text();
+    return laws;
+}
+
+}  // namespace
+
+nlohmann::ordered_json toJson(const PolynomialFit& fit)
+{
+    Json document {{"format", "excursion-pnlss-fit"}, {"version", 1}, {"take", fit.take}};
+    document["estimationDb"] = fit.estimationDb;
+    document["validationDb"] = numberOrNull(fit.validationDb);
+    document["noiseDb"] = optionalNumber(fit.noiseDb);
+    document["noiseFrom"] = textOrNull(fit.noiseFrom);
+    document["arrived"] = fit.arrived ? Json(*fit.arrived) : Json();
+    document["advice"] = textOrNull(fit.advice);
+    document["iterations"] = fit.iterations;
+    document["stopped"] = fit.stopped;
+    document["stable"] = fit.stable;
+    document["history"] = numbersOrNulls(fit.history);
+    document["laws"] = fit.laws ? json(*fit.laws) : Json();
+    document["model"] = fit.model;
+    return document;
+}
+
+PolynomialFit polynomialFitFromJson(const JsonField& document)
+{
+    document.requireFormat("excursion-pnlss-fit", 1);
+    PolynomialFit fit;
+    fit.take = document.at("take").text();
+    fit.estimationDb = document.at("estimationDb").numberOrNaN();
+    fit.validationDb = document.at("validationDb").numberOrNaN();
+    fit.noiseDb = document.at("noiseDb").optionalNumber();
+    fit.noiseFrom = document.textIn("noiseFrom");
+    if (document.has("arrived"))
+        fit.arrived = document.at("arrived").flag();
+    fit.advice = document.textIn("advice");
+    fit.iterations = document.at("iterations").count(0, std::numeric_limits<int>::max());
+    fit.stopped = document.at("stopped").text();
+    fit.stable = document.at("stable").flag();
+    fit.history = document.at("history").numbers();
+    if (document.has("laws"))
+        fit.laws = lawsIn(document.at("laws"));
+    fit.model = document.at("model").value();
+    return fit;
+}
+
+}  // namespace excursion
