@@ -16,26 +16,33 @@
 namespace excursion {
 namespace {
 
-double db(double power, double reference)
-{
-    return 10.0 * std::log10(std::max(power, 1e-300) / std::max(reference, 1e-300));
-}
+/// The errors of one channel.
+struct ChannelSums {
+    ErrorSums total;
+    std::vector<ErrorSums> byLevel;
 
-ErrorLevel levelOf(const ErrorPower& power, const NormalEquations& normal, bool noiseKnown)
-{
-    ErrorLevel level;
-    level.db = db(power.error, power.measured);
-    if (noiseKnown)
-        level.noiseFloorDb = db(power.noise, power.measured);
-    level.chiSquaredPerValue = normal.cost / std::max(1.0, normal.rows);
-    return level;
-}
-
-/// Sums over the sections of one level.
-struct LevelSums {
-    ErrorPower power;
-    NormalEquations normal;
+    template <class Add>
+    void add(int level, const Add& to)
+    {
+        to(total);
+        to(byLevel[static_cast<std::size_t>(std::max(0, level))]);
+    }
+    template <class Holds>
+    bool everywhere(const Holds& holds) const
+    {
+        return holds(total) && std::all_of(byLevel.begin(), byLevel.end(), holds);
+    }
 };
+
+/// Whether what is left may be what parameters leave open: something stands over the noise, and nothing far.
+bool mayBeOpen(const std::vector<ChannelSums>& channels)
+{
+    constexpr double near = 10.0;  // times the noise
+    const auto noise = [](const ErrorSums& sums) { return isNoise(levelOf(sums, true)); };
+    const auto close = [](const ErrorSums& sums) { return sums.power.error <= near * sums.power.noise; };
+    return std::all_of(channels.begin(), channels.end(), [&](const auto& c) { return c.everywhere(close); })
+           && !std::all_of(channels.begin(), channels.end(), [&](const auto& c) { return c.everywhere(noise); });
+}
 
 ErrorKinds kindsOf(const Record& record, const std::vector<std::size_t>& sections, const std::vector<SectionFit>& fits,
                    std::size_t c, int level)
@@ -66,13 +73,13 @@ ErrorKinds kindsOf(const Record& record, const std::vector<std::size_t>& section
     }
     if (!known)
         return kinds;
-    kinds.linear = db(linear, measured);
+    kinds.linear = powerRatioDb(linear, measured);
     if (oddSeen)
-        kinds.odd = db(odd, measured);
+        kinds.odd = powerRatioDb(odd, measured);
     if (evenSeen)
-        kinds.even = db(even, measured);
+        kinds.even = powerRatioDb(even, measured);
     if (record.noiseKnown)
-        kinds.noise = db(noise, measured);
+        kinds.noise = powerRatioDb(noise, measured);
     return kinds;
 }
 
@@ -175,29 +182,33 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
     // What is slow, or still relaxes when the periods begin that count, differs from period to period by itself.
     const bool drifts = std::any_of(model.components.begin(), model.components.end(),
                                     [](const Component& part) { return part.effect->slow() || part.effect->creeps(); });
-    NormalEquations everything;
+    std::vector<ChannelSums> sums(record.channels.size(), {{}, std::vector<ErrorSums>(result.levels.size())});
+    for (std::size_t n = 0; n < fits.size(); ++n)
+        for (std::size_t c = 0; c < sums.size(); ++c)
+            sums[c].add(record.sections[sections[n]].level, [&](ErrorSums& sum) {
+                sum.power.add(fits[n].power[c]);
+                sum.cost += fits[n].channels[c].cost;
+                sum.rows += fits[n].channels[c].rows;
+            });
+    if (record.noiseKnown && mayBeOpen(sums))
+        for (const auto place : sections) {
+            const auto open = openError(model, record, place);
+            for (std::size_t c = 0; c < sums.size(); ++c)
+                sums[c].add(record.sections[place].level, [&](ErrorSums& sum) { sum.open.add(open[c]); });
+        }
+    double cost = 0.0, rows = 0.0;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         ChannelComparison channel;
         channel.quantity = record.channels[c];
         channel.unit = record.units[c];
         if (!drifts)
             channel.wanderDb = record.wanderDb[c];
-        std::vector<LevelSums> sums(result.levels.size());
-        LevelSums total;
-        for (std::size_t n = 0; n < fits.size(); ++n) {
-            const int level = std::max(0, record.sections[sections[n]].level);
-            for (auto* sum : {&sums[static_cast<std::size_t>(level)], &total}) {
-                sum->power.error += fits[n].power[c].error;
-                sum->power.measured += fits[n].power[c].measured;
-                sum->power.noise += fits[n].power[c].noise;
-                sum->normal.add(fits[n].channels[c]);
-            }
-        }
-        channel.total = levelOf(total.power, total.normal, record.noiseKnown);
-        everything.add(total.normal);
-        for (std::size_t level = 0; level < sums.size(); ++level) {
+        channel.total = levelOf(sums[c].total, record.noiseKnown);
+        cost += sums[c].total.cost;
+        rows += sums[c].total.rows;
+        for (std::size_t level = 0; level < result.levels.size(); ++level) {
             const int index = record.levels.empty() ? -1 : static_cast<int>(level);
-            channel.byLevel.push_back(levelOf(sums[level].power, sums[level].normal, record.noiseKnown));
+            channel.byLevel.push_back(levelOf(sums[c].byLevel[level], record.noiseKnown));
             if (options.spectra) {
                 channel.kindsByLevel.push_back(kindsOf(record, sections, fits, c, index));
                 channel.spectrumByLevel.push_back(spectrumOf(record, sections, fits, c, index));
@@ -205,7 +216,7 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
         }
         result.channels.push_back(std::move(channel));
     }
-    result.chiSquaredPerValue = everything.cost / std::max(1.0, everything.rows);
+    result.chiSquaredPerValue = cost / std::max(1.0, rows);
     if (options.spectra)
         result.residuals = residualCurves(model, record, sections, fits);
     progress.at(1.0, "compared");

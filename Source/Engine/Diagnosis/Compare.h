@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "Engine/Diagnosis/ErrorLevel.h"
 #include "Engine/Diagnosis/ResidualCurves.h"
 #include "Engine/Loudspeaker/Model.h"
 #include "Engine/Estimate/Record.h"
@@ -11,14 +12,6 @@
 #include <vector>
 
 namespace excursion {
-
-/// The error of a model in one channel: relative rms error [B 4.26], and the rms of the noise relative to the same
-/// reference, dB. `chiSquaredPerValue` is the mean of |error|^2/sigma^2 over the lines: 1 if only noise is left.
-struct ErrorLevel {
-    double db = 0.0;
-    std::optional<double> noiseFloorDb;  ///< empty if the take does not show its noise
-    double chiSquaredPerValue = 0.0;
-};
 
 /// The remaining error by kind, as powers relative to the measured channel, dB. This needs known excited lines. Grids
 /// without detection lines leave `odd` empty, as odd distortion then lies on the excited lines.

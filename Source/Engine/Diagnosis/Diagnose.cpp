@@ -18,21 +18,21 @@
 namespace excursion {
 namespace {
 
-/// Whether an error is nothing but noise: line by line, and in power, as a few lines with much of it hardly count among
-/// thousands.
-bool isNoise(const ErrorLevel& error)
-{
-    constexpr double mostLines = 1.6, mostDb = 3.0;  // 2 dB of mean squared error over the noise's
-    return error.chiSquaredPerValue <= mostLines
-           && error.db <= error.noiseFloorDb.value_or(-std::numeric_limits<double>::infinity()) + mostDb;
-}
-
 /// At every level: what only the loudest shows would drown among the quiet ones.
 bool isNoise(const ChannelComparison& channel)
 {
     return isNoise(channel.total)
            && std::all_of(channel.byLevel.begin(), channel.byLevel.end(), [](const auto& e) { return isNoise(e); })
            && !channel.wanderDb;
+}
+
+/// Whether an error stands over the noise by what the parameters leave open.
+bool isOpen(const Comparison& comparison)
+{
+    const auto open = [](const ErrorLevel& error) { return error.openPower > 0.0; };
+    return std::any_of(comparison.channels.begin(), comparison.channels.end(), [&](const auto& c) {
+        return open(c.total) || std::any_of(c.byLevel.begin(), c.byLevel.end(), open);
+    });
 }
 
 bool isNoise(const Comparison& comparison)
@@ -318,6 +318,9 @@ Diagnosis diagnose(const Model& model, const Record& record, const Comparison& b
         diagnosis.measureNext = whatParts(diagnosis.ranking.front().model,
                                           diagnosis.find(diagnosis.indistinguishable.front())->model, record);
     diagnosis.sentence = sentenceFor(diagnosis);
+    if (diagnosis.verdict == Verdict::complete && isOpen(before))
+        diagnosis.sentence += " On what was held out the error is larger, but no larger than the standard errors of the "
+                              "parameters let one expect: more realizations would tell them better.";
     progress.at(1.0, "diagnosed");
     return diagnosis;
 }
