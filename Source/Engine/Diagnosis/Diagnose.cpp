@@ -319,8 +319,9 @@ Diagnosis diagnose(const Model& model, const Record& record, const Comparison& b
                                           diagnosis.find(diagnosis.indistinguishable.front())->model, record);
     diagnosis.sentence = sentenceFor(diagnosis);
     if (diagnosis.verdict == Verdict::complete && isOpen(before))
-        diagnosis.sentence += " On what was held out the error is larger, but no larger than the standard errors of the "
-                              "parameters let one expect: more realizations would tell them better.";
+        diagnosis.sentence +=
+            " On what was held out the error is larger, but no larger than the standard errors of the "
+            "parameters let one expect: more realizations would tell them better.";
     progress.at(1.0, "diagnosed");
     return diagnosis;
 }
