@@ -120,17 +120,24 @@ TEST_CASE("a rest position that jumps is no dropout: what repeats is fit for use
     const auto sound = soundTake();
     const auto& e = *sound.excitation;
     const double rms = synthetic::rms(sound.find(Quantity::displacement)->samples);
-    for (const double share : {0.5, -2.0})
+    const auto swingsIn = [](double since) { return 1.0 - std::exp(-60.0 * since) * std::cos(300.0 * since); };
+    const auto takesItsTime = [](double since) {  // a quarter of the period
+        return 0.5 - 0.5 * std::cos(std::numbers::pi * std::min(1.0, 4.0 * since));
+    };
+    for (const double share : {0.5, -2.0, 0.4, -1.5})
         for (const int period : {1, 2}) {  // the first used one, and the next
+            const bool slowly = std::abs(share) == 0.4 || std::abs(share) == 1.5;
             auto take = sound;
             auto& samples = samplesOf(take, Quantity::displacement);
             const auto from = static_cast<std::size_t>(e.samplesPerRealization() * 4 + e.period * period
                                                        + e.period / 3),
-                       until = from + static_cast<std::size_t>(e.samplesPerRealization() + e.period / 4);
-            for (auto n = from; n < until; ++n) {  // it swings in
+                       until = from + static_cast<std::size_t>(e.samplesPerRealization() + (slowly ? 0 : e.period / 4));
+            for (auto n = from; n < until; ++n) {
                 const double since = static_cast<double>(n - from) / e.period;
-                samples[n] += share * rms * (1.0 - std::exp(-60.0 * since) * std::cos(300.0 * since));
+                samples[n] += share * rms * (slowly ? takesItsTime(since) : swingsIn(since));
             }
+            for (auto n = until; n < samples.size() && slowly; ++n)  // and as slowly back
+                samples[n] += share * rms * (1.0 - takesItsTime(static_cast<double>(n - until) / e.period));
             const auto report = check(take);
             INFO(fatalSentences(report));
             CHECK(report.fitForUse());

@@ -213,6 +213,7 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
     constexpr std::size_t blocks = 64;
     constexpr int pieces = 3;
     constexpr double most = 0.5, much = 0.25;  // at its new rest the cone swings in
+    constexpr double plateaus = 0.96;
     const std::size_t length = earlier.size() / blocks;
     if (length == 0)
         return 0.0;
@@ -246,10 +247,13 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
                 }
     // A rest that drifts makes the difference constant: what steps is asked for beside the mean.
     const double constant = sum[blocks] * mean(0, blocks);
-    if (!(best[pieces][blocks].explained - constant > most * (whole - constant)))
+    const double explained = (best[pieces][blocks].explained - constant) / (whole - constant);
+    if (!(explained > most))
         return 0.0;
     // What jumps does so from one block to the next, or within one; what drifts faster and faster takes its time. A
-    // motion that settles comes back, and takes its time for that.
+    // motion that settles comes back, and takes its time for that. Where periods are short, a leap takes some blocks,
+    // too: of one that takes a quarter of the period three pieces explain 0.98, of a ramp or of what decays 0.95 at
+    // most.
     int jumps = 0;
     const double last = mean(best[pieces][blocks].from, blocks);
     double first = last, least = last, largest = last;
@@ -264,7 +268,8 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
         to = from;
     }
     const double moved = largest - least;
-    const bool stays = jumps == pieces - 1 || (jumps > 0 && std::abs(last - first) > 0.5 * moved);
+    const bool stays = explained > plateaus || jumps == pieces - 1
+                       || (jumps > 0 && std::abs(last - first) > 0.5 * moved);
     return stays && moved * moved * static_cast<double>(length * blocks) > much * whole ? moved : 0.0;
 }
 
