@@ -105,7 +105,9 @@ void run(const PredistortArguments& options, Terminal& terminal)
     const JsonField field(document, "", options.model);
     if (isModelDocument(field))
         return runBlackBox(options, blackBoxOf(modelDocumentFrom(field)), terminal);
-    const auto [model, motionIsGuessed, areaIsGuessed] = withKnown(modelFromJson(field), options.known);
+    const auto known = withKnown(modelFromJson(field), options.known);
+    const auto& model = known.model;
+    const bool motionIsGuessed = known.motionIsGuessed;
     if (motionIsGuessed && options.displacementLimit)
         throw Error(Error::Kind::usage, guessedMotion("The motion of this model")
                                             + " Without --limit-x the cone is kept to where the model was measured, "

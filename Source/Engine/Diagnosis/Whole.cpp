@@ -297,7 +297,8 @@ Candidate best(const Model& base, const Record& record, WholeSearch& search, con
 Whole completed(Candidate found, const Record& record, WholeSearch& search, const FitOptions& options,
                 const Progress& progress)
 {
-    auto& [whole, tried] = found;
+    auto& whole = found.whole;
+    auto& tried = found.tried;
     search.chooseResiduals(whole.model);
     if (!search.left(whole.model).isNoise()) {  // laws of a higher degree may have laid bare what is small
         auto more = grown(whole.model, record, search, {}, progress.part(0.0, 0.2))->whole;
