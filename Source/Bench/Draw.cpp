@@ -42,9 +42,10 @@ void scaleLevels(BenchSetup& setup, double factor)
         level *= factor;
 }
 
-/// Loops in the iron move with the coil. The product of motion and current then drives them down to 0 Hz, where K s^a
-/// would keep its flux for ever. Iron does not: in a pole of radius a the slowest loop has the rate j01^2/(mu sigma
-/// a^2), some Hz. So the loops that draw K s^a become a chain of their own, with an end well below the band.
+/// Loops in the iron move with the coil. The product of motion and current then drives them down to 0 Hz, and the loops
+/// that draw K s^a, a hundredth as slow as the band, would keep its flux over many sections. Iron does not: in a pole
+/// of radius a the slowest loop has the rate j01^2/(mu sigma a^2), some Hz. So they become a chain of their own,
+/// without those slower than a thirtieth of the band's lower edge.
 void setMoving(Loudspeaker& speaker, const Excitation& plan)
 {
     constexpr double turn = 2.0 * std::numbers::pi;
@@ -52,9 +53,11 @@ void setMoving(Loudspeaker& speaker, const Excitation& plan)
     eddy.moves = true;
     if (!eddy.cells.empty())
         return;
-    const auto loops = fractionalIntegral(1.0 - eddy.exponent, turn * plan.bandLow / 30.0, turn * plan.bandHigh * 10.0);
+    const double slowest = turn * plan.bandLow / 30.0;
+    const auto loops = fractionalIntegral(1.0 - eddy.exponent, slowest, turn * plan.bandHigh * 10.0);
     for (std::size_t n = 0; n < loops.rate.size(); ++n)
-        eddy.cells.push_back({eddy.coefficient * loops.weight[n], loops.rate[n]});
+        if (loops.rate[n] >= slowest)
+            eddy.cells.push_back({eddy.coefficient * loops.weight[n], loops.rate[n]});
 }
 
 void requirePressure(BenchSetup& setup)

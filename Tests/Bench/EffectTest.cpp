@@ -110,3 +110,22 @@ TEST_CASE("a coil heats towards its steady temperature", "[bench]")
     CHECK(record.coilTemperature > 20.0);
     CHECK(record.coilTemperature < 30.0);
 }
+
+TEST_CASE("Loops that move with the coil let go of their flux within a few periods of the lowest tone")
+{
+    int moving = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        bench::DrawOptions options;
+        options.seconds = 1.0;
+        options.hidden = {{"eddy-currents", 0.0}, {"inductance-position", 0.0}};
+        const auto drawn = bench::draw(seed, options);
+        const auto& eddy = drawn.speaker.eddyCurrents.value();
+        if (!eddy.moves)
+            continue;
+        ++moving;
+        REQUIRE(!eddy.cells.empty());
+        for (const auto& cell : eddy.cells)
+            CHECK(cell.rate >= 0.99 * 2.0 * std::numbers::pi * drawn.setup.excitation.bandLow / 30.0);
+    }
+    CHECK(moving > 2);
+}

@@ -124,9 +124,8 @@ TEST_CASE("a rest position that jumps is no dropout: what repeats is fit for use
     const auto takesItsTime = [](double since) {  // a quarter of the period
         return 0.5 - 0.5 * std::cos(std::numbers::pi * std::min(1.0, 4.0 * since));
     };
-    for (const double share : {0.5, -2.0, 0.4, -1.5})
+    for (const auto& [share, slowly] : {std::pair {0.5, false}, {-2.0, false}, {0.4, true}, {-1.5, true}})
         for (const int period : {1, 2}) {  // the first used one, and the next
-            const bool slowly = std::abs(share) == 0.4 || std::abs(share) == 1.5;
             auto take = sound;
             auto& samples = samplesOf(take, Quantity::displacement);
             const auto from = static_cast<std::size_t>(e.samplesPerRealization() * 4 + e.period * period

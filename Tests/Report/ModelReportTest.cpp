@@ -99,3 +99,20 @@ TEST_CASE("Every document that has a page makes one, and others are refused by w
     broken["orders"][0].erase("errorDb");
     CHECK_THROWS_AS(page(broken), Error);
 }
+
+TEST_CASE("What identify, pnlss and rank found reads back from its document")
+{
+    const auto same = [](const nlohmann::json& document, const auto& from) {
+        CAPTURE(document.at("format").get<std::string>());
+        CHECK(nlohmann::json(toJson(from(JsonField(document, "", "test.json")))) == document);
+    };
+    const auto samples = sampleDocuments();
+    same(samples.sweep, identificationFromJson);
+    same(samples.fractionalSweep, fractionalIdentificationFromJson);
+    same(samples.halves, motorConeFromJson);
+    same(samples.fit, polynomialFitFromJson);
+    same(samples.ranking, rankingFromJson);
+    auto elsewhere = samples.sweep;
+    elsewhere["chosen"] = 7;
+    CHECK_THROWS_AS(identificationFromJson(JsonField(elsewhere, "", "test.json")), Error);
+}

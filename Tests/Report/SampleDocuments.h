@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -57,8 +58,10 @@ inline SampleDocuments sampleDocuments()
     entry.found.errorDb = -20.0;
     entry.found.cost = 0.0063;
     entry.found.stable = true;
+    auto larger = entry;
+    larger.order = 3;
     const auto sweep = nlohmann::json(
-        toJson(IdentifiedModel {"take", 40, {{entry, entry}, 1, "order 2 <it> is"}, driver}));
+        toJson(IdentifiedModel {"take", 40, {{larger, entry}, 1, "order 2 <it> is"}, driver}));
     FractionalSweep::Entry bent;
     bent.order = 2;
     bent.found.model.alpha = 0.5;
@@ -77,6 +80,7 @@ inline SampleDocuments sampleDocuments()
     polynomial.stable = true;
     polynomial.stopped = "the error no longer falls";
     polynomial.history = {-20.0, -35.0, -40.0};
+    polynomial.laws = {{"stiffness"}, -20.0, -38.0, "as K(x) has it"};
     polynomial.model = {{"format", "excursion-pnlss"}, {"linear", linear}};
     const auto fit = nlohmann::json(toJson(polynomial));
     RankedModel straight;
@@ -94,10 +98,16 @@ inline SampleDocuments sampleDocuments()
     RankedModel lost;
     lost.name = "narx";
     lost.trouble = "ran & away";
+    auto runaway = curved;
+    runaway.name = "block";
+    runaway.estimationDb = std::numeric_limits<double>::infinity();
+    runaway.validationDb = std::numeric_limits<double>::quiet_NaN();
+    runaway.stable = false;
+    runaway.kept = "models/block.json";
     Ranking classes;
     classes.take = "take";
     classes.noiseDb = -70.0;
-    classes.models = {straight, curved, lost};
+    classes.models = {straight, curved, runaway, lost};
     classes.sentence = "s";
     classes.straightest = "pnlss";
     classes.straightSentence = "pnlss & co";
@@ -110,6 +120,7 @@ inline SampleDocuments sampleDocuments()
     both.sentence = "told <it> all";
     both.stable = true;
     both.motor = both.cone = both.cascade = driver;
+    both.cascade.delay = -1e-3;
     const auto halves = nlohmann::json(toJson(both));
     const nlohmann::json curve {
         {"channel", "pressure"},

@@ -71,8 +71,8 @@ double shareLeft(double frequency, double reach, const Excitation& e, double sam
     for (const std::complex<double> phase : {std::complex(1.0, 0.0), std::complex(0.0, 1.0)}) {
         std::vector<double> residual(length);
         for (std::size_t n = 0; n < length; ++n) {
-            const std::size_t begun = N * (n / N);  // of the period
-            const auto left = std::polar(1.0, turn * static_cast<double>(begun)) - average;
+            const std::size_t periodBegin = N * (n / N);
+            const auto left = std::polar(1.0, turn * static_cast<double>(periodBegin)) - average;
             residual[n] = (phase * left * std::polar(1.0, turn * static_cast<double>(n % N))).real()
                           * window(n, length);
         }

@@ -252,8 +252,8 @@ double restMoved(std::span<const double> earlier, std::span<const double> later)
         return 0.0;
     // What jumps does so from one block to the next, or within one; what drifts faster and faster takes its time. A
     // motion that settles comes back, and takes its time for that. Where periods are short, a leap takes some blocks,
-    // too: of one that takes a quarter of the period three pieces explain 0.98, of a ramp or of what decays 0.95 at
-    // most.
+    // too: of one that takes a quarter of the period, amid it, three pieces explain 0.98, of a ramp or of what decays
+    // 0.95 at most.
     int jumps = 0;
     const double last = mean(best[pieces][blocks].from, blocks);
     double first = last, least = last, largest = last;

@@ -37,7 +37,7 @@ struct ChannelSums {
 /// Whether what is left may be what parameters leave open: something stands over the noise, and nothing far.
 bool mayBeOpen(const std::vector<ChannelSums>& channels)
 {
-    constexpr double near = 10.0;  // times the noise
+    constexpr double near = 4.0;  // times the noise: where more is missing, standard errors tell of that
     const auto noise = [](const ErrorSums& sums) { return isNoise(levelOf(sums, true)); };
     const auto close = [](const ErrorSums& sums) { return sums.power.error <= near * sums.power.noise; };
     return std::all_of(channels.begin(), channels.end(), [&](const auto& c) { return c.everywhere(close); })
@@ -190,7 +190,7 @@ std::optional<Comparison> tryCompare(const Model& model, const Record& record, c
                 sum.cost += fits[n].channels[c].cost;
                 sum.rows += fits[n].channels[c].rows;
             });
-    if (record.noiseKnown && mayBeOpen(sums))
+    if (record.noiseKnown && result.validated && mayBeOpen(sums))
         for (const auto place : sections) {
             const auto open = openError(model, record, place);
             for (std::size_t c = 0; c < sums.size(); ++c)

@@ -15,7 +15,8 @@ struct ErrorLevel {
     std::optional<double> noiseFloorDb;  ///< empty if the take does not show its noise
     double chiSquaredPerValue = 0.0;
     /// What one standard error of the parameters leaves beside the noise, in units of the noise: of chiSquaredPerValue,
-    /// and of the power. Known where the error is near the noise, but not within it.
+    /// and of the power. Asked for once an error of the comparison stands over the noise and none is above four times
+    /// it; else 0. Not in documents.
     double openChiSquared = 0.0, openPower = 0.0;
 };
 

@@ -3,21 +3,37 @@
 
 #include "Engine/Loudspeaker/FeedbackError.h"
 #include "Engine/Loudspeaker/OutputError.h"
-
-#include <Eigen/Eigenvalues>
+#include "Engine/Numerics/Eigenvalues.h"
 
 #include <cmath>
 
 namespace excursion {
+namespace {
+
+/// A root of the covariance, C = root root^T. In units of the standard errors, as variances differ by twenty orders of
+/// magnitude.
+Eigen::MatrixXd rootOf(const Eigen::MatrixXd& C)
+{
+    const Eigen::VectorXd deviation = C.diagonal().cwiseSqrt();
+    const auto [values, vectors] = symmetricEigenvectors(deviation.cwiseInverse().asDiagonal() * C
+                                                         * deviation.cwiseInverse().asDiagonal());
+    return deviation.asDiagonal() * vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+}  // namespace
 
 std::vector<OpenError> openError(const Model& model, const Record& record, std::size_t section)
 {
     std::vector<OpenError> result(record.channels.size());
-    const auto active = freeParameters(model);
-    if (!hasPeriods(record) || active.empty() || model.covariance.rows() != parameterVector(model).size())
+    if (!hasPeriods(record) || model.covariance.rows() != parameterVector(model).size())
         return result;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> C(Eigen::MatrixXd(model.covariance(active, active)));
-    const Eigen::MatrixXd root = C.eigenvectors() * C.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    auto active = freeParameters(model);
+    std::erase_if(active, [&](Eigen::Index k) {
+        return !(model.covariance(k, k) > 0.0 && std::isfinite(model.covariance(k, k)));
+    });
+    if (active.empty())
+        return result;
+    const Eigen::MatrixXd root = rootOf(model.covariance(active, active));
     OutputErrorOptions run;
     run.slopes = true;
     const auto fit = std::move(quickError(model, record, {section}, active, run).front());

@@ -11,7 +11,7 @@ namespace excursion {
 
 /// What the parameters of a model leave open in one channel of a section, summed over its lines: the variance of what
 /// the model predicts, diag(J C J^T), with the slopes J of the predicted lines by the parameters and the covariance C
-/// of these.
+/// of these. A parameter of which the fit told nothing counts as known: its prior holds it.
 struct OpenError {
     double chiSquared = 0.0;  ///< in units of each line's noise
     double power = 0.0;       ///< as ErrorPower's

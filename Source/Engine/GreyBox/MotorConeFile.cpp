@@ -12,9 +12,9 @@ nlohmann::ordered_json toJson(const NamedMotorCone& found)
     nlohmann::ordered_json document {
         {"format", "excursion-motor-cone"}, {"version", 1}, {"source", found.source}, {"name", found.name}};
     document["delay"] = found.delay;
-    document["motorErrorDb"] = found.motorErrorDb;
-    document["coneErrorDb"] = found.coneErrorDb;
-    document["errorDb"] = found.errorDb;
+    document["motorErrorDb"] = numberOrNull(found.motorErrorDb);
+    document["coneErrorDb"] = numberOrNull(found.coneErrorDb);
+    document["errorDb"] = numberOrNull(found.errorDb);
     document["motorChiSquared"] = numberOrNull(found.motorChiSquared);
     document["chiSquared"] = numberOrNull(found.chiSquared);
     document["refined"] = found.refined;
@@ -34,11 +34,13 @@ NamedMotorCone motorConeFromJson(const JsonField& document)
     found.source = document.at("source").text();
     found.name = document.at("name").text();
     found.delay = document.at("delay").number();
-    found.motorErrorDb = document.at("motorErrorDb").number();
-    found.coneErrorDb = document.at("coneErrorDb").number();
-    found.errorDb = document.at("errorDb").number();
-    found.motorChiSquared = document.at("motorChiSquared").numberOrNaN();
-    found.chiSquared = document.at("chiSquared").numberOrNaN();
+    found.motorErrorDb = document.at("motorErrorDb").numberOrNaN();
+    found.coneErrorDb = document.at("coneErrorDb").numberOrNaN();
+    found.errorDb = document.at("errorDb").numberOrNaN();
+    if (document.has("motorChiSquared"))
+        found.motorChiSquared = document.at("motorChiSquared").number();
+    if (document.has("chiSquared"))
+        found.chiSquared = document.at("chiSquared").number();
     found.refined = document.at("refined").flag();
     found.toldUpTo = document.at("toldUpTo").number();
     found.sentence = document.at("sentence").text();

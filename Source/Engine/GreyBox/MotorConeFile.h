@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <limits>
 #include <string>
 
 namespace excursion {
@@ -13,7 +14,10 @@ namespace excursion {
 struct NamedMotorCone {
     std::string source, name;  ///< path of the take or response, and what it is called
     double delay = 0.0;        ///< s, of the sound on its way
-    double motorErrorDb = 0.0, coneErrorDb = 0.0, errorDb = 0.0, motorChiSquared = 0.0, chiSquared = 0.0;
+    double motorErrorDb = 0.0, coneErrorDb = 0.0,
+           errorDb = 0.0;  ///< as MotorCone has them; NaN where one is not finite
+    double motorChiSquared = std::numeric_limits<double>::quiet_NaN(),
+           chiSquared = std::numeric_limits<double>::quiet_NaN();
     bool refined = false;
     double toldUpTo = 0.0;  ///< Hz
     std::string sentence;

@@ -49,9 +49,10 @@ int substepsFor(const Model& model, const Record& record, double tolerance)
     // What nobody measured may be off: the turns of a cone with friction are sharp in its acceleration alone.
     constexpr double finest = 1e-6, coarsest = 1e-4, ofNoise = 0.15;
     SimulationOptions options;
+    options.tolerance = tolerance > 0.0 ? tolerance : coarsest;
     options.maximumSubsteps = 16;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
-        double asked = tolerance > 0.0 ? tolerance : coarsest;
+        double asked = options.tolerance;
         if (tolerance <= 0.0 && record.noiseKnown) {
             double noise = 0.0, signal = 0.0;
             for (std::size_t k = 1; k < loudest->measured[c].size(); ++k) {

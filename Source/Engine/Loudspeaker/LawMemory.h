@@ -22,9 +22,9 @@ struct MemoryStart {
 };
 
 /// A memory at sample `begin` of a motion in its periodic steady state. What forgets at a steady rate (Pace::steady)
-/// follows exactly; anything else goes two periods from rest by the fourth-order Runge-Kutta method, and then along
-/// each state's geometric series. This is the state of hysteresis once the cone has been
-/// everywhere. Its gradient is zero, as the influence of a parameter is forgotten in the lead-in.
+/// follows by its closed form; anything else goes two periods from rest by the fourth-order Runge-Kutta method, and
+/// then along each state's geometric series. This is the state of hysteresis once the cone has been everywhere. Its
+/// gradient is zero, as the influence of a parameter is forgotten in the lead-in.
 MemoryStart settledMemory(const Component&, const PeriodicMotion&, std::size_t begin, double sampleRate);
 
 /// A slow memory, dm/dt = a + B m, with a and B the means of its rate over the motion of a section, follows the history

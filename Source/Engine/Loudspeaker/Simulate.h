@@ -15,7 +15,7 @@ namespace excursion {
 struct SimulationOptions {
     double tolerance = 1e-5;  ///< largest relative rms change of any channel if the step is halved
     int maximumSubsteps = 64;
-    /// The tolerance of each trace that somebody looks at, where they differ: the others need none then.
+    /// Tolerances by trace. If there are any, they replace `tolerance`, and no other trace is looked at.
     std::map<Trace, double> tolerances {};
     bool isValid(std::string* reason) const;
 };

@@ -10,7 +10,10 @@ using Json = nlohmann::ordered_json;
 
 Json json(const AgreedLaws& laws)
 {
-    return {{"effects", laws.effects}, {"baseDb", laws.baseDb}, {"leftDb", laws.leftDb}, {"sentence", laws.sentence}};
+    return {{"effects", laws.effects},
+            {"baseDb", numberOrNull(laws.baseDb)},
+            {"leftDb", numberOrNull(laws.leftDb)},
+            {"sentence", laws.sentence}};
 }
 
 AgreedLaws lawsIn(const JsonField& object)
@@ -18,8 +21,8 @@ AgreedLaws lawsIn(const JsonField& object)
     AgreedLaws laws;
     for (const auto& effect : object.at("effects").items())
         laws.effects.push_back(effect.text());
-    laws.baseDb = object.at("baseDb").number();
-    laws.leftDb = object.at("leftDb").number();
+    laws.baseDb = object.at("baseDb").numberOrNaN();
+    laws.leftDb = object.at("leftDb").numberOrNaN();
     laws.sentence = object.at("sentence").text();
     return laws;
 }
@@ -51,7 +54,8 @@ PolynomialFit polynomialFitFromJson(const JsonField& document)
     fit.take = document.at("take").text();
     fit.estimationDb = document.at("estimationDb").numberOrNaN();
     fit.validationDb = document.at("validationDb").numberOrNaN();
-    fit.noiseDb = document.at("noiseDb").optionalNumber();
+    if (document.has("noiseDb"))
+        fit.noiseDb = document.at("noiseDb").number();
     fit.noiseFrom = document.textIn("noiseFrom");
     if (document.has("arrived"))
         fit.arrived = document.at("arrived").flag();

@@ -54,6 +54,8 @@ Json json(const RankedModel& model)
     Json object {{"class", model.name}};
     if (!model.trouble.empty()) {
         object["trouble"] = model.trouble;
+        if (!model.kept.empty())
+            object["kept"] = model.kept;
         return object;
     }
     object["description"] = model.description;
@@ -74,6 +76,7 @@ RankedModel modelIn(const JsonField& object)
     RankedModel model;
     model.name = object.at("class").text();
     model.trouble = object.textIn("trouble");
+    model.kept = object.textIn("kept");
     if (!model.trouble.empty())
         return model;
     model.description = object.at("description").text();
@@ -83,7 +86,6 @@ RankedModel modelIn(const JsonField& object)
     model.load = object.at("load").number();
     model.fitSeconds = object.at("fitSeconds").number();
     model.stable = object.at("stable").flag();
-    model.kept = object.textIn("kept");
     if (object.has("linearization"))
         model.predistortion = predistortionIn(object.at("linearization"));
     else

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "Engine/Diagnosis/WholeSearch.h"
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace excursion {
+
+/// Where a round of a search has ended.
+struct Waypoint {
+    std::set<std::string> effects;
+    double chiSquaredPerValue = 0.0;
+};
+using Waypoints = std::vector<Waypoint>;
+
+/// A model that effects were put into, what the last of them was fitted to, and how it came there.
+struct Grown {
+    Model model;
+    FitSummary fit;
+    Waypoints path;
+};
+
+/// Puts the effects that the record shows into a base, by rounds of voting. None where that comes to where another
+/// search has been.
+/// @param known  the path of the other search
+std::optional<Grown> grown(const Model& base, const Record&, WholeSearch&, const Waypoints& known,
+                           const Progress& = {});
+
+/// Whether something is lost without an effect.
+bool isNeeded(const Removal&);
+
+}  // namespace excursion
