@@ -6,7 +6,6 @@
 #include "Engine/Diagnosis/QuickFit.h"
 #include "Engine/Diagnosis/Refine.h"
 #include "Engine/Diagnosis/WholeSearch.h"
-#include "Engine/Loudspeaker/FeedbackError.h"
 
 #include <algorithm>
 #include <iterator>
