@@ -2,7 +2,6 @@
 #include "Bench/Draw.h"
 
 #include "Bench/Random.h"
-#include "Bench/Relaxation.h"
 #include "Bench/Run.h"
 #include "Bench/Stimulus.h"
 #include "Engine/Error.h"
@@ -40,24 +39,6 @@ void scaleLevels(BenchSetup& setup, double factor)
 {
     for (auto& level : setup.excitation.levels)
         level *= factor;
-}
-
-/// Loops in the iron move with the coil. The product of motion and current then drives them down to 0 Hz, and the loops
-/// that draw K s^a, a hundredth as slow as the band, would keep its flux over many sections. Iron does not: in a pole
-/// of radius a the slowest loop has the rate j01^2/(mu sigma a^2), some Hz. So they become a chain of their own,
-/// without those slower than a thirtieth of the band's lower edge.
-void setMoving(Loudspeaker& speaker, const Excitation& plan)
-{
-    constexpr double turn = 2.0 * std::numbers::pi;
-    auto& eddy = *speaker.eddyCurrents;
-    eddy.moves = true;
-    if (!eddy.cells.empty())
-        return;
-    const double slowest = turn * plan.bandLow / 30.0;
-    const auto loops = fractionalIntegral(1.0 - eddy.exponent, slowest, turn * plan.bandHigh * 10.0);
-    for (std::size_t n = 0; n < loops.rate.size(); ++n)
-        if (loops.rate[n] >= slowest)
-            eddy.cells.push_back({eddy.coefficient * loops.weight[n], loops.rate[n]});
 }
 
 void requirePressure(BenchSetup& setup)

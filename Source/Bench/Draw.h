@@ -64,6 +64,12 @@ Visited visit(const Loudspeaker&, const BenchSetup&);
 /// Adds an effect with this strength; returns the strength reached (some laws saturate earlier).
 double addEffect(Loudspeaker&, const HiddenEffect&, const Visited&, const BenchSetup&, Random&);
 
+/// Loops in the iron move with the coil. The product of motion and current then drives them down to 0 Hz, and the loops
+/// that draw K s^a, a hundredth as slow as the band, would keep its flux over many sections. Iron does not: in a pole
+/// of radius a the slowest loop has the rate j01^2/(mu sigma a^2), some Hz. So they become a chain of their own,
+/// without those slower than a thirtieth of the band's lower edge.
+void setMoving(Loudspeaker&, const Excitation&);
+
 /// Everything for one take. The loudest level takes the driver, with its effects, to 45 .. 85 % of xmax.
 /// Throws Error (usage) for an unknown driver or effect.
 Draw draw(std::uint64_t seed, const DrawOptions& = {});

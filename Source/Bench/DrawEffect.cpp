@@ -2,6 +2,7 @@
 #include "Bench/Draw.h"
 
 #include "Bench/Random.h"
+#include "Bench/Relaxation.h"
 #include "Engine/Document/Words.h"
 #include "Engine/Error.h"
 
@@ -95,12 +96,16 @@ Creep drawCreep(double strength, double f0, double lowEdge, Random& random)
     return creep;
 }
 
+/// The ends of a chain of loops, rad/s: well below the band and above it.
+double slowestLoop(double lowEdge) { return turn * lowEdge / 30.0; }
+double fastestLoop(double highEdge) { return turn * highEdge * 10.0; }
+
 /// A chain as irons have it: one to three cells a decade at random places from well below the band to above it, each up
 /// to several times off the power law that they follow on the whole.
 EddyCurrents drawEddyChain(double exponent, double lowEdge, double highEdge, Random& random)
 {
     EddyCurrents eddy;
-    const double low = turn * lowEdge / 30.0, high = turn * highEdge * 10.0;
+    const double low = slowestLoop(lowEdge), high = fastestLoop(highEdge);
     const int count = static_cast<int>(std::ceil(std::log10(high / low) * random.uniform(1.0, 3.0)));
     const double scatter = random.uniform(0.2, 0.7);
     for (int n = 0; n < count; ++n) {
@@ -260,6 +265,19 @@ double addEffect(Loudspeaker& speaker, const HiddenEffect& effect, const Visited
         throw Error(Error::Kind::usage, "There is no effect \"" + effect.id + "\" to hide; choose from " + known + ".");
     }
     return strength;
+}
+
+void setMoving(Loudspeaker& speaker, const Excitation& plan)
+{
+    auto& eddy = *speaker.eddyCurrents;
+    eddy.moves = true;
+    if (!eddy.cells.empty())
+        return;
+    const double slowest = slowestLoop(plan.bandLow);
+    const auto loops = fractionalIntegral(1.0 - eddy.exponent, slowest, fastestLoop(plan.bandHigh));
+    for (std::size_t n = 0; n < loops.rate.size(); ++n)
+        if (loops.rate[n] >= slowest)
+            eddy.cells.push_back({eddy.coefficient * loops.weight[n], loops.rate[n]});
 }
 
 }  // namespace excursion::bench

@@ -18,7 +18,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 
 namespace excursion::cli {

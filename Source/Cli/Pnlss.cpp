@@ -182,7 +182,7 @@ void run(PnlssArguments options, Terminal& terminal)
     fit.stable = outcome.stable;
     fit.history = outcome.history;
     if (found)
-        fit.laws = {found->effects, found->baseDb, found->leftDb, found->sentence};
+        fit.laws = *found;
     fit.model = outcome.model;
     terminal.document(toJson(fit));
     if (!outcome.stable)

@@ -7,7 +7,7 @@
 
 #include "Engine/Document/JsonText.h"
 #include "Engine/Error.h"
-#include "Engine/Linear/Identify.h"
+#include "Engine/Linear/IdentificationFile.h"
 #include "Engine/Linear/PoleZeroReduction.h"
 #include "Engine/Linear/Reduction.h"
 
@@ -82,14 +82,6 @@ void pruneBy(const ReduceArguments& options, OpenModel& open, Json& document, Te
     document["errorDb"] = judged(named.model, data, open.alpha).errorDb;
     terminal.table({"order", "weighted error dB"}, rows);
     terminal.say("Ended: " + result.reason + ".");
-}
-
-Json rootsJson(const std::vector<std::complex<double>>& roots, double origin)
-{
-    Json list = Json::array();
-    for (const auto& root : roots)
-        list.push_back(Json::array({origin + root.real(), root.imag()}));
-    return list;
 }
 
 void takeOut(const ReduceArguments& options, OpenModel& open, Json& document, Terminal& terminal)

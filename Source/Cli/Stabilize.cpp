@@ -109,7 +109,7 @@ void run(const StabilizeArguments& options, Terminal& terminal)
     const auto data = dataFor(options, open);
     Json document {
         {"format", "excursion-stabilization"}, {"version", 1}, {"source", options.model}, {"method", options.method}};
-    document["response"] = options.response.path.empty() ? Json() : Json(options.response.path);
+    document["response"] = textOrNull(options.response.path);
     const auto result = stabilizeBy(options, open, data, terminal);
     if (result.parts)
         writeUnstable(options, open, *result.parts, document, terminal);

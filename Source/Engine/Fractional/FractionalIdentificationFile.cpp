@@ -63,13 +63,8 @@ FractionalSweep::Entry entryIn(const JsonField& object)
 
 nlohmann::ordered_json toJson(const IdentifiedFractionalModel& identified)
 {
-    Json document {{"format", "excursion-fractional-identification"}, {"version", 1}, {"source", identified.source}};
-    document["lines"] = identified.lines;
-    document["orders"] = Json::array();
-    for (const auto& entry : identified.sweep.entries)
-        document["orders"].push_back(json(entry));
-    document["chosen"] = identified.sweep.entries.at(identified.sweep.chosen).order;
-    document["sentence"] = identified.sweep.sentence;
+    auto document = sweepJson("excursion-fractional-identification", identified,
+                              [](const auto& entry) { return json(entry); });
     document["warning"] = identified.sweep.warning;
     document["eigenvalues"] = rootsJson(poles(identified.model.model.form));
     document["model"] = toJson(identified.model);

@@ -43,23 +43,17 @@ OrderSweepEntry entryIn(const JsonField& object)
 
 }  // namespace
 
-nlohmann::ordered_json rootsJson(const std::vector<std::complex<double>>& roots)
+nlohmann::ordered_json rootsJson(const std::vector<std::complex<double>>& roots, double origin)
 {
     Json list = Json::array();
     for (const auto& root : roots)
-        list.push_back(Json::array({root.real(), root.imag()}));
+        list.push_back(Json::array({origin + root.real(), root.imag()}));
     return list;
 }
 
 nlohmann::ordered_json toJson(const IdentifiedModel& identified)
 {
-    Json document {{"format", "excursion-identification"}, {"version", 1}, {"source", identified.source}};
-    document["lines"] = identified.lines;
-    document["orders"] = Json::array();
-    for (const auto& entry : identified.sweep.entries)
-        document["orders"].push_back(json(entry));
-    document["chosen"] = identified.sweep.entries.at(identified.sweep.chosen).order;
-    document["sentence"] = identified.sweep.sentence;
+    auto document = sweepJson("excursion-identification", identified, [](const auto& entry) { return json(entry); });
     document["poles"] = rootsJson(poles(identified.model.model));
     document["zeros"] = rootsJson(zeros(identified.model.model));
     document["model"] = toJson(identified.model);

@@ -4,6 +4,8 @@
 #include "Engine/Linear/OrderSweep.h"
 #include "Engine/Linear/StateSpaceFile.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <string>
 
@@ -21,11 +23,26 @@ struct IdentifiedModel {
 nlohmann::ordered_json toJson(const IdentifiedModel&);
 IdentifiedModel identificationFromJson(const JsonField&);
 
-/// Complex numbers as pairs.
-nlohmann::ordered_json rootsJson(const std::vector<std::complex<double>>&);
+/// Complex numbers, each with an origin added, as pairs.
+nlohmann::ordered_json rootsJson(const std::vector<std::complex<double>>&, double origin = 0.0);
 
 /// What the documents of models of whole and of fractional order share: source, lines, orders, which one was chosen and
 /// why.
+/// @param entryOf  makes the object of one of the orders
+template <class Identified, class EntryOf>
+nlohmann::ordered_json sweepJson(const char* format, const Identified& identified, EntryOf entryOf)
+{
+    nlohmann::ordered_json document {{"format", format}, {"version", 1}, {"source", identified.source}};
+    document["lines"] = identified.lines;
+    document["orders"] = nlohmann::ordered_json::array();
+    for (const auto& entry : identified.sweep.entries)
+        document["orders"].push_back(entryOf(entry));
+    document["chosen"] = identified.sweep.entries.at(identified.sweep.chosen).order;
+    document["sentence"] = identified.sweep.sentence;
+    return document;
+}
+
+/// Reads that back.
 /// @param entryIn  reads one of the orders
 template <class Identified, class EntryIn>
 void readSweep(const JsonField& document, Identified& identified, EntryIn entryIn)

@@ -68,8 +68,8 @@ template <class T, class See>
 void followSteady(const Along<T>& law, std::vector<T> start, std::size_t length, std::size_t leadIn, double sampleRate,
                   const See& see)
 {
-    SteadyMemory<T> on([&](double place, const T* memory, T* rate) { law.ask(place, memory, rate); }, std::move(start),
-                       length - leadIn, fine, sampleRate);
+    SteadyMemory on([&](double place, const T* memory, T* rate) { law.ask(place, memory, rate); }, std::move(start),
+                    length - leadIn, fine, sampleRate);
     std::vector<T> rate(on.memory.size());
     for (std::size_t step = 0; step < leadIn + length; step += fine) {
         const std::size_t n = (length - leadIn + step) % length;

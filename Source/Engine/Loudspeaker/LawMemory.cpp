@@ -230,13 +230,12 @@ std::vector<std::vector<T>> walk(const Component& component, const std::vector<T
     return starts;
 }
 
-using Rate = SteadyMemory<double>::Rate;
-
 /// The steady memory that repeats with a motion of N samples: a period from rest brings 1 - exp(-r T) of it.
+template <class Rate>
 std::vector<double> settledSteady(const Rate& rate, std::size_t size, std::size_t N, std::size_t begin,
                                   double sampleRate)
 {
-    SteadyMemory<double> on(rate, std::vector<double>(size, 0.0), begin, 1, sampleRate);
+    SteadyMemory on(rate, std::vector<double>(size, 0.0), begin, 1, sampleRate);
     for (std::size_t n = 0; n < N; ++n)
         on.advance((begin + n) % N);
     auto m = on.memory;
@@ -246,6 +245,7 @@ std::vector<double> settledSteady(const Rate& rate, std::size_t size, std::size_
 }
 
 /// Any memory that repeats: two periods from rest, and then on as each state has come from the first to the second.
+template <class Rate>
 std::vector<double> settledAnyhow(const Rate& rate, std::size_t size, std::size_t N, std::size_t begin,
                                   double sampleRate)
 {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -53,12 +52,10 @@ private:
 };
 
 /// A memory of such states (Pace::steady) on its way along a motion, one step after the other.
-template <class T>
+template <class T, class Rate>
 class SteadyMemory {
 public:
-    /// Writes the rate of a memory where the motion is, see MotionView.
-    using Rate = std::function<void(double place, const T* memory, T* rate)>;
-
+    /// @param rate      rate(place, memory, out): writes the rate of a memory where the motion is, see MotionView
     /// @param place     of the motion from which it goes
     /// @param stride    values of the motion a step
     /// @param stepRate  Hz

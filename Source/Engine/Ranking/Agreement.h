@@ -9,19 +9,23 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace excursion {
 
-/// Which physical laws a model without physics agrees with: it plays the take in the loudspeaker's place, and is
-/// diagnosed as one. So what a PNLSS model has found is said in the words of the catalogue (from 4.12 back to what it
-/// was expanded from).
-struct Agreement {
-    Ladder ladder;                     ///< of the take as the model plays it
+/// Which physical laws a model without physics agrees with.
+struct AgreedLaws {
     std::vector<std::string> effects;  ///< that the physical driver needed to move as the model does
     /// relative error of the driver without effects against the model, on validation sections
     double baseDb = 0.0;
     double leftDb = 0.0;  ///< the same with these effects
     std::string sentence;
+};
+
+/// The model plays the take in the loudspeaker's place, and is diagnosed as one. So what a PNLSS model has found is
+/// said in the words of the catalogue (from 4.12 back to what it was expanded from).
+struct Agreement : AgreedLaws {
+    Ladder ladder;  ///< of the take as the model plays it
 };
 
 /// @param play  the output, N x 1, for an input of N samples, N x 1, from rest

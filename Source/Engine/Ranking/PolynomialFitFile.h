@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Engine/Document/JsonField.h"
+#include "Engine/Ranking/Agreement.h"
 
 #include <nlohmann/json.hpp>
 
@@ -11,13 +12,6 @@
 #include <vector>
 
 namespace excursion {
-
-/// The physical laws that a model without physics agrees with, see Agreement.
-struct AgreedLaws {
-    std::vector<std::string> effects;
-    double baseDb = 0.0, leftDb = 0.0;
-    std::string sentence;
-};
 
 /// A polynomial state space, of whole or fractional order, fitted to a take or judged on it.
 struct PolynomialFit {
